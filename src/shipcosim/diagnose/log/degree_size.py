@@ -16,6 +16,8 @@ def metres_per_degree(latitude: float) -> tuple[float, float]:
     """
     sine = np.sin(np.radians(latitude))
     cosine = np.cos(np.radians(latitude))
+    # Radii of curvature of the ellipsoid: along the meridian,
+    # and across it times the cosine of the latitude.
     curvature = 1.0 - ECCENTRICITY_SQUARED * sine**2
     meridian = EQUATORIAL_RADIUS * (1.0 - ECCENTRICITY_SQUARED) / curvature**1.5
     return float(np.radians(meridian)), float(

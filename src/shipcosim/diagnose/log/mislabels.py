@@ -136,6 +136,8 @@ def velocity_frame(first: str, second: str) -> Mislabel:
 
 def _from_degrees(log):
     """Positions in m about the first fix, from degrees of latitude and longitude; WGS 84."""
+    # Local plane about the first fix: degrees times metres per degree of the
+    # ellipsoid. The longitude is wrapped, for tracks over the date line.
     known = np.flatnonzero(np.isfinite(log["north"]) & np.isfinite(log["east"]))
     first = known[0] if len(known) else 0
     meridian, parallel = metres_per_degree(log["north"][first])
@@ -158,6 +160,7 @@ def _from_bow(log):
 
 def _apparent(log):
     """Apparent wind from the wind over ground, its direction relative to the bow, and the ship's velocity."""
+    # Apparent wind from ahead and from starboard: wind over ground plus the ship's velocity.
     ahead = log["wind_speed"] * np.cos(np.radians(log["wind_from"])) + log["surge"]
     aside = log["wind_speed"] * np.sin(np.radians(log["wind_from"])) + log["sway"]
     return {
@@ -251,8 +254,10 @@ def mislabel_of(finding: Finding) -> Mislabel | None:
     """The mislabel that a finding names by its note; None where the finding is another fault, or leaves it open."""
     if finding.alternatives:
         return None
+    # The angle of a turned grid is a parameter of the finding.
     if finding.note.startswith(TURNED) and "angle" in finding.parameters:
         return turned_grid(finding.parameters["angle"].estimate)
+    # Labels of thrusters are not listed, as they depend on names; rebuild them from the channels.
     half = len(finding.channels) // 2
     of_thrusters = []
     if finding.channels and all(role.endswith(DRIVES) for role in finding.channels):
@@ -279,6 +284,7 @@ def undone(
     """
     changed = mislabel.undo(log)
     here = inside(log["time"], segments)
+    # A unit that was too large left only rounding: no factor brings the signal back.
     if mislabel.scale is not None:
         changed = {
             role: np.nan * v if _is_rounded_away(log[role][here]) else v

@@ -80,6 +80,7 @@ def read_log(
     ShipcosimError
         With all that is wrong: a column that is missing, not numeric or in a unit of something else, no time.
     """
+    # Settings of the channel file; without channels in it, names decide.
     given = read_channels(channels) if isinstance(channels, (str, os.PathLike)) else channels
     form = given.form if given else FileLayout()
     source = _source_of(log, form)
@@ -91,11 +92,13 @@ def read_log(
     else:
         mapping = given.channels
     is_asked = given is not None and bool(given.channels)
+    # Convert each channel to the unit of its role, and keep what is stated and what is not used.
     signals, said = _signals(columns, mapping, form, is_asked)
     stated = {name: _stated(channel, name, columns) for name, channel in mapping.items()}
     used = {name for channel in mapping.values() for name in channel.columns}
     unused = [name for name in columns.values if name not in used and not _is_unnamed(name)]
     attributes = {"unused_columns": unused}
+    # Bring rows of one time together, and derive surge, sway and the local position.
     time, _ = signals.pop("time")
     _check_time(columns.source, time)
     time, signals, more = brought_together(time, signals)
@@ -112,6 +115,7 @@ def read_log(
         time, [(n, v, unit, _meaning(n)) for n, (v, unit) in signals.items()], attributes
     )
     table.encoding |= source.file
+    # Units that were stated are kept, as they make a unit mistake less likely.
     for name, unit in stated.items():
         if unit and name in table.variables:
             table[name].attrs["stated_unit"] = unit
@@ -167,6 +171,7 @@ def _sure(columns: LogColumns, proposal: Proposal) -> dict[str, Channel]:
         Problem(f"{source}, column '{name}'", "is there twice.", _WHICH) for name in doubled
     ]
     help_ = f"Say in a channel file which column is what: `shipcosim channels {source} --out channels.toml` proposes one."
+    # Without a time, or with nothing but a time, there is no log.
     if "time" not in mapping:
         guess = next((g for g in proposal.used if g.role == "time"), None)
         found = f"has no column 'time', only {_shown(columns)}."
@@ -222,12 +227,14 @@ def _signals(columns, mapping, form, is_asked):
 
 def _beyond(where, values):
     """A problem where a number is beyond anything that is measured, so that what is made of it overflows."""
+    # A check of the first such row is enough for a message.
     beyond = np.flatnonzero((np.abs(values) > LARGEST_NUMBER) & np.isfinite(values))
     found = [f"is {values[row]:g} in row {row + 2}." for row in beyond[:1]]
     return [Problem(where, one, "A missing value is an empty field or nan.") for one in found]
 
 
 def _check_time(source, time):
+    # Times beyond any date, or counts since 1970 in another unit, are errors of the unit.
     if (beyond := np.abs(time) > LATEST).any() and np.isfinite(time[beyond]).any():
         row = int(np.flatnonzero(beyond)[0])
         found = f"is {time[row]:g} s in row {row + 2}."
@@ -262,6 +269,7 @@ def _meaning(name):
 
 def _over_the_earth(signals):
     """Turns speed and course, or velocities over the earth, into surge and sway; says so."""
+    # Measured surge and sway have precedence.
     given = {name: signals.pop(name)[0] for name in OVER_EARTH if name in signals}
     if not given or ("surge" in signals and "sway" in signals):
         return []
@@ -270,16 +278,19 @@ def _over_the_earth(signals):
             "Velocities over the earth are not used: they become surge and sway by a heading, and there is none."
         ]
     heading = np.radians(signals["heading"][0])
+    # Velocity as a complex number north + i east, from components or from speed and course.
     if {"north_velocity", "east_velocity"} <= set(given):
         velocity = given["north_velocity"] + 1j * given["east_velocity"]
         of = "velocities north and east"
     elif {"speed_over_ground", "course_over_ground"} <= set(given):
         speed = given["speed_over_ground"]
         velocity = speed * np.exp(1j * np.radians(given["course_over_ground"]))
+        # At rest the course may be missing; the velocity is 0.
         velocity = np.where(speed == 0.0, 0.0, velocity)
         of = "speed and course over ground"
     else:
         return []
+    # Turn into body axes: w = v exp(-i heading).
     body = velocity * np.exp(-1j * heading)
     signals["surge"], signals["sway"] = (body.real, "m/s"), (body.imag, "m/s")
     return [f"Surge and sway come from {of} and the heading."]
@@ -288,6 +299,7 @@ def _over_the_earth(signals):
 def _local_position(source, signals, said):
     """Turn latitude and longitude into north and east in a plane about the first fix; say where that is."""
     degrees = {name: signals.pop(name)[0] for name in LARGEST}
+    # Single impossible fixes are left out, but if most are impossible the unit is wrong.
     for name, values in degrees.items():
         limit = _FARTHEST[name]
         known = np.isfinite(values)
@@ -301,6 +313,7 @@ def _local_position(source, signals, said):
             found = f"is {values[row]:g} in row {row + 2}, beyond {limit:g} deg, in {int(beyond.sum())} rows."
             remedy = 'A unit can be said: unit = "ddmm.mmmm", "rad" or "1e-7 deg".'
             raise error_at(f"{source}, {name}", found, remedy)
+    # A receiver without a fix may report 0, 0. A log that is there throughout is kept.
     lost = np.any([np.abs(v) > _FARTHEST[n] for n, v in degrees.items()], axis=0)
     nowhere = (degrees["latitude"] == 0.0) & (degrees["longitude"] == 0.0)
     if nowhere.all():
@@ -312,6 +325,7 @@ def _local_position(source, signals, said):
         if rows.any():
             said.append(f"{int(rows.sum())} row{'s' * int(rows.sum() > 1)} with {why}: left empty.")
     values = [np.where(lost | nowhere, np.nan, degrees[name]) for name in LARGEST]
+    # Local plane about the first fix; east by the length of a degree at its latitude.
     fixed = np.flatnonzero(np.isfinite(values[0]) & np.isfinite(values[1]))
     if not len(fixed):
         raise error_at(f"{source}, latitude", "has no row with a longitude.", "A fix needs both.")

@@ -44,15 +44,20 @@ def repaired(log: xarray.Dataset, findings: Sequence[Finding] = ()) -> xarray.Da
         If the times span fifty times what the rows can fill.
     """
     attributes = log.attrs | {key: log.encoding[key] for key in ("source",) if key in log.encoding}
+    # Sort the rows, and read the time base as the findings on the whole log say.
     log = log.isel(time=usable_rows(log["time"].values))
     logged = log["time"].values
     base = read_anew({"time": logged}, findings)["time"]
+    # Segments of wrong clock are stretched to true time, at the usual step.
     step = usual_step(base)
     time = _true_time(logged, base, findings, step)
     channels = {
         str(name): np.array(variable.values, float) for name, variable in log.data_vars.items()
     }
+    # Correct labels and cut out what is no measurement,
+    # in logged time: the segments are given in it.
     channels = _put_right(logged, channels, findings)
+    # Even grid over the true time; no value across a hole.
     _check_span(time, step)
     grid = time[0] + step * np.arange(int(np.floor((time[-1] - time[0]) / step + 1e-6)) + 1)
     place = _Place(time, grid, np.diff(base) > HOLE * usual_distance(base))
@@ -60,12 +65,14 @@ def repaired(log: xarray.Dataset, findings: Sequence[Finding] = ()) -> xarray.Da
         (n, place(v, _is_angle(n)), log[n].attrs["units"], log[n].attrs["long_name"])
         for n, v in channels.items()
     ]
+    # Headings are interpolated by the shorter way round, which can leave [0, 360).
     columns = [
         (n, np.mod(v, 360.0) if n == "heading" else v, unit, meaning)
         for n, v, unit, meaning in columns
     ]
     table = make_table(grid, columns, attributes)
     origin = {"units": "s", "long_name": "time as logged"}
+    # Keep the logged time of each row, so that results can be shown in it.
     return table.assign_coords(logged_time=("time", np.interp(grid, time, logged), origin))
 
 
@@ -116,10 +123,13 @@ def _true_time(logged, base, findings, step):
     A segment of wrong clock lasts a whole number of steps, less than its rate is sure to; so the rows after it need no
     interpolation, which would smooth their noise.
     """
+    # True seconds per second of the time base, for each interval between rows.
     rates = np.ones(len(base) - 1)
     for finding in findings:
         for segment in finding.segments if finding.cause == "clock" else ():
             here = inside(logged[1:], [segment]) & inside(logged[:-1], [segment])
+            # True duration of the segment, rounded to whole
+            # steps, so that later rows fall on the grid.
             lasts = finding.parameters["rate"].estimate * np.diff(base)[here].sum()
             rates[here] *= (
                 finding.parameters["rate"].estimate
@@ -127,16 +137,19 @@ def _true_time(logged, base, findings, step):
                 * step
                 / max(lasts, step)
             )
+    # True time is the integral of the rate.
     return base[0] + np.r_[0.0, np.cumsum(rates * np.diff(base))]
 
 
 def _put_right(time, channels, findings):
     """Channels with labels put right, then with outliers and all that is no measurement cut out."""
+    # Mistakes of the whole log first, then those of segments.
     channels = read_anew({"time": time, **channels}, findings) | {"time": time}
     for finding in findings:
         mislabel = mislabel_of(finding)
         if mislabel is not None and finding.segments:
             channels = undone(channels, mislabel, finding.segments)
+    # Gaps, wraps and outliers become NaN; the other faults are corrected, not removed.
     cut_out = [finding for finding in findings if finding.cause in CUT_OUT]
     channels = without_findings(channels, cut_out)
     channels.pop("time")
@@ -145,6 +158,7 @@ def _put_right(time, channels, findings):
 
 def without_findings(log: dict, findings: Sequence[Finding]) -> dict:
     """A log without outliers, and without what findings say of their segments and channels."""
+    # Outliers are found anew, as the caller may have corrected units.
     bad_rows = list(outliers(log).items())
     for finding in findings:
         here = inside(log["time"], finding.segments)
@@ -163,18 +177,22 @@ class _Place:
     """Values at the times of a grid: those of the row there, else between the rows on both sides."""
 
     def __init__(self, time, grid, is_hole):
+        # Row before each time of the grid, and the share of the way to the next row.
         self.before = np.clip(np.searchsorted(time, grid, side="right") - 1, 0, len(time) - 2)
         span = np.diff(time)[self.before]
         share = (grid - time[self.before]) / span
+        # A time within rounding of a row takes its value unchanged, without interpolation.
         near = 1e-6 * np.median(span) / span
         self.share = np.where(
             np.abs(share) < near, 0.0, np.where(np.abs(share - 1.0) < near, 1.0, share)
         )
+        # Times strictly inside a hole get no value.
         self.empty = is_hole[self.before] & (self.share > 0.0) & (self.share < 1.0)
 
     def __call__(self, values, is_angle):
         first = values[self.before]
         second = values[self.before + 1]
+        # Angles change by the shorter way round.
         change = wrap_series(second - first) if is_angle else second - first
         between = first + self.share * change
         exact = np.where(self.share == 0.0, first, np.where(self.share == 1.0, second, between))

@@ -26,6 +26,7 @@ def usual_distance(time: np.ndarray) -> float:
 
     Times are uneven where they keep to no clock; a log of even times with lost rows is not.
     """
+    # Times on a clock differ by whole steps; the deviation from these shows uneven sampling.
     step = usual_step(time)
     spans = np.diff(time)
     off = np.abs(spans / step - np.round(spans / step))

@@ -65,6 +65,7 @@ def run_as_log(log: LogSource, ship: str, thrusters: Collection[str]) -> LogSour
     ShipcosimError
         If it is the table of a run without this ship.
     """
+    # Signals and units of the table, from memory or from a file.
     if isinstance(log, xarray.Dataset):
         signals = {str(name): value.values for name, value in log.data_vars.items()}
         file = {}
@@ -78,6 +79,7 @@ def run_as_log(log: LogSource, ship: str, thrusters: Collection[str]) -> LogSour
         file = {"source": str(log), "sha256": hashlib.sha256(Path(log).read_bytes()).hexdigest()}
     if not _is_run(signals):
         return log
+    # Outputs of the ship by role; position and heading are needed.
     named = {
         role: f"{ship}.{output}"
         for role, (output, _) in _SHIP.items()
@@ -88,6 +90,7 @@ def run_as_log(log: LogSource, ship: str, thrusters: Collection[str]) -> LogSour
         found = f"this is the table of a run, and it has no {', '.join(_SHIP[role][0] for role in missing)} of '{ship}'."
         remedy = f"Its components: {', '.join(there)}. Name the system that made it: --system SSP."
         raise error_at(file.get("source", "log"), found, remedy)
+    # Speeds and directions of the thrusters, from their components and from inputs of the system.
     for name in thrusters:
         for kind in ("rpm", "azimuth"):
             if f"{name}_{kind}" not in signals and f"{name}.{kind}" in signals:
@@ -123,6 +126,7 @@ def channels_of_run(
     """
     if not _is_run(dict.fromkeys(signals)):
         return {}
+    # The ship is the first component with position and heading, thrusters are all with a speed.
     ships = [name.removesuffix(".psi") for name in signals if name.endswith(".psi")]
     ship = ship or next(name for name in ships if f"{name}.x" in signals and f"{name}.y" in signals)
     drives = [name.removesuffix(".rpm") for name in signals if name.endswith(".rpm")]
@@ -179,6 +183,7 @@ def _is_run(signals: Mapping[str, object]) -> bool:
 
 def _column(role: str, signal: str, ship: str, signals: Mapping, units: Mapping) -> tuple:
     """A role's values with what waves add, and their unit."""
+    # The instruments measure the low-frequency motion plus the motion by waves.
     values = np.asarray(signals[signal], float)
     wave = _WAVES.get(signal.removeprefix(f"{ship}."))
     if wave and f"{ship}.{wave}" in signals:

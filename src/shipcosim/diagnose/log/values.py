@@ -56,6 +56,7 @@ def values_of(
     ShipcosimError
         A column that is missing, holds texts, or is in a unit of something else.
     """
+    # An attitude as a quaternion has four columns and needs no unit.
     if channel.quaternion is not None:
         parts = [_numbers(log, _found(log, column)) for column in channel.quaternion]
         return heading_of_quaternion(np.array(parts), channel.frame), "deg", []
@@ -64,8 +65,11 @@ def values_of(
     if name == "time":
         values, said = _time(channel, column, stated, log, form)
         return channel.sign * values + (channel.offset or -0.0), "s", said
+    # Positions as text, in minutes or with a hemisphere.
     if name in LARGEST and (found := _position(channel, column, stated, name, log)) is not None:
         return found[0], "deg", found[1]
+    # Plain numbers: a map replaces unit and factor;
+    # otherwise convert from the stated unit to the role's.
     values = _numbers(log, column)
     if channel.map is not None:
         role = role_of(name)
@@ -102,10 +106,12 @@ def heading_of_quaternion(parts: np.ndarray, frame: str) -> np.ndarray:
     >>> heading_of_quaternion(quarter, "NED").round(9).tolist(), heading_of_quaternion(quarter, "ENU").round(9).tolist()
     ([90.0], [0.0])
     """
+    # Yaw from the quaternion, normalised by the arctangent of two sums; NaN where its length is 0.
     w, x, y, z = parts
     size = w * w + x * x + y * y + z * z
     with np.errstate(all="ignore"):
         yaw = np.degrees(np.arctan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z))
+    # In ENU the yaw is counted counter-clockwise from east.
     yaw = np.where(size > 0.0, yaw, np.nan)
     return np.mod(yaw if frame == "NED" else 90.0 - yaw, 360.0)
 
@@ -143,6 +149,8 @@ def _is_number(text):
 def _time(channel, column, stated, log, form):
     """Times in seconds and what is to be said."""
     values = log.values[column]
+    # Texts and time stamps: read dates and clock times,
+    # with the date from its own column if there is one.
     if values.dtype.kind == "M":
         values = np.array([None if np.isnat(v) else str(v) for v in values], object)
     if values.dtype.kind == "O":
@@ -152,6 +160,7 @@ def _time(channel, column, stated, log, form):
         if read is not None:
             times, said = _without_summer_time(read[0])
             return times, [*read[1], *said]
+    # Numbers: clock times as hhmmss, seconds with nanoseconds, counts since 1970, or a plain unit.
     numbers = _numbers(log, column)
     if stated.lower() == CLOCK_NUMBER:
         return seconds_of_clock(_of_clock(numbers))
@@ -163,6 +172,8 @@ def _time(channel, column, stated, log, form):
         return numbers / EPOCHS[epoch], said
     factor, zero = conversion(unit or "s", "s")
     times = factor * numbers + (zero or -0.0)
+    # A guessed unit is checked by the distance of rows;
+    # then midnight or the end of a week is passed.
     if not unit:
         _check_steps(column, times)
     return _past_the_end(times)
@@ -170,6 +181,7 @@ def _time(channel, column, stated, log, form):
 
 def _check_steps(column, times):
     """Raise ShipcosimError where rows would be so close or far apart that the numbers can hardly be seconds."""
+    # Median of the positive steps: repeated times and steps back say nothing of the unit.
     steps = np.diff(finite(times))
     step = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 1.0
     if _STEPS[0] <= step <= _STEPS[1]:
@@ -183,6 +195,7 @@ def _check_steps(column, times):
 
 def _without_summer_time(times):
     """Stamps of a clock that is once put back by an hour, which go on, and what is to be said."""
+    # One step back of nearly an hour, and no other, is the end of summer time.
     known = np.flatnonzero(np.isfinite(times))
     steps = np.diff(times[known])
     falls = np.flatnonzero(steps < 0.0)
@@ -198,6 +211,8 @@ def _without_summer_time(times):
 
 def _past_the_end(times):
     """Seconds of the day, or of the week of GPS, that go on past its end, and what is to be said."""
+    # The clock must fall by nearly a whole period, from
+    # near its end to near its start, at each fall.
     known = finite(times)
     for period, name in _PERIODS.items():
         falls = np.flatnonzero(np.diff(known) < -0.9 * period)
@@ -213,6 +228,7 @@ def _past_the_end(times):
 def _joined(log, date, clocks):
     """Stamps of a column of dates and one of clock times."""
     dates = log.values[date]
+    # Dates as numbers lose leading zeros: restore yyyymmdd or yymmdd.
     if dates.dtype.kind == "f":
         width = 8 if np.nanmax(dates) > 999999 else 6
         dates = [None if not np.isfinite(d) else f"{int(d):0{width}d}" for d in dates]
@@ -235,6 +251,8 @@ def _of_clock(numbers):
 
 def _position(channel, column, stated, name, log):
     """Degrees of latitude or longitude that are not plain numbers; None for those."""
+    # Formats by precedence: texts, whole numbers of autopilots,
+    # degrees and minutes, plain degrees with a hemisphere.
     values = log.values[column]
     said = []
     if values.dtype.kind == "O":
@@ -255,6 +273,7 @@ def _position(channel, column, stated, name, log):
     else:
         unit = unit_for(stated or "deg", "deg")
         degrees = conversion(unit, "deg")[0] * values
+    # The hemisphere gives the sign; a sign in the numbers would count twice.
     if channel.hemisphere is not None:
         hemisphere = _found(log, channel.hemisphere)
         signs = hemisphere_signs(log.values[hemisphere], name)
@@ -268,6 +287,7 @@ def _position(channel, column, stated, name, log):
 def _mapped(values, channel, column):
     """Values by a map, straight between its pairs."""
     given, wanted = np.array(channel.map).T
+    # Outside its first and last pair a map is not extrapolated.
     known = np.isfinite(values)
     if (beyond := known & ((values < given[0]) | (values > given[-1]))).any():
         row = int(np.flatnonzero(beyond)[0])

@@ -66,14 +66,18 @@ def clock_by_response(problem: IdentificationProblem) -> Finding | None:
     -------
     Finding or None
     """
+    # Evidence for a wrong clock, with the uncertain parameters of the model integrated out.
     known = problem.known(())
     edges = _edges(problem)
     gain, finding = _most_likely(_blocks(problem, edges, known))
     if finding is None:
         return None
+    # The likeliest single cause is the rival. The clock must explain
+    # more, and all aspects of the motion must agree on its rate.
     rival, hypothesis, values = screened(problem, fitted(problem))[0]
     if gain < rival + OVER_CAUSE or not _all_aspects_agree(problem, finding, known):
         return None
+    # If a cause explains something too, the clock must still be found beside the fitted cause.
     if rival > 0.0:
         fit = fitted(problem, (hypothesis,), values)
         beside = prepared(replace(problem, model=fit.model, motion=fit.motion))
@@ -88,6 +92,7 @@ def _all_aspects_agree(problem, finding, known):
     A compass can be wrong alone, and so can a force: it changes the speed, but how far the ship comes at her speed
     is a matter of the clock.
     """
+    # Regressors: the motion in the segments, separately for way, speed, heading and turning.
     here = inside(0.5 * (problem.record.time[:-1] + problem.record.time[1:]), finding.segments)
     moved = _moved(problem) * here[:, None]
     aspects = np.zeros((6, len(ASPECTS)))
@@ -96,8 +101,11 @@ def _all_aspects_agree(problem, finding, known):
     match, inner = _left(
         problem, known, len(ASPECTS), lambda steps: -moved[steps, :, None] * aspects
     )
+    # Rate of each aspect by least squares, with its covariance.
     covariance = np.linalg.pinv(inner)
     rates = covariance @ match
+    # Chi-square test of equal rates, with some allowance for
+    # model error; their common mean costs one degree of freedom.
     apart = ASPECT_APART * (finding.parameters["rate"].estimate - 1.0)
     weight = np.linalg.inv(covariance + apart**2 * np.eye(len(ASPECTS)))
     rest = rates - weight.sum(axis=0) @ rates / weight.sum()
@@ -116,8 +124,11 @@ def with_rate(problem: IdentificationProblem, finding: Finding, log: xarray.Data
         That log.
     """
     time = problem.record.time
+    # The repaired log runs in true time, so the segments are converted to it.
     inner = np.interp(np.ravel(finding.segments), log["logged_time"].values, log["time"].values)
     blocks = _blocks(problem, np.r_[time[0], inner, time[-1]], problem.known(()))
+    # The blocks inside the segments, every second one, give
+    # the remaining rate error by regularised least squares.
     own = np.arange(1, len(inner), 2)
     more = blocks.match[own].sum() / (blocks.gram[np.ix_(own, own)].sum() + CLOCK_SLAB**-2)
     rate = finding.parameters["rate"]
@@ -128,6 +139,8 @@ def with_rate(problem: IdentificationProblem, finding: Finding, log: xarray.Data
 
 def is_testable(problem: IdentificationProblem) -> bool:
     """Whether a typical wrong clock, at any time of the log with even odds, would have gained enough to be seen."""
+    # Expected gain of a typical wrong clock, if its rate
+    # error stood in the data: match = rate times energy.
     blocks = _blocks(problem, _edges(problem), problem.known(()))
     count = len(blocks.edges) - 1
     span = max(int(TYPICAL_SEGMENT / (blocks.edges[1] - blocks.edges[0])), 1)
@@ -148,6 +161,7 @@ def _edges(problem):
 
 def _most_likely(blocks):
     """Gain of the likeliest runs of blocks, less the cost of choosing them, and the finding; 0 and None without."""
+    # Evidence of each run of blocks, and which lengths are allowed.
     match, energy = sums_of_runs(blocks.match, blocks.gram)
     count = len(blocks.edges) - 1
     span = differences(np.arange(count + 1))
@@ -156,17 +170,24 @@ def _most_likely(blocks):
     cost = 2.0 * np.log(count)
     gain = 0.0
     runs = []
+    # Greedy search: add the run that gains most together with those that were chosen before.
     for _ in range(MOST_SEGMENTS):
         at = _best(match, energy, allowed)
+        # Both ends of each run are chosen among all edges,
+        # which costs two logarithms of their number.
         nats = nats_of_rate(match[at], energy[at]) - cost * (1 + len(runs))
         if nats < gain + CLOCK_GAIN * (not runs) or np.isneginf(nats):
             break
         gain = nats
         runs = [*runs, at]
+        # Posterior mean and standard deviation of the rate error that is common to the runs.
         value = match[at] / (energy[at] + CLOCK_SLAB**-2)
         std = (energy[at] + CLOCK_SLAB**-2) ** -0.5
+        # Runs of one clock have a common rate: match and energy
+        # of every other run are now those of both together.
         match = match[at] + match
         energy = energy[at] + energy + 2.0 * blocks.with_run(*at)
+        # Further runs may not overlap this one.
         first, last = at
         allowed = allowed & (
             (np.arange(count + 1)[None, :] <= first) | (np.arange(count + 1)[:, None] >= last)
@@ -195,6 +216,7 @@ def _best(match, energy, allowed):
 def _blocks(problem, edges, columns: list[Regressor]):
     """The blocks of a log, from its innovations with a column for each; what other columns can explain is theirs."""
     count = len(edges) - 1
+    # A block's regressor is what the ship moves in its steps: an error of the rate scales it.
     moved = _moved(problem)
     place = np.clip(
         np.searchsorted(edges, problem.record.time[:-1], side="right") - 1, 0, count - 1
@@ -214,6 +236,7 @@ def _blocks(problem, edges, columns: list[Regressor]):
 def _moved(problem):
     """What each step moves the ship, (n-1, 6) array."""
     record = problem.record
+    # Change of state at the middle of each step, by the equations of motion, times the step.
     middle = Motion(*(0.5 * (value[:-1] + value[1:]) for value in problem.motion))
     moved = record.step * rows_first(
         motion_rates(middle, record.inputs(problem.model, 0.5), problem.model)
@@ -227,14 +250,17 @@ def _left(problem, columns, count, driven):
     `driven` gives what they do in the steps from some rows on, a (k, 6, count) array.
     """
     others = len(columns)
+    # Linear model with the uncertain parameters and the further regressors.
     linear = with_columns(
         problem.base_of(columns),
         count,
         lambda rows: (driven(rows), np.zeros((rows.stop - rows.start, 6, count))),
     )
+    # Inner products of the whitened log and regressors; the first row belongs to the log.
     products = inner_products(linear, problem.noise, problem.record, parts=1).products
     theirs = slice(1, 1 + others)
     own = slice(1 + others, None)
+    # Integrate the parameters out: the Schur complement, with their prior precisions.
     inner = products[theirs, theirs] + np.diag([column.prior**-2 for column in columns])
     left = products - products[:, theirs] @ np.linalg.solve(inner, products[theirs, :])
     return left[own, 0], left[own, own]

@@ -54,13 +54,17 @@ def corrected(found: Identification) -> Identification:
 
 def with_right_navigation(found: Identification) -> Identification:
     """The log with the channels of the navigation labelled as the ship's response says."""
+    # Labels of the navigation that the response of the ship prefers.
     candidates = relabelled(found.log, found.faults, found.problem)
     if not candidates:
         return found
+    # Fit each candidate, with the best single cause, and keep the likeliest that
+    # gains enough over the log as it is. The density makes units comparable.
     best = found
     enough = explain(found.problem, most=1)[0].score + FAULT
     for candidate in candidates:
         again = _repaired(found, candidate.faults)
+        # A cheap estimate of the evidence first, as a full fit takes long.
         if at_first_sight(again.problem) + candidate.density < enough:
             continue
         score = explain(again.problem, most=1)[0].score + candidate.density
@@ -72,11 +76,13 @@ def with_right_navigation(found: Identification) -> Identification:
 
 def with_right_clock(found: Identification) -> Identification:
     """The log with the segments of a wrong clock that the ship's response shows."""
+    # Identify with the rows as logged, without any segment of wrong clock found so far.
     others = tuple(fault for fault in found.faults if fault.cause != "clock" or not fault.segments)
     as_logged = found if len(others) == len(found.faults) else _repaired(found, others)
     clock = clock_by_response(as_logged.problem)
     if clock is None:
         return found
+    # The motion was distorted by the wrong clock: correct it, then estimate the rate again.
     first = _repaired(found, (*others, clock))
     clock = with_rate(first.problem, clock, first.repaired)
     return _repaired(found, (*others, clock), first.problem.noise)
@@ -95,13 +101,17 @@ def _with_right_wind_label(found, place):
 
     One that the log alone told of throughout, and the ship's answer of nearly nowhere, is none.
     """
+    # Log with all faults corrected but this one.
     before = found.faults[:place]
     after = found.faults[place + 1 :]
     as_logged = replace(found, repaired=_without(found, (*before, *after)))
+    # First the label of the direction, then the segment.
     fault, problem = _likeliest_direction(as_logged, found.faults[place])
     fault, right = _with_settled_segment(
         replace(as_logged, problem=problem), mislabel_of(fault), fault
     )
+    # A fault throughout of which only a segment is left
+    # needs evidence from the ship, else it is dropped.
     shrunk = fault.segments and not found.faults[place].segments
     if shrunk and not _is_told_by_the_ship(right.problem, as_logged.repaired):
         problem = identification_problem(as_logged.repaired, found.ship, found.causes)
@@ -124,8 +134,10 @@ def _likeliest_direction(as_logged, fault):
     """
     log = as_logged.repaired
     problem = as_logged.problem
+    # A unit of the speed leaves the direction as it is.
     if mislabel_in(fault).scale is not None:
         return fault, problem
+    # Undo each label of the direction, and compare likelihoods about the same motion.
     directions = [label for label in possible(WIND_LABELS, log) if label.scale is None]
     rights = {label: with_label(log, label, fault.segments) for label in directions}
     label = max(
@@ -133,6 +145,7 @@ def _likeliest_direction(as_logged, fault):
     )
     if label is mislabel_of(fault):
         return fault, problem
+    # Identify anew with the likeliest one; it must gain enough to replace the fault.
     again = identification_problem(rights[label], as_logged.ship, as_logged.causes)
     if at_first_sight(again) < at_first_sight(problem) + FAULT:
         return fault, problem
@@ -143,6 +156,7 @@ def with_right_connections(found: Identification) -> Identification:
     """The ship with connections as their names say, where the log contradicts how the system has them."""
     if found.ship.wiring is None:
         return found
+    # Correct one odd connection at a time, and keep it if the evidence grows by the threshold.
     score = at_first_sight(found.problem)
     for name, what in found.ship.wiring.odd.items():
         if found.ship.wiring is None:
@@ -180,20 +194,24 @@ def _with_right_input(explained):
     """
     found = explained.identification
     best = explained.fits[0]
+    # Candidates by their likelihood about the present motion, each then identified anew.
     candidates = []
     for _, mislabel, fault in suspected_inputs(found.repaired, found.problem)[:MOST_TRIED]:
         again = _relabelled(found, mislabel, fault)
         candidates.append((at_first_sight(again.problem), mislabel, fault, again.problem))
+    # A fault must at least beat the log as it is, and after settling the best fit with causes.
     least = min(best.score, at_first_sight(found.problem) + FAULT) if candidates else 0.0
     for score, mislabel, fault, problem in sorted(candidates, key=lambda entry: -entry[0]):
         if score < least:
             return None
         least = best.score
+        # Settle the segment before the costly comparison with all causes.
         fault, right = _with_settled_segment(replace(found, problem=problem), mislabel, fault)
         if at_first_sight(right.problem) < best.score or not _shows_at_its_ends(
             found.repaired, mislabel, fault
         ):
             continue
+        # Fit causes beside the fault. It must gain over the best fit without it.
         fits = tuple(explain(right.problem))
         close = [fit for fit in fits[:3] if fit.score > best.score + _least_gain(fault, best)]
         # Whether no unmodelled error stands out beside a fit.
@@ -234,6 +252,7 @@ def _with_settled_segment(found, mislabel, fault):
 
     `found` has the log without it put right, and the problem with it put right in its first segment.
     """
+    # Segment and motion depend on each other: refine one with the other, a few times.
     right = replace(found, repaired=with_label(found.repaired, mislabel, fault.segments))
     for _ in range(ROUNDS_OF_SEGMENT):
         refined = with_refined_segment(found.repaired, mislabel, fault, right.problem)

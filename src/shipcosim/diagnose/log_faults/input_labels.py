@@ -61,8 +61,11 @@ def suspected_inputs(
     list of (float, Mislabel, Finding)
         Gain in log-likelihood [nats], what would be wrong, and about where.
     """
+    # Log-likelihood of each row as logged, as the reference.
     base = _by_row(problem, problem.record)
     found = []
+    # For each mislabel the gain of each row if it is
+    # undone everywhere, and the segment of largest sum.
     for mislabel in _mislabels(log, problem.model):
         gain = _by_row(problem, record_of(with_label(log, mislabel), problem.model)) - base
         total, finding = where_best(gain, mislabel, problem.record)
@@ -91,6 +94,7 @@ def with_refined_segment(
     Finding
         The same one if no other segment gains enough.
     """
+    # Log-likelihoods by the ends of the segment, kept since the search returns to the same ones.
     time = problem.record.time
     known = {}
     relabelled = _Relabelled(log, mislabel, problem)
@@ -111,6 +115,7 @@ def with_refined_segment(
         """The same, of several side by side."""
         return dict(zip(many, each(likelihood_of, many), strict=True)).get
 
+    # Start from the segment at hand, and search coarsely, then finely.
     whole = (0, last)
     first = (
         tuple(int(i) for i in np.searchsorted(time, finding.segments[0]))
@@ -119,6 +124,7 @@ def with_refined_segment(
     )
     stride = max(round(SEARCH_STEP / problem.record.step), last // MOST_PLACES)
     ends = _likeliest_ends(likelihoods_of, first, last, stride)
+    # Part of a log instead of all of it needs more evidence than another segment.
     least_gain = PART_GAIN if first == whole else SEGMENT_GAIN
     gained = likelihood_of(ends) >= likelihood_of(first) + least_gain
     return replace(finding, segments=segment(ends)) if gained else finding
@@ -127,11 +133,13 @@ def with_refined_segment(
 def _likeliest_ends(likelihoods_of, first, last, stride):
     """First and last row of the likeliest segment: each end anywhere in coarse steps, then moved by halved steps."""
     ends = first
+    # Coarse search: each end over all places, twice, as the ends depend on each other.
     places = [*range(0, last, stride), last]
     for _ in range(2):
         for i in (0, 1):
             tried = list(dict.fromkeys([ends, *(_moved(ends, i, place) for place in places)]))
             ends = max(tried, key=likelihoods_of(tried))
+    # Pattern search: move either end by a step, and halve the step when no move helps.
     step = max(FIRST_MOVE, stride // 2)
     while step:
         tried = [_moved(ends, i, ends[i] + by) for i in (0, 1) for by in (-step, step)]
@@ -162,9 +170,11 @@ class _Relabelled:
         self.log = log
         self.mislabel = mislabel
         self.problem = problem
+        # Linear models of the log with the label as logged and undone throughout.
         self.logged, self.right = (
             self._linear(one).whole() for one in (log, with_label(log, mislabel))
         )
+        # Lags of the actuators spread the effect of an end over some rows.
         lags = [abs(problem.model.get(path)) for path in LAGS]
         self.reach = BESIDE_AN_END + int(np.ceil(sum(lags) / problem.record.step))
 
@@ -175,6 +185,7 @@ class _Relabelled:
     def likelihood(self, ends: tuple[int, int], segment: Sequence[Segment]) -> float:
         """Log-likelihood with the mislabel undone in a segment [s] between two rows, up to a constant. [nats]"""
         problem = self.problem
+        # Take the rows inside from the corrected model, and those outside from the logged one.
         steps = len(self.right.transition)
         log = with_label(self.log, self.mislabel, segment)
         record = with_inputs_of(problem.record, log, problem.model)
@@ -182,6 +193,7 @@ class _Relabelled:
         driven = self.logged.driven.copy()
         transition[ends[0] : ends[1]] = self.right.transition[ends[0] : ends[1]]
         driven[ends[0] : ends[1]] = self.right.driven[ends[0] : ends[1]]
+        # Linearise anew only near the ends.
         for end in ends:
             rows = slice(max(end - self.reach, 0), min(end + self.reach, steps))
             near = linearise(problem.motion, record, problem.model, [], rows)
@@ -192,6 +204,7 @@ class _Relabelled:
 
 def _mislabels(log, model):
     """Every way in which channels of thrusters and wind could be wrong."""
+    # Two thrusters of the same make can be exchanged: all their channels, or all but the speed.
     found = []
     for one, other in combinations(model.thrusters, 2):
         pairs = [(f"{one}_{what}", f"{other}_{what}") for what in ("rpm", "thrust", "azimuth")]
@@ -202,12 +215,14 @@ def _mislabels(log, model):
                 for group in ([pairs] if len(pairs) == 1 else [pairs, pairs[1:]])
                 if group
             ]
+    # Wrong signs of speed, thrust and azimuth.
     for name in model.thrusters:
         found += [
             negative(role)
             for role in (f"{name}_rpm", f"{name}_thrust", f"{name}_azimuth")
             if role in log
         ]
+    # Labels of the wind that involve the motion need its channels.
     if "wind_from" in log:
         motion = all(role in log for role in ("heading", "surge", "sway"))
         labels = WIND_LABELS if motion else (negative("wind_from"),)
@@ -225,11 +240,14 @@ def with_label(
 
 def _by_row(problem, record):
     """Log-likelihood of each row, known numbers fitted within their tolerances; what that costs is shared by all."""
+    # Fit the uncertain parameters within their priors, so that they do not count as a mislabel.
     columns = problem.known(())
     linear = linearised_by_parts(problem.motion, record, problem.model, columns)
     theta = evidence(inner_products(linear, problem.noise, record).products, np.ones(len(columns)))[
         1
     ]
+    # Whitened innovations give the Gaussian log-likelihood
+    # of each row. The prior's cost is spread evenly.
     left = innovations(explained(linear, theta), problem.noise, record)
     return -0.5 * (
         (left.white[..., 0] ** 2).sum(-1) + left.log_determinant + (theta**2).sum() / linear.rows
@@ -248,6 +266,7 @@ def where_best(
 
 def best_run(gain: np.ndarray, least: int) -> tuple[int, int, float]:
     """First and last row of the run of at least `least` rows whose gains add up to most, and the sum."""
+    # Maximum subarray of a minimal length: the running minimum stays this many rows behind.
     total = np.concatenate([[0.0], np.cumsum(gain)])
     lowest = 0
     first = 0

@@ -76,33 +76,42 @@ def relabelled(
     -------
     list of Relabelled
     """
+    # The log with all faults corrected but those of navigation labels.
     found = [fault for fault in faults if mislabel_of(fault) in LABELS]
     others = [fault for fault in faults if fault not in found]
     plain = in_stretches(repaired(log, others), problem.model.length)
+    # With several such faults, or none and clear kinematics, the response of the ship adds nothing.
     if len(found) > 1 or (not found and _is_clear(plain)):
         return []
+    # Under a wrong label the fitted process noise is too large
+    # and hides it: limit it to a share of its first guess.
     if found:
         calm = CALM_JOLT * first_noise(problem.record, problem.model.length).jolt
         problem = replace(
             problem, noise=replace(problem.noise, jolt=np.minimum(problem.noise.jolt, calm))
         )
+    # Log-likelihood of each row as logged, and its gain with each label undone.
     base = _by_row(problem, record_of(plain, problem.model))
     known = [mislabel_in(fault) for fault in found]
     labels = [
         label for label in possible(LABELS, plain) if label in known or _matters(plain, label)
     ]
     gains = {label: _gain(plain, label, problem) - base for label in labels}
+    # What the present faults gain is the threshold for others, with a margin.
     so_far = sum(
         float(gains[mislabel_in(one)][inside(problem.record.time, one.segments)].sum())
         for one in found
     )
     tried = _likely(gains, problem.record, max(LABEL_GAIN, so_far + BETTER_LABEL))
+    # Units change the density of the data; correct for the
+    # factors of the faults at hand and of the candidates.
     less = sum(_density(one, problem) for one in found)
     return [Relabelled((*others, one), _density(one, problem) - less) for one in tried]
 
 
 def _likely(gains, record, least):
     """Findings of the labels that gain most by their rows' gains, those above a least gain, in their stretches."""
+    # Segment of largest gain for each label.
     found = [where_best(gain, label, record, SHORTEST_LABEL) for label, gain in gains.items()]
     likely = [one for total, one in sorted(found, key=lambda one: -one[0]) if total > least]
     # A label in its stretch and throughout; a unit throughout is a scale, which is a cause of its own.
@@ -118,6 +127,7 @@ def _likely(gains, record, least):
 
 def _matters(plain, label):
     """Whether a label, put right, makes its channels other ones: at a heading near north earth-fixed is body-fixed."""
+    # Sum of squares of the change, relative to that of the channels.
     right = with_label(plain, label)
     changed = 0.0
     size = 0.0
@@ -135,6 +145,8 @@ def _is_clear(plain):
 
 def _gain(plain, label, problem):
     """Log-likelihood of each row with a label put right, as a density of what was logged."""
+    # Noise belongs to the logged channels: scale it
+    # with the unit, or exchange it with the channels.
     places = [CHANNELS.index(role) for role in label.channels]
     noise = problem.noise
     white = np.array(noise.white)
@@ -145,6 +157,7 @@ def _gain(plain, label, problem):
     if label.cause == "channel_swap":
         white[places] = white[places[::-1]]
     noise = replace(noise, white=white * scale, wave=wave * scale[3:])
+    # Jacobian of the change of units, for each value that was measured.
     whole = np.isfinite(problem.record.measured)
     record = record_of(with_label(plain, label), problem.model)
     return _by_row(replace(problem, noise=noise), record) + whole @ np.log(scale)
@@ -152,11 +165,13 @@ def _gain(plain, label, problem):
 
 def _by_row(problem, record):
     """Log-likelihood of each row, about the motion that the record itself describes."""
+    # Linearise about the smoothed motion of the relabelled record, twice for the nonlinearity.
     motion = first_motion(record, problem.model)
     for _ in range(2):
         motion, _ = smoothed(
             linearised_by_parts(motion, record, problem.model, []), problem.noise, record, motion
         )
+    # Innovations about this motion give the log-likelihood of each row.
     found = innovations(
         linearised_by_parts(motion, record, problem.model, []), problem.noise, record
     )

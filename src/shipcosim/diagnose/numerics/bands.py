@@ -46,6 +46,7 @@ class Bands:
 def _product(one, other):
     (first, values) = one
     (second, others) = other
+    # Only rows that both blocks share contribute.
     begin = max(first, second)
     end = min(first + len(values), second + len(others))
     if begin >= end:

@@ -31,11 +31,14 @@ def log_survival(value: float, degrees: float) -> float:
     >>> log_survival(3000.0, 2.0)
     -1500.0
     """
+    # The tail is the regularised upper incomplete gamma function Q(a, x).
     a = 0.5 * float(degrees)
     x = 0.5 * float(value)
     if not 0.0 < x < math.inf:
         return math.nan if math.isnan(x) else -math.inf if x > 0.0 else 0.0
+    # Common factor x^a exp(-x) / gamma(a), as a logarithm against underflow.
     log_power = a * math.log(x) - x - math.lgamma(a)
+    # The series converges fast below a + 1, the continued fraction above.
     if x < a + 1.0:
         return math.log1p(-math.exp(log_power) * _lower_series(a, x))
     return log_power + math.log(_upper_fraction(a, x))
@@ -54,6 +57,7 @@ def survival(value: float, degrees: float) -> float:
 
 def _lower_series(a, x):
     """Sum of x**k / (a (a + 1) ... (a + k))."""
+    # Each term follows from the one before by a factor x / (a + k).
     term = total = 1.0 / a
     k = a
     while term > 1e-17 * total:
@@ -65,6 +69,7 @@ def _lower_series(a, x):
 
 def _upper_fraction(a, x):
     """1 / (x + 1 - a - 1 (1 - a) / (x + 3 - a - 2 (2 - a) / (x + 5 - a - ...)))."""
+    # Modified Lentz method: ratios of successive convergents, with a tiny number in place of 0.
     b = x + 1.0 - a
     c = 1.0 / _TINY
     d = 1.0 / b

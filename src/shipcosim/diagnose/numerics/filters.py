@@ -37,9 +37,11 @@ def gaussian_filter(
     >>> round(float(gaussian_filter(2.0 * np.arange(21.0), 2.0, order=1)[10]), 3)
     1.999
     """
+    # Weights of the Gaussian, to where it is cut off.
     reach = int(_WIDTHS * width + 0.5)
     x = np.arange(-reach, reach + 1)
     bell = np.exp(-0.5 * (x / width) ** 2)
+    # A derivative of the Gaussian is a polynomial times it.
     factor = np.polynomial.Polynomial([1.0])
     for _ in range(order):  # (p g)' = (p' - x p / width**2) g
         factor = factor.deriv() - factor * np.polynomial.Polynomial([0.0, width**-2])
@@ -72,6 +74,8 @@ def moving_average(series: np.ndarray, rows: int) -> np.ndarray:
 
 
 def _convolved(series, weights, beyond, ends, axis):
+    # Pad the ends, so that the result is as long as the
+    # series, and convolve each series along the last axis.
     last = np.moveaxis(np.asarray(series, float), axis, -1)
     padded = np.pad(last, [(0, 0)] * (last.ndim - 1) + [beyond], mode=_PADDED[ends])
     flat = padded.reshape(-1, padded.shape[-1])

@@ -31,10 +31,12 @@ def least_squares(
     >>> least_squares(np.eye(3), np.array([1.0, -2.0, -3.0]), np.array([True, True, False]))
     array([ 1.,  0., -3.])
     """
+    # QR decomposition: the problem shrinks to p rows with the same solution.
     turn, triangle = np.linalg.qr(columns)
     target = turn.T @ series
     count = columns.shape[1]
     bound = np.ones(count, bool) if positive is None else np.asarray(positive, bool)
+    # Gradients below rounding errors count as zero.
     least = (
         10.0
         * max(columns.shape)
@@ -42,9 +44,12 @@ def least_squares(
         * np.abs(triangle).sum(0).max()
         * np.linalg.norm(target)
     )
+    # Start with the unbounded coefficients free and all others at 0.
     free = ~bound
     found = _solution(triangle, target, free)
     for _ in range(_ROUNDS * count):
+        # Negative gradient at the bounded coefficients. Where it
+        # is positive, freeing the coefficient lowers the residual.
         pull = np.where(free, -np.inf, triangle.T @ (target - triangle @ found))
         best = int(np.argmax(pull))
         if not pull[best] > least:
@@ -61,6 +66,8 @@ def _feasible(triangle, target, found, free, bound):
         below = free & bound & (wanted <= 0.0)
         if not below.any():
             return wanted
+        # Go towards the unbounded solution until the first
+        # coefficient reaches 0, and fix those that did.
         share = np.min(found[below] / np.maximum(found[below] - wanted[below], 1e-300))
         found = found + share * (wanted - found)
         stopped = below & (found <= 1e-15 * np.abs(found).max())

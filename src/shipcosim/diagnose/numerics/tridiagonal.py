@@ -40,9 +40,11 @@ def solve_tridiagonal(
 def _solved(lower, diagonal, upper, right):
     if len(diagonal) == 1:
         return right / diagonal
+    # Solve each odd row for its unknown, in terms of its neighbours.
     before, after, alone = (
         one[1::2] / diagonal[1::2] for one in (lower, upper, right)
     )  # of every other row
+    # Insert these into the even rows, which leaves a tridiagonal system of half the size.
     n = len(before)
     up = upper[::2][:n]
     down = lower[::2][1:]
@@ -58,6 +60,7 @@ def _solved(lower, diagonal, upper, right):
     rest[1][1:] -= down * after[left]
     rest[3][:n] -= up * alone
     rest[3][1:] -= down * alone[left]
+    # Solve the smaller system, and insert its solution into the odd rows.
     found = np.empty(right.shape, np.result_type(right, diagonal))
     found[::2] = _solved(*rest)
     found[1::2] = alone - before * found[::2][:n]

@@ -74,18 +74,23 @@ def calibrated_to(logs: SeveralLogs) -> Calibration:
     -------
     Calibration
     """
+    # First the form of the loads and the width of the tolerances, both by the evidence of all logs.
     logs, form_gain = with_common_form(logs)
     scale = likeliest_scale(fitted_jointly(logs, about_all=True))
+    # Then causes of the weather of each day, with the ship's numbers free within these tolerances.
     fit = partial(fitted_jointly, scale=scale, about_all=True)
     fits = cast(
         list[JointFit],
         explain(logs, most=2 * len(logs.problems), fitted=fit, screened=screened_jointly),
     )
+    # The best set of causes in which each gains clearly more than weather may by chance.
     ordinary = {one.label: WEATHER_GAIN for one in logs.hypotheses}
     best = next(one for one in fits if not one.hypotheses or admissible(one, fits, ordinary))
+    # With the weather explained, the tolerances may need another width: fit once more.
     again = likeliest_scale(best, scale)
     if again != scale:
         best = fitted_jointly(logs, best.hypotheses, best.values, scale=again, about_all=True)
+    # Gain of unmodelled errors that remain in each log.
     own = errors_of_the_fit(best)
     unmodelled = {
         name: unmodelled_gains(one, best.parts[name]) | own for name, one in logs.problems.items()
@@ -105,10 +110,12 @@ def with_common_form(logs: SeveralLogs) -> tuple[SeveralLogs, float]:
     float
         Log-evidence of the form over the model's own. [nats]
     """
+    # Log-evidence of each scale of the form, added up over the logs.
     scores: dict[float, float] = {}
     for problem in logs.problems.values():
         for scale, score in scores_by_scale(problem, fitted(problem)).items():
             scores[scale] = scores.get(scale, 0.0) + score
+    # The usual scale is kept unless the logs clearly prefer another one.
     best = max(scores, key=lambda scale: scores[scale] + FORM_COST * (scale == USUAL_FORM))
     if not best:
         return logs, 0.0
@@ -129,8 +136,11 @@ def causes_beside(found: Calibration) -> dict[str, float]:
         By label; those that could be named, were healthy logs to gain what is assumed of weather. Where the logs want
         wider tolerances, a cause beside the stated ones must explain them better than those do.
     """
+    # Allow causes in the ship, which the calibration excluded.
     every = replace(found.logs, is_well=False)
     suspects = {}
+    # Try beside the calibrated tolerances and beside the
+    # stated ones, as wide tolerances can hide a cause.
     for scale in dict.fromkeys((found.scale, 1.0)):
         fit = partial(fitted_jointly, scale=scale, about_all=True)
         without = (
@@ -139,6 +149,7 @@ def causes_beside(found: Calibration) -> dict[str, float]:
             else fit(every, found.fit.hypotheses, found.fit.values)
         )
         for _, hypothesis, values in _most_likely(every, without):
+            # Fit the cause jointly; it must gain enough over the calibrated ship to be a suspect.
             again = fit(every, (*without.hypotheses, hypothesis), without.values | values)
             gain = again.score - found.fit.score
             if gain > ENOUGH + WEATHER_GAIN and admissible(again, [without, again], {}):
@@ -166,6 +177,7 @@ def likeliest_scale(fit: JointFit, scale: float = 1.0) -> float:
     -------
     float
     """
+    # Scale the priors of the ship's numbers only, and compare the log-evidence of each scale.
     of_ship = np.array([_is_known_of_ship(column, fit) for column in fit.columns])
     prior = np.array([column.prior for column in fit.columns])
     scores = np.array(
@@ -176,6 +188,8 @@ def likeliest_scale(fit: JointFit, scale: float = 1.0) -> float:
             for s in SCALES
         ]
     )
+    # The smallest scale within the margin of the best,
+    # so that tolerances are not widened without need.
     near = np.flatnonzero(scores > scores.max() - WIDER)
     return SCALES[near[0]]
 
@@ -195,19 +209,25 @@ def numbers_of(fit: JointFit) -> tuple[list[str], np.ndarray, np.ndarray, np.nda
         Names, tolerances before the logs, by how much each is moved, covariance of what they are on another day: that
         of the posterior, and twice that from part to part of the logs, for these days and the other.
     """
+    # Columns of the ship's numbers, and by how much each column changes each number.
     wanted = [i for i, column in enumerate(fit.columns) if _is_known_of_ship(column, fit)]
     names = list(dict.fromkeys(path for i in wanted for path in fit.columns[i].changes))
     sizes = np.array([[fit.columns[i].changes.get(name, 0.0) for i in wanted] for name in names])
     # Covariance of the columns' θ by how differently the parts of the logs pull at them, (p, p) array.
     moves = _pulls(fit) @ fit.covariance
+    # Posterior covariance plus a sandwich term: how differently
+    # the parts of the logs pull, doubled for another day.
     spread = (fit.covariance + 2.0 * (moves.T @ moves))[np.ix_(wanted, wanted)]
     return names, np.sqrt((sizes**2).sum(1)), sizes @ fit.theta[wanted], sizes @ spread @ sizes.T
 
 
 def dispersion_of(fit: JointFit) -> float:
     """How much more the parts of logs pull at the columns than by noise, mean square; 1 where the form is right."""
+    # Pull of each part, and its information about each column.
     pulls = _pulls(fit)
     known = np.stack([np.diag(part)[1:] for part in fit.products.blocks])
+    # Mean of squared pulls over their expected variance,
+    # weighted by information, with a limit for each part.
     told = np.minimum(known * np.array([column.prior for column in fit.columns]) ** 2, MOST_WEIGHT)
     return float((told * pulls**2 / np.maximum(known, 1e-12)).sum() / told.sum())
 
@@ -243,6 +263,8 @@ def reference_of(
     -------
     Reference
     """
+    # Estimates and covariance of the ship's numbers; the
+    # covariance is stored as deviations and correlations.
     names, tolerances, moved, covariance = numbers_of(found.fit)
     std = np.sqrt(np.diag(covariance))
     correlation = np.clip(covariance / np.outer(std, std), -1.0, 1.0)

@@ -29,12 +29,14 @@ def with_sizes_at_reference(
     tuple of Finding
         Those of the data, and of what no number of the reference holds, are as they were: a current is the day's.
     """
+    # Numbers of the reference, and the causes that the ship can have.
     known = {number.name: number for number in reference.numbers}
     hypotheses = {
         one.label: one for one in hypotheses_of(dict(causes), with_reference(ship, reference))
     }
     found = []
     for finding in findings:
+        # The size of each cause follows from the reference's estimate of its number.
         hypothesis = hypotheses.get(finding.label) if finding.kind == "physics" else None
         before = {
             of.name: ParameterEstimate(

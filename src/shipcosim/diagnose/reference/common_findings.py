@@ -46,6 +46,8 @@ def common_faults(faults: Mapping[str, Sequence[Finding]]) -> list[Shared[Findin
     faults : mapping of str to sequence of Finding
         By name of the log.
     """
+    # Group faults of the whole log that agree in cause,
+    # channels and wording, whatever their numbers.
     by_key: dict[tuple, dict[str, Finding]] = {}
     for name, own in faults.items():
         for fault in own:
@@ -69,6 +71,7 @@ def together(parameters: Sequence[Mapping[str, ParameterEstimate]]) -> dict[str,
     """Estimates of several logs as one: means weighted by information, deviations at least what the logs differ by."""
     found = {}
     for name, first in parameters[0].items():
+        # Mean weighted by inverse variances.
         values = np.array([one[name].estimate for one in parameters])
         stds = np.array([one[name].std for one in parameters])
         mean, std, _ = _weighted(values, np.maximum(stds, 1e-12))
@@ -78,9 +81,11 @@ def together(parameters: Sequence[Mapping[str, ParameterEstimate]]) -> dict[str,
 
 def _weighted(values: np.ndarray, stds: np.ndarray) -> tuple[float, float, float]:
     """Mean weighted by information, its standard deviation widened to what the values differ by, and χ²."""
+    # Inverse-variance weights, and chi-square of the deviations from the mean.
     weights = stds**-2.0
     mean = float(weights @ values / weights.sum())
     squares = float(weights @ (values - mean) ** 2)
+    # Birge ratio: widen the standard deviation if the values differ by more than their errors.
     wider = max(squares / max(values.size - 1, 1), 1.0)
     return mean, float(np.sqrt(wider / weights.sum())), squares
 
@@ -92,6 +97,7 @@ def is_of_thrusters(fault: Finding) -> bool:
 
 def leans_to(labels: Labels | None, fault: Finding) -> bool:
     """Whether a log that does not show a fault of the thrusters' labels leans to it all the same, or cannot tell."""
+    # A log that does not show the fault may still have these thrusters among its likeliest labels.
     if labels is None:
         return True
     wanted = {role.rpartition("_")[0] for role in fault.channels}
@@ -110,6 +116,7 @@ def with_right_labels(log: xarray.Dataset, faults: Sequence[Finding]) -> xarray.
     faults : sequence of Finding
         Mislabels, as `mislabel_in` takes them.
     """
+    # Correct one fault after the other, each on the result of the one before.
     columns = {str(name): log[name].values for name in ("time", *log.data_vars)}
     for fault in faults:
         columns = undone(columns, mislabel_in(fault), ())
@@ -144,11 +151,13 @@ class RatioOfLogs:
         return tuple(name for name in self.each if len(self.each) > 2 and self._is_apart(name))
 
     def _is_apart(self, name: str) -> bool:
+        # Ratio of all other logs, which must not contain the log itself.
         rest = ratio_of_logs({other: one for other, one in self.each.items() if other != name})
         own = self.each[name]
         others = rest.common
         if others is None:
             return False
+        # Difference of the logarithms in units of its standard deviation.
         return abs(np.log(own.ratio / others.ratio)) > APART * np.hypot(
             own.std / own.ratio, others.std / others.ratio
         )
@@ -180,10 +189,13 @@ def ratio_of_logs(each: Mapping[str, CommonRatio]) -> RatioOfLogs:
     """
     if not each:
         return RatioOfLogs({}, None, 1.0)
+    # Mean of the logarithms, as a ratio has relative errors.
     logs = np.log([one.ratio for one in each.values()])
     mean, std, squares = _weighted(logs, np.array([one.std / one.ratio for one in each.values()]))
+    # Chi-square test that all logs have one ratio.
     chance = survival(float(squares), logs.size - 1) if logs.size > 1 else 1.0
     axes = tuple(dict.fromkeys(axis for one in each.values() for axis in one.axes))
+    # Errors of the hull's form are common to all logs and do not average out.
     std = float(
         max(std, COMMON_SPREAD / np.sqrt(max(len(axes), 1)))
     )  # forms of a hull differ alike in all logs
@@ -205,6 +217,7 @@ def common_discrepancies(each: Mapping[str, Sequence[Discrepancy]]) -> list[Shar
     list of Shared
         In words with the range of their sizes; the share is the mean over all logs.
     """
+    # Group discrepancies that agree in place, axis, unit and wording.
     by_key: dict[tuple, dict[str, Discrepancy]] = {}
     for name, own in each.items():
         for one in own:
@@ -220,9 +233,12 @@ def common_discrepancies(each: Mapping[str, Sequence[Discrepancy]]) -> list[Shar
 
 def _ranging(same: Sequence[Discrepancy], logs: int) -> Discrepancy:
     """Discrepancies of several logs as one, the numbers in its words from smallest to largest."""
+    # Numbers in the wording become ranges over the logs.
     numbers = list(zip(*(_NUMBER.findall(one.what) for one in same), strict=True))
     ranges = iter([_range(texts) for texts in numbers])
     what = _NUMBER.sub(lambda _: next(ranges), same[0].what)
+    # Weighted mean if all sizes have a standard deviation,
+    # else the plain one; a log without it has a share of 0.
     values = np.array([one.estimate for one in same])
     stds = np.array([one.std for one in same])
     mean = float(values.mean())

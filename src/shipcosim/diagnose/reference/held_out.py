@@ -89,6 +89,8 @@ def sizes_without(
     logs: SeveralLogs, name: str, hypotheses: Sequence[Hypothesis], values: Mapping[str, float]
 ) -> list[Finding]:
     """Causes in the ship with their sizes by all logs but one, as findings."""
+    # Fit the causes to the other logs alone, each with
+    # its own weather, and return those in the ship.
     others = SeveralLogs(
         {other: problem for other, problem in logs.problems.items() if other != name}
     )
@@ -114,12 +116,14 @@ def sizes_by_log(
     values : mapping of str to float
         By all logs, to start from.
     """
+    # Fit each log by itself, with the causes that it has something to say of.
     found: SizesOfLogs = {}
     for name, problem in logs.problems.items():
         own = [one for _, one in logs.all_within(name, hypotheses)]
         start = {p: v for p, v in values_in(name, values).items() if p in paths_of(own)}
         fit = fitted(problem, own, start, rounds=3)
         for finding, one in zip(findings_of(fit), own, strict=True):
+            # The standard deviation includes the tolerance of each parameter.
             known = {of.name: of.tolerance * of.factor for of in one.parameters}
             found.setdefault(finding.label, {})[name] = {
                 key: replace(size, std=float(np.hypot(size.std, known[key])))  # as of a finding
@@ -168,7 +172,9 @@ def errors_by_log(
         Called with the name of a log, how many pieces of it are done, and of how many.
     """
     found = {}
+    # One horizon for all logs, so that their errors can be compared.
     horizon = min(fitting_horizon(one.record, one.model) for one in logs.problems.values())
+    # Each log is predicted with causes that the other logs have sized, and with its own weather.
     for name, problem in logs.problems.items():
         of_ship, own = findings(name)
         craft = crafts.get(name)
@@ -201,6 +207,8 @@ def _log_errors(
     progress: Callable[[str, int, int], None],
 ) -> LogErrors | None:
     """The errors of one log; None where no stretch of it is whole."""
+    # Predict by co-simulation. If it fails, at least the
+    # errors of the unchanged system, by the array model.
     remark = ""
     try:
         tracks = _cosimulated(log, given, causes, progress)
@@ -214,6 +222,7 @@ def _log_errors(
             )
         except ShipcosimError:
             return None
+    # Root mean square errors by simulation and horizon.
     errors = errors_of(tracks)
     shown = {str(one): errors.sel(simulation=one) for one in errors["simulation"].values}
     return LogErrors(
@@ -230,6 +239,7 @@ def _log_errors(
 
 def _cosimulated(log, given, causes, progress) -> Tracks:
     """Predictions by the system, and by the one with the causes in it."""
+    # The system as it is, and extended by the findings, along the same track.
     record = log.problem.record
     model = log.problem.model
     systems = {"before": Replayed(given.given)}
@@ -251,7 +261,9 @@ def _cosimulated(log, given, causes, progress) -> Tracks:
 
 def _misses(log: _Judged, tracks: Tracks) -> np.ndarray:
     """Errors of each prediction: before, after, and in array form by the ship that was fitted to this log too."""
+    # The noise floor: the ship fitted to this log too.
     floor = tracks_by_models(log.problem.record, {"floor": log.fitted_to_it}, log.horizon)
+    # Predictions of both kinds start at different rows; take those of the floor that match.
     starts, before = misses_at_end(tracks, "before")
     all_starts, least = misses_at_end(floor, "floor")
     return np.stack(

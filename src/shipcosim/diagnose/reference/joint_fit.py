@@ -78,6 +78,7 @@ def fitted_jointly(
     -------
     JointFit
     """
+    # Start values within bounds, and for each log its motion and its causes.
     values = bounded(hypotheses, values or {})
     last = None
     about: dict[str, dict[str, float]] = {name: {} for name in logs.problems}
@@ -85,12 +86,16 @@ def fitted_jointly(
     own = {
         name: tuple(one for _, one in logs.all_within(name, hypotheses)) for name in logs.problems
     }
+    # Columns of each log: its known numbers, the ship's with scaled tolerances, and its causes.
     columns = {
         name: [_scaled(column, scale) for column in problem.known(own[name])]
         + own_columns(problem, own[name])
         for name, problem in logs.problems.items()
     }
+    # Common columns for numbers of the ship, separate ones for those of a day.
     layout, common = _layout(logs, hypotheses, columns)
+    # Gauss-Newton: linearise each log about its own
+    # motion, solve for all logs together, and repeat.
     for _ in range(rounds):
         found = {
             name: linearised(
@@ -101,10 +106,12 @@ def fitted_jointly(
         fit = _posterior(logs, hypotheses, own, values, layout, found)
         motions = {name: part.motion for name, part in fit.parts.items()}
         values = next_values(fit)
+        # New point of linearisation for the known numbers.
         about = {
             name: tolerated(part) | (_at_the_mean(fit, common) if about_all else {})
             for name, part in fit.parts.items()
         }
+        # Converged if no parameter moves much and the evidence hardly changes.
         if (
             largest_move(fit, values, fit.get) < CLOSE
             and last
@@ -125,6 +132,7 @@ def _layout(
     logs: SeveralLogs, hypotheses: Sequence[Hypothesis], columns: Mapping[str, Sequence[Regressor]]
 ) -> tuple[Layout, np.ndarray]:
     """Where the columns of each log are among all, and which of all are known numbers of the ship, (p,) bool array."""
+    # One column for each parameter of each cause.
     parameters = [
         (f"{one.label}, {k}", Regressor(dict.fromkeys(parameter.paths, parameter.typical)))
         for one in hypotheses
@@ -133,6 +141,8 @@ def _layout(
     known = {}
     companions = []
     named = {}
+    # The columns of a log are its known numbers, then
+    # companions of its causes, then their parameters.
     for name in logs.problems:
         pairs = logs.all_within(name, hypotheses)
         turned = [f"{one.label}, {k}" for one, _ in pairs for k in range(len(one.parameters))]
@@ -146,6 +156,7 @@ def _layout(
         companions += beside_them
         named[name] = [key for key, _ in beside_them] + turned
     layout = laid_out(known, companions + parameters, named)
+    # Known numbers come first in the layout; those that are not of a day are common.
     first = len(layout.regressors) - len(companions) - len(parameters)
     common = [
         i < first and not any(ShipModel.is_of_day(path) for path in column.changes)
@@ -156,14 +167,17 @@ def _layout(
 
 def _posterior(logs, hypotheses, own, values, layout, found):
     """The joint fit of logs that are linearised, each about its own motion."""
+    # Independent logs: inner products, determinants and free terms of the likelihood add up.
     products = Gram(
         np.sum([layout.spread(name, one.products.products) for name, one in found.items()], axis=0),
         np.concatenate([layout.spread(name, one.products.blocks) for name, one in found.items()]),
         np.sum([one.products.log_determinant for one in found.values()], axis=0),
     )
     centre = layout.together({name: one.centre for name, one in found.items()})
+    # Posterior of all columns by the combined products, and the log-evidence.
     score, theta, covariance = evidence(products.products, layout.prior, centre)
     score += sum(float(one.products.free) for one in found.values())
+    # Each log gets its part of the joint posterior.
     parts = {}
     for name, one in found.items():
         at = layout.places[name]
@@ -202,13 +216,16 @@ def _at_the_mean(fit: JointFit, common: np.ndarray) -> dict[str, float]:
 
 def screened_jointly(logs: SeveralLogs, fit: JointFit) -> list[Gain]:
     """Gain in log-evidence of each hypothesis beside a fit to several logs, linearised once; as `screened`."""
+    # Hypotheses that are not in the fit yet.
     wanted = [one for one in logs.hypotheses if one not in fit.hypotheses]
     found = {}
+    # Inner products of each log with the columns of the fit and the new ones.
     for name, problem in logs.problems.items():
         part = fit.parts[name]
         added = regressors_of(own for _, own in logs.all_within(name, wanted))
         linear = beside(part.linear, problem.base_of(added))
         found[name] = inner_products(linear, problem.noise, problem.record).products
+    # Add them up over the logs, and compute the gain of each hypothesis.
     layout = screening_layout(logs, fit.layout, wanted)
     products = np.sum([layout.spread(name, one) for name, one in found.items()], axis=0)
     return gains(products, fit.columns, fit.centre, wanted, fit.get)

@@ -63,11 +63,15 @@ def joint_gain(errors: Mapping[str, LogErrors]) -> dict[str, Any] | None:
     squares = {name: of for name, of in squares.items() if of.size}
     if not squares:
         return None
+    # Mean squares with equal weight for each log.
     before, after, floor = _roots(np.mean([of.mean(axis=1) for of in squares.values()], axis=0))
+    # Bootstrap: draw predictions within each log with replacement, for the interval of the share.
     rng = np.random.default_rng(1)
     drawn = _roots(
         np.mean([resampled_sums(of, rng) / of.shape[1] for of in squares.values()], axis=0)
     )
+    # Share of the explainable error: from before to the
+    # noise floor. It is not defined if both nearly agree.
     share = share_explained(before, after, floor)
     some = bool(np.isfinite(share))
     return {

@@ -64,10 +64,13 @@ def judged_jointly(logs: SeveralLogs) -> JointVerdict:
     -------
     JointVerdict
     """
+    # Search sets of causes that explain all logs.
     fits = cast(list[JointFit], explain(logs, fitted=fitted_jointly, screened=screened_jointly))
+    # If a log lacks the wind, chance explains more, and the threshold rises.
     silent = any(problem.record.wind is None for problem in logs.problems.values())
     models = [problem.model for problem in logs.problems.values()]
     usual = max(map(usual_gain, models)) + NULL_GAIN_WITHOUT_WIND * silent
+    # Judge the best sets against what causes gain in healthy logs.
     found = judge_against_healthy(
         fits,
         lambda fit: _unmodelled(logs, fit),
@@ -80,11 +83,14 @@ def judged_jointly(logs: SeveralLogs) -> JointVerdict:
 
 def _unmodelled(logs: SeveralLogs, fit: JointFit) -> dict[str, float]:
     """Gain of unmodelled errors beside a joint fit: of a force or a channel in any log, or the same kind in all."""
+    # Gains in each log, and errors of the joint fit itself.
     each = [unmodelled_gains(problem, fit.parts[name]) for name, problem in logs.problems.items()]
     own = errors_of_the_fit(fit)
     kinds = (kind for kind in each[0] if kind not in own)
     found = {}
     for kind in kinds:
+        # Either one log shows the error, at the cost of
+        # choosing this log, or all show the same kind.
         values = [gains[kind] for gains in each]
         found[kind] = max(max(values) - float(np.log(len(values))), sum(values))
     return found | own
@@ -92,6 +98,7 @@ def _unmodelled(logs: SeveralLogs, fit: JointFit) -> dict[str, float]:
 
 def _null_gains(logs, fit, fits):
     """Gains of a fit's causes on simulated healthy logs of the same drawn ships, as with one log."""
+    # Simulate healthy logs with the inputs of each log, and add up their inner products.
     nothing = cast(JointFit, without_causes(fits))
     wanted = fit.hypotheses
     layout = screening_layout(logs, nothing.layout, wanted)
@@ -102,6 +109,7 @@ def _null_gains(logs, fit, fits):
         _, products = healthy_products(problem, fit.parts[name].motion, own)
         kept = kept & on_track(products)
         together = together + layout.spread(name, products)
+    # Gain of each cause on each simulated set of logs, where the ship stayed on its track.
     found = {one.label: [] for one in wanted}
     for products in together[kept]:
         for gain, one, _ in gains(
@@ -113,6 +121,7 @@ def _null_gains(logs, fit, fits):
 
 def joint_excitation(verdict: JointVerdict) -> Excitation:
     """What these logs together tell of each cause, had it its typical size."""
+    # Inner products of the columns of all causes, added up over the logs.
     logs = verdict.logs
     nothing = cast(JointFit, without_causes(verdict.fits))
     layout = screening_layout(logs, nothing.layout, logs.hypotheses)
@@ -122,6 +131,7 @@ def joint_excitation(verdict: JointVerdict) -> Excitation:
         columns = nothing.parts[name].columns + regressors_of(own)
         products = inner_products(problem.base_of(columns), problem.noise, problem.record).products
         together = together + layout.spread(name, products)
+    # Columns of each cause, and the evidence that it needs to count as testable.
     groups = [(one, places) for one, _, places in placed(logs.hypotheses, len(nothing.columns))]
     usual = max(usual_gain(problem.model) for problem in logs.problems.values())
     return Excitation(together, layout.regressors, groups, TESTABLE + usual)

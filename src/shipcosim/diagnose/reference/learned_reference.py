@@ -38,6 +38,7 @@ def learned_reference(
     system, version : str
         Name of the system; version of this program.
     """
+    # Each number with its spread between the logs, but no less than a share of its size.
     numbers = []
     for name, estimate in craft.after.items():
         size = max(abs(estimate), abs(craft.before[name]))
@@ -83,6 +84,7 @@ def learned_errors(
     RemainingErrors or None
         None where no stretch of the log is whole.
     """
+    # Predictions by the system, by the craft without this log, and by the craft with all logs.
     models = {"before": ship, "after": others.on(ship), "floor": craft.on(ship)}
     try:
         errors = errors_of(tracks_by_models(record, models, fitting_horizon(record, ship)))

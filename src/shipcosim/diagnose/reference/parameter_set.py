@@ -33,6 +33,7 @@ def write_parameter_set(system: System, reference: Reference, path: AnyPath) -> 
     ShipcosimError
         If it cannot be written.
     """
+    # Numbers that are variables of the system; others, such as those of the water, have none.
     values = {}
     for number in reference.numbers:
         variable = _variable(system, number)
@@ -53,6 +54,7 @@ def _variable(system: System, number: KnownNumber):
     if part is None or name not in part.variables:
         return None
     start = part.start_value(name)
+    # The system must hold the number before or after calibration; else it is another number.
     known = isinstance(start, int | float) and any(
         is_same(start, one) for one in (number.nominal, number.estimate)
     )

@@ -191,6 +191,7 @@ def with_reference(ship: ShipModel, reference: Reference) -> ShipModel:
     ShipcosimError
         If the reference is of another ship.
     """
+    # The numbers of the ship must be those that the reference was made from, or its estimates.
     problems = []
     for number in reference.numbers:
         if not ship.has(number.name):
@@ -202,10 +203,13 @@ def with_reference(ship: ShipModel, reference: Reference) -> ShipModel:
             problems.append(Problem(number.name, found, _REMEDY))
     if problems:
         raise ShipcosimError(problems)
+    # Start from the estimates, with the principal axes of their covariance instead of tolerances.
     moved = ship.with_values({number.name: number.estimate for number in reference.numbers})
+    # Unmodelled errors that the healthy logs showed are no news, up to some multiple.
     ordinary = {
         kind: ORDINARY * gain for kind, gain in reference.ordinary_errors.items() if gain > 0.0
     }
+    # Dispersion above 1 shows an error of the model's form, which raises the gain of any cause.
     ordinary[ANY_CAUSE] = ENOUGH * max(reference.dispersion - 1.0, 0.0)
     return replace(moved, directions=_directions(reference), ordinary_errors=ordinary)
 
@@ -219,8 +223,10 @@ def _directions(reference: Reference) -> tuple[dict[str, float], ...]:
     What a number may differ by from day to day is added. Axes along which next to nothing is uncertain are left out.
     """
     names = [number.name for number in reference.numbers]
+    # Covariance in units of the tolerances, plus the change of a number from day to day.
     unit = reference.tolerance_scale * np.array([number.tolerance for number in reference.numbers])
     spread = reference.covariance / unit[:, None] / unit + DAY_TO_DAY**2 * np.eye(unit.size)
+    # Eigenvectors of the covariance; each direction is one, scaled to its standard deviation.
     variance, axes = np.linalg.eigh(spread)
     wanted = [i for i in np.argsort(-variance) if variance[i] > NEGLIGIBLE**2]
     return tuple(

@@ -59,6 +59,7 @@ def remaining_errors(found: Calibration) -> dict[str, RemainingErrors | None]:
 
 
 def _by_others(found: Calibration, name: str) -> RemainingErrors | None:
+    # Fit the ship's numbers to the other logs, with their weather.
     others = {other: problem for other, problem in found.logs.problems.items() if other != name}
     weather = [one for one in found.fit.hypotheses if one.component in others]
     values = {path: v for path, v in found.fit.values.items() if path.partition("|")[0] in others}
@@ -75,6 +76,7 @@ def _by_others(found: Calibration, name: str) -> RemainingErrors | None:
 
 def _of_last_rows(found: Calibration, name: str) -> RemainingErrors | None:
     problem = found.logs.problems[name]
+    # Fit to the first part of the only log, and predict the rest.
     rows = first_rows(problem.record)
     early = SeveralLogs({name: trained(problem, rows)}, is_well=True)
     fit = fitted_jointly(
@@ -89,6 +91,7 @@ def _with_numbers(found: Calibration, name: str, fit: JointFit) -> ShipModel:
     """The ship of a log with the numbers of a fit to other rows, in the weather that was fitted in the log itself."""
     model = found.logs.problems[name].model
     part = found.fit.parts[name]
+    # The ship's numbers moved as the fit wants, and the weather of this log's own fit.
     names, _, moved, _ = numbers_of(fit)
     of_ship = {
         path: model.get(path) + by for path, by in zip(names, moved, strict=True) if model.has(path)
@@ -99,6 +102,7 @@ def _with_numbers(found: Calibration, name: str, fit: JointFit) -> ShipModel:
 
 def _errors(found, name, record, after, others) -> RemainingErrors | None:
     """Errors on a record by the system, by `after`, and by the ship as all logs have her."""
+    # Open-loop predictions by the system, the calibrated ship, and the ship fitted to all logs.
     model = found.logs.problems[name].model
     part = found.fit.parts[name]
     models = {"before": model, "after": after, "floor": calibrated(part)}

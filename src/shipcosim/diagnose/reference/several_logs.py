@@ -60,6 +60,8 @@ class SeveralLogs:
     @cached_property
     def hypotheses(self) -> tuple[Hypothesis, ...]:
         """Causes in the ship once, those of the day for each log."""
+        # Causes in the ship are the same hypothesis in all
+        # logs; those of the day exist once for each log.
         ship = {}
         day = []
         for name, problem in self.problems.items():
@@ -72,6 +74,7 @@ class SeveralLogs:
 
     def within(self, name: str, hypothesis: Hypothesis) -> Hypothesis | None:
         """A cause as the problem of one log has it; None where that log has nothing to say of it."""
+        # A cause of the day exists in its own log only, and there without the log's name.
         component = hypothesis.component
         if is_in_one_log(hypothesis):
             if component != name:
@@ -94,6 +97,7 @@ class SeveralLogs:
 def values_in(name: str, values: Mapping[str, float]) -> dict[str, float]:
     """Numbers as one log has them: those of the ship, and those of its own day."""
     found = {}
+    # Numbers with the prefix of another log are left out, the own prefix is removed.
     for path, value in values.items():
         owner, separator, number = path.rpartition(_SEPARATOR)
         if not separator or owner == name:
@@ -122,6 +126,7 @@ class Layout:
 
     def spread(self, name: str, products: np.ndarray) -> np.ndarray:
         """Inner products of one log, (..., 1 + p_i, 1 + p_i), its own column first, at their places among all."""
+        # Row and column 0 belong to the log itself, the others move to their places in the layout.
         where = np.concatenate([[0], 1 + self.places[name]])
         size = 1 + len(self.regressors)
         found = np.zeros((*products.shape[:-2], size, size))
@@ -156,12 +161,14 @@ def laid_out(
     -------
     Layout
     """
+    # Known numbers of the ship are the same column in all logs, those of a day one for each.
     found: dict[object, Regressor] = {}
     for log, columns in known.items():
         for column in columns:
             found.setdefault(_key(log, column), column)
     found |= dict(others)
     order = {key: place for place, key in enumerate(found)}
+    # Place of each log's columns in the common order.
     keys = {
         log: [*(_key(log, column) for column in columns), *named[log]]
         for log, columns in known.items()

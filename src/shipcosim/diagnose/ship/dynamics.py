@@ -34,10 +34,13 @@ _CURRENT += tuple(f"{to}_{at}" for to in ("north", "east") for at in ("start", "
 def current_at(time: Arithmetic, model: ShipModel) -> tuple[Arithmetic, Arithmetic]:
     """Velocity of the water towards north and east [m/s] at some times [s]."""
     water = model.parts["water"]
+    # Mean current with a linear trend over the log.
     (first, last) = model.span
     share = share_of(time, model.span)
     north = water.current_north + water.trend_north * share
     east = water.current_east + water.trend_east * share
+    # A current that varies in speed and direction comes
+    # on top, from its values at the first and last row.
     ends = (water.north_start, water.east_start, water.north_end, water.east_end)
     if any(ends):
         speed, to = varying_current(time, *ends, time_start=first, time_end=last)
@@ -83,6 +86,7 @@ def loads(
     """
     parts = model.parts
     found = {}
+    # Loads depend on the velocity through the water.
     u_c, v_c = _body_current(motion.psi, inputs.time, model)
     u_r = motion.u - u_c
     v_r = motion.v - v_c
@@ -92,6 +96,8 @@ def loads(
     def kept(name, load):
         return _kept_at_hull(name, load, u_r, inputs, model)
 
+    # Thrusters of this project, then third-party FMUs by
+    # their surrogates. Loads of equal parts are taken over.
     for name in [
         name for name in parts if isinstance(parts[name], (AzimuthParameters, TunnelParameters))
     ]:
@@ -100,12 +106,14 @@ def loads(
         found[name] = same.get(name) or kept(
             name, _third_party_loads(name, motion, inputs, (u_r, v_r), model)
         )
+    # Wind, and the deviation of cross-flow drag from the model's form.
     if inputs.wind_speed is not None:
         found["wind"] = same.get("wind") or _wind_loads(motion, inputs, model)
     if parts["hull_form"].acts:
         found["hull_form"] = same.get("hull_form") or cross_flow_form(
             v_r, r, parts["hull"], parts["hull_form"]
         )
+    # Wave drift and a line to the shore, each only where it acts.
     water = parts["water"]
     if np.any(water.drift_north) or np.any(water.drift_east):
         shape = {
@@ -130,6 +138,7 @@ def _alike(model: ShipModel, other: ShipModel, found: dict[str, Load]) -> dict[s
         made_of = _MADE_OF.get(name, (name, form_of(name)))
         return all(model.parts.get(part) is other.parts.get(part) for part in made_of)
 
+    # In another current only the wind load is the same, as it does not depend on the water.
     names = found if _same_current(model, other) else {"wind"} & set(found)
     return {name: found[name] for name in names if alike(name)}
 
@@ -168,10 +177,13 @@ def _wind_loads(motion: Motion, inputs: Inputs, model: ShipModel) -> Load:
     direction = inputs.wind_from
     if speed is None or direction is None:
         raise ValueError("the log has no wind")
+    # Wind over ground becomes apparent by the motion of the
+    # ship. Wind comes from its direction, hence the signs.
     if model.wind_is_true:
         north = -speed * cos(direction)
         east = -speed * sin(direction)
         speed, direction = wind.apparent_wind(motion.psi, motion.u, motion.v, north, east)
+    # Subtract the sensor offset before the load, so that form factors see the true angle.
     angle = wrap(direction - parameters.apparent_wind_offset)
     found = wind.wind_loads(speed, angle, wind=replace(parameters, apparent_wind_offset=0.0))
     form = model.parts["wind_form"]
@@ -206,6 +218,7 @@ def motion_rates(
     Motion
         Rates.
     """
+    # Kinematics give the rates of position and heading, the equations of motion those of velocity.
     north, east = to_ned(motion.psi, motion.u, motion.v)
     return Motion(north, east, motion.r, *_accelerations(motion, inputs, model, extra, like))
 
@@ -214,6 +227,7 @@ def _accelerations(
     motion: Motion, inputs: Inputs, model: ShipModel, extra: Load, like: Alike | None
 ) -> Load:
     """Rates of the velocity over ground."""
+    # Sum of all loads, and accelerations of the velocity through the water.
     X, Y, N = (
         sum(axis) for axis in zip(extra, *loads(motion, inputs, model, like).values(), strict=True)
     )
@@ -221,6 +235,8 @@ def _accelerations(
     u_dot, v_dot, r_dot = accelerations(
         motion.u - u_c, motion.v - v_c, motion.r, X, Y, N, hull=model.parts["hull"]
     )
+    # A steady current turns in body axes. Its rate there, (r
+    # v_c, -r u_c), is added for the velocity over ground.
     return u_dot + motion.r * v_c, v_dot - motion.r * u_c, r_dot
 
 
@@ -242,12 +258,14 @@ def rate_difference(
     tuple of three arrays
         [m/s2, m/s2, rad/s2]
     """
+    # With another hull or current Coriolis force and damping differ too: take the full difference.
     hull = one.parts["hull"]
     if hull is not other.parts["hull"] or not _same_current(one, other):
         rates = (
             _accelerations(motion, inputs, model, (0.0, 0.0, 0.0), like) for model in (one, other)
         )
         return tuple(a - b for a, b in zip(*rates, strict=True))
+    # Otherwise only the loads that differ count: M^-1 times their difference.
     mine, theirs = (loads(motion, inputs, model, like) for model in (one, other))
     pairs = [(mine[name], theirs[name]) for name in mine if mine[name] is not theirs[name]]
     X, Y, N = (sum(a[axis] - b[axis] for a, b in pairs) for axis in range(3))

@@ -109,6 +109,7 @@ def swell_of(time: Arithmetic, span: tuple[float, float], water: Water) -> Arith
     array or float
         1 where nothing swells.
     """
+    # Mean plus piecewise linear deviations; without any the factor is 1.
     swells = [getattr(water, f"drift_swell_{k}") for k in range(1, _SWELLS + 1)]
     if not np.any(swells):
         return 1.0

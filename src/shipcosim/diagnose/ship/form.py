@@ -144,6 +144,7 @@ def form_sizes(
     dict of str to float
         Standard deviation by ``place.name``, in the number's unit.
     """
+    # Cross-flow drag along the hull and wind load over the angle.
     hull = parts["hull"]
     found = {f"hull_form.cross_flow_{degree}": size for degree, size in ALONG.items()}
     found |= {
@@ -151,8 +152,11 @@ def form_sizes(
         for axis in "XYN"
         for name, order, _ in _harmonics()
     }
+    # Coefficients of the hull, and the level of the wind load.
     found |= {f"{vessel}.{name}": size for name, size in _hull_sizes(hull).items() if size > 0.0}
     found[f"{vessel}.wind_load_scale"] = WIND_LEVEL
+    # Tunnel thrusters lose thrust with speed; others by
+    # thrust deduction, and by direction if they turn.
     for name in drives:
         if isinstance(parts[name], TunnelParameters):
             found[f"{name}.speed_loss"] = SPEED_LOSS * _OF_LENGTH / hull.length
@@ -182,6 +186,7 @@ def form_functions(
         By function and ``place.name``: mean over the hull or round the circle of the squared share of the model's
         function that the number makes, over the squared number. [1 over the number's unit squared]
     """
+    # Mean square of a Legendre polynomial of degree k is 1 / (2 k + 1).
     level = abs(parts["hull"].cross_flow_drag)
     hull = f"{vessel}."
     found = {
@@ -193,11 +198,13 @@ def form_functions(
         found["drag across the hull, along her length"] |= {
             f"{hull}cross_flow_drag": 1.0 / level**2
         }
+    # The mean square of a harmonic is 1/2, of a constant 1; a third for each of X, Y and N.
     found["wind load over the angle"] = {f"{hull}wind_load_scale": 1.0} | {
         f"wind_form.{axis}_{name}": (0.5 if order else 1.0) / 3.0
         for axis in "XYN"
         for name, order, _ in _harmonics()
     }
+    # Mean squares of the loss functions over all directions of the thrust.
     for name in drives:
         if "azimuth" in drives[name]:
             mean = {"across": 3 / 8, "to_starboard": 1 / 2, "astern": 3 / 8}
@@ -208,6 +215,7 @@ def form_functions(
 
 def _hull_sizes(hull: HullParameters) -> dict[str, float]:
     """Of the numbers that the hull has: coefficients by a share of their size, linear damping by the quadratic one."""
+    # Added mass, lift and damping coefficients: a share of their size.
     found = {
         name: ADDED_MASS * abs(getattr(hull, name)) for name in ("A11", "A22", "A26", "A62", "A66")
     }
@@ -215,11 +223,14 @@ def _hull_sizes(hull: HullParameters) -> dict[str, float]:
     coefficients = [item.name for item in fields(hull) if item.name[:2] in ("X_", "Y_", "N_")]
     found |= {name: LEVEL * abs(getattr(hull, name)) for name in coefficients}
     found["cross_flow_drag"] = CROSS_FLOW_LEVEL * abs(hull.cross_flow_drag)
+    # Linear damping is compared with the quadratic one at usual speeds, which follow Froude's law.
     speed, side = (
         froude * np.sqrt(_GRAVITY * hull.length) for froude in (FROUDE_AHEAD, FROUDE_ACROSS)
     )
     half = 0.5 * hull.length
     strength = _strength(hull)
+    # Quadratic damping at this speed, as linear damping: in
+    # surge by its coefficient, in sway and yaw by strips.
     found["X_u"] += LINEAR * speed * abs(hull.X_uu)
     found["Y_v"] += LINEAR * side * strength * hull.length
     found["N_r"] += LINEAR * side / half * strength * half**4 / 2.0
@@ -250,11 +261,13 @@ def cross_flow_form(v_r: Arithmetic, r: Arithmetic, hull: HullParameters, form: 
     tuple of three, like v_r
         X, Y, N. [N, N, N.m]
     """
+    # Strips at the Gauss points over half the length; the weights add up to 2.
     half = 0.5 * hull.length
     Y = 0.0 * v_r
     N = 0.0 * v_r
     strength = _strength(hull) * half
     for place, weight, shapes in zip(_PLACES, _WEIGHTS, _SHAPES, strict=True):
+        # Relative change of the drag coefficient of the strip, and its cross flow v + x r.
         share = sum(getattr(form, f"cross_flow_{k}") * shapes[k] for k in _DEGREES)
         flow = v_r + place * half * r
         load = -strength * weight * share * abs(flow) * flow
@@ -278,6 +291,7 @@ def wind_factors(wind_from: Arithmetic, form: object) -> Load:
         On X, Y and N. [1]
     """
     factors = []
+    # Factor 1 plus a Fourier series in the wind angle, for each axis.
     for axis in "XYN":
         factor = 1.0 + 0.0 * wind_from
         for name, order, function in _harmonics():
@@ -308,6 +322,7 @@ def thrust_kept(
     like u_r
         [1]
     """
+    # Direction in which the thruster pushes, with the sign of its speed.
     way = np.sign(rpm)
     ahead = way * cos(azimuth)
     starboard = way * sin(azimuth)
@@ -316,5 +331,6 @@ def thrust_kept(
         + form.to_starboard * starboard
         + 0.5 * form.astern * (1.0 - ahead)
     )
+    # Loss under way in proportion to the speed, relative to a fixed Froude number.
     fast = FROUDE_UNDER_WAY * np.sqrt(_GRAVITY * length)
     return 1.0 - lost - form.under_way * abs(u_r) / fast

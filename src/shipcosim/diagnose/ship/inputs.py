@@ -102,6 +102,8 @@ class Record:
 
     def substeps(self, model: ShipModel) -> int:
         """Number of integration steps from row to row; more than one for a small or stiff ship."""
+        # Steps short enough for the size of the ship and
+        # for its fastest response, as a power of two.
         rows = self.step * max(
             1.0 / (_ONE_STEP * np.sqrt(model.length)), self.rate / _RATE_OF_A_STEP
         )
@@ -112,6 +114,8 @@ class Record:
 
         Late channels are taken that much later; where the navigation is late, all others are taken earlier.
         """
+        # Shift the inputs by the lags of their channels. A
+        # late navigation means that the inputs act earlier.
         lags = model.parts["instruments"]
         late = share * self.step - lags.navigation_lag
         behind = self._places(late + lags.thruster_lag, steps)
@@ -130,6 +134,7 @@ class Record:
     def _places(self, seconds: float, steps: slice) -> tuple[np.ndarray, np.ndarray]:
         """Rows that much later: the row before, and the share of the step after it."""
         rows = self.time.size
+        # Fractional row, limited to the log, as the row before and a share.
         at = np.clip(np.arange(rows - 1)[steps] + seconds / self.step, 0.0, rows - 1.0)
         low = np.minimum(at.astype(int), rows - 2)
         return low, at - low
@@ -175,11 +180,13 @@ def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
         found = f"no channel {', '.join(missing)}."
         right = "A diagnosis needs north, east and heading."
         raise error_at(str(log.attrs.get("source", "log")), found, right)
+    # Measurements in SI units, with the heading unwrapped.
     measured = np.stack(
         [_column(log, role, rows) * si for role, si in zip(CHANNELS, _TO_SI, strict=True)], axis=-1
     )
     measured[:, 2] = unwrap_series(measured[:, 2])
     _check_third_party(log, model)
+    # Add the inputs, then average rows down to the rate that the ship needs.
     record = _driven(log, model, measured)
     remarks = [_about_third_party(name, one) for name, one in model.third_party.items()]
     record = replace(record, remarks=(*_about_stretches(time), *record.remarks, *remarks))
@@ -204,6 +211,7 @@ def with_inputs_of(record: Record, log: xarray.Dataset, model: ShipModel) -> Rec
     Record
         As `record_of` would give it, in a fraction of its time.
     """
+    # Inputs alone, thinned like the record, so that the rows agree.
     driven = _driven(log, model, np.zeros((log.sizes["time"], 0)))
     driven = _thinned(driven, rows_averaged(model.length, driven.step), model)
     return replace(record, units=driven.units, wind=driven.wind, known=driven.known)
@@ -215,6 +223,8 @@ def _driven(log: xarray.Dataset, model: ShipModel, measured: np.ndarray) -> Reco
     time = log["time"].values.astype(float)
     remarks = []
     units = {}
+    # A step is known if all inputs are measured at both
+    # of its ends, away from holes between stretches.
     known = np.ones(rows, bool)
     for name in model.thrusters:
         units[name], whole = _unit(log, name, model, rows, remarks)
@@ -228,6 +238,7 @@ def _driven(log: xarray.Dataset, model: ShipModel, measured: np.ndarray) -> Reco
 
 def _near_holes(time: np.ndarray) -> np.ndarray:
     """Rows beside the holes between stretches, (n,) bool array."""
+    # Rows at both sides of each hole, as far as a late channel reaches.
     inner = [rows.stop for rows in stretches_of(time)[:-1]]
     late = int(np.ceil(_LATE / (time[1] - time[0])))
     found = np.zeros(time.size, bool)
@@ -252,8 +263,10 @@ def _about_stretches(time: np.ndarray) -> list[str]:
 
 def _thinned_for(model: ShipModel, record: Record) -> Record:
     """The record at the rate that a ship's answer needs."""
+    # At least two rows remain after averaging.
     rows = min(rows_averaged(model.length, record.step), record.time.size // 2)
     thinned = _thinned(record, rows, model)
+    # The fastest response sets the integration step; it is estimated from the averaged motion.
     thinned = replace(thinned, rate=fastest_rate(model, first_motion(thinned, model)))
     if rows == 1:
         return thinned
@@ -265,8 +278,11 @@ def _check_length(log: xarray.Dataset, model: ShipModel, motion: Motion) -> None
     """Raise ShipcosimError for a log that is too short for what its ship does, or has too few rows."""
     rows = log.sizes["time"]
     span = float(log["time"][-1] - log["time"][0])
+    # The response of ships scales with the root of
+    # their length, and so does the shortest useful log.
     least = _SHORTEST * np.sqrt(model.length)
     if span < least or rows < _FEWEST_ROWS:
+        # The slowest response is only for the message.
         slowest = max(
             (time for time in response_times(model, motion) if np.isfinite(time)), default=np.inf
         )
@@ -282,6 +298,7 @@ def _thinned(record: Record, rows: int, model: ShipModel) -> Record:
     """The record with every so many rows averaged into one; of speeds, which push by their square, as that."""
     if rows == 1:
         return record
+    # Whole groups of rows within each stretch; what is left at its end is dropped.
     used = np.concatenate(
         [np.arange(one.start, one.stop - (one.stop - one.start) % rows) for one in record.stretches]
     )
@@ -291,6 +308,8 @@ def _thinned(record: Record, rows: int, model: ShipModel) -> Record:
         count = np.isfinite(whole).sum(1)
         return np.where(count > 0, np.nansum(whole, axis=1) / np.maximum(count, 1), np.nan)
 
+    # Thrust and wind load go with the squared speed, so its
+    # mean must be kept: the root of the mean signed square.
     def of_squares(series):
         push = mean(series * np.abs(series))
         return np.sign(push) * np.sqrt(np.abs(push))
@@ -301,6 +320,7 @@ def _thinned(record: Record, rows: int, model: ShipModel) -> Record:
         for name, (drive, direction) in record.units.items()
     }
     wind = None if record.wind is None else (of_squares(record.wind[0]), mean(record.wind[1]))
+    # An averaged row is known only if all of its rows are.
     known = mean(record.known.astype(float)) == 1.0
     return Record(mean(record.time), mean(record.measured), units, wind, known, record.remarks)
 
@@ -311,6 +331,7 @@ def _column(log: xarray.Dataset, role: str, rows: int) -> np.ndarray:
 
 def _unit(log, name, model, rows, remarks):
     """Speed or thrust of a thruster and its direction, and where they are known."""
+    # The drive of a thruster is its speed in rev/s, or its thrust if this is logged instead.
     speed = _column(log, f"{name}_rpm", rows) / 60.0
     direction = _column(log, f"{name}_azimuth", rows) * np.pi / 180.0
     if "thrust" in model.drives(name):
@@ -321,8 +342,10 @@ def _unit(log, name, model, rows, remarks):
         speed = np.zeros(rows)
     if name in model.azimuths and f"{name}_azimuth" not in log:
         remarks.append(f"No direction of '{name}' in the log: taken to point ahead in simulations.")
+    # Without a logged direction a thruster points where the system fixes it, or ahead.
     if name not in model.azimuths or f"{name}_azimuth" not in log:
         direction = np.full(rows, model.fixed.get(name, 0.0))
+    # Where both are measured; gaps are filled for the arrays only.
     whole = np.isfinite(speed) & np.isfinite(direction)
     return (averaged(speed), averaged(unwrap_series(direction))), whole
 
@@ -364,6 +387,7 @@ def _about_third_party(name: str, one: ThirdPartyFmu) -> str:
 
 
 def _wind(log, rows, remarks):
+    # Prefer the apparent wind to the true one.
     for speed, direction in (("wind_speed", "wind_from"), ("true_wind_speed", "true_wind_from")):
         if speed in log and direction in log:
             pair = (
@@ -384,6 +408,7 @@ def averaged(series: np.ndarray) -> np.ndarray:
 
     So the noise of a channel does not get less, and the log likelier, when the channel is taken half a row later.
     """
+    # Weights 1/4, 1/2, 1/4: interpolation half a row later then changes the noise little.
     filled = _filled(series)
     ends = np.concatenate([filled[:1], filled, filled[-1:]])
     return 0.25 * ends[:-2] + 0.5 * ends[1:-1] + 0.25 * ends[2:]
@@ -405,10 +430,12 @@ def first_motion(record: Record, model: ShipModel, smooth: float = 4.0) -> Motio
     Motion
         Of (..., n) arrays.
     """
+    # Width of the Gaussian kernel in rows, at least one.
     rows = np.arange(record.time.size)
     width = max(smooth / record.step, 1.0)
     flat = record.measured.reshape(-1, rows.size, 6)
     out = np.empty_like(flat)
+    # Interpolate over gaps, then smooth each stretch by itself.
     for one, into in zip(flat, out, strict=True):
         for channel in range(6):
             whole = np.isfinite(one[:, channel])
@@ -418,6 +445,7 @@ def first_motion(record: Record, model: ShipModel, smooth: float = 4.0) -> Motio
             for part in record.stretches if whole.any() else ():
                 into[part, channel] = gaussian_filter(into[part, channel], width, ends="held")
     x, y, psi, u, v, r = np.moveaxis(out.reshape(record.measured.shape), -1, 0)
+    # Velocities that were not measured come from positions and heading.
     if np.isnan(r).any():
         r = rate_of(psi, record)
     if np.isnan(u).any() or np.isnan(v).any():

@@ -90,6 +90,7 @@ class ShipModel:
     @property
     def mass_matrix(self) -> np.ndarray:
         """Mass and moment of inertia with added mass, (3, 3) array. [kg, kg, kg.m2]"""
+        # Inverse of the inverse mass matrix, with surge decoupled from sway and yaw.
         i11, i22, i26, i62, i66 = self.parts["hull"].inverse_mass
         return np.linalg.inv(np.array([[i11, 0.0, 0.0], [0.0, i22, i26], [0.0, i62, i66]]))
 
@@ -103,6 +104,7 @@ class ShipModel:
     @property
     def uncertainties(self) -> dict[str, float]:
         """Standard deviation of every number that is not known for sure: by its tolerance, and by the form's."""
+        # Independent errors of parameters and of form add up as squares.
         found = dict(self.tolerances)
         for path, size in self.form_sizes.items() if self.form_scale else ():
             found[path] = float(np.hypot(found.get(path, 0.0), self.form_scale * size))
@@ -186,6 +188,7 @@ class ShipModel:
         -------
         ShipModel
         """
+        # Collect the values of each part, so that each is replaced once.
         changes = {}
         for path, value in values.items():
             part, name = self._where(path)

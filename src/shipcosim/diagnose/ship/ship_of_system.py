@@ -39,6 +39,7 @@ def ship_model_of(system: System) -> ShipModel:
     ship = _vessel(system)
     if problems := list(_left_out(system, ship)):
         raise ShipcosimError(problems)
+    # Parameter sets of the hull, the wind, and all components that load the ship.
     parts = {"hull": _values(ship, HullParameters), "wind": _values(ship, WindParameters)}
     third_party = {}
     for name in _loading(system, ship.name):
@@ -46,12 +47,14 @@ def ship_model_of(system: System) -> ShipModel:
         if kind is None:
             third_party[name] = third_party_fmu_of(system, name, ship.name)
         parts[name] = _values(system.components[name], kind) if kind else part_of(third_party[name])
+    # Third-party FMUs need inputs that a log can feed.
     if problems := list(
         filter(
             None, (problem_of(system, name, ship.name, one) for name, one in third_party.items())
         )
     ):
         raise ShipcosimError(problems)
+    # Surroundings, slipstream neighbours and neutral deviations of form.
     ours = [name for name in parts if isinstance(parts[name], OWN_THRUSTERS)]
     water = water_of(parts["hull"].length)
     neighbours = neighbours_of(system, parts)
@@ -80,6 +83,7 @@ def _vessel(system: System) -> Component:
 
 def _loading(system: System, ship: str) -> list[str]:
     """Components that put a load on the ship."""
+    # Sources of connections into the load inputs of the ship.
     sources = {
         c.source[0]
         for c in system.connections

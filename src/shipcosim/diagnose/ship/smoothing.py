@@ -46,6 +46,7 @@ class Kernel:
 
     def clear_of(self, bad: np.ndarray) -> np.ndarray:
         """Rows as far from bad ones, and from both ends, as the kernel reaches."""
+        # Rows outside the log count as bad; a row is clear if no bad row is within reach.
         ends = np.pad(bad, self.reach, constant_values=True)
         return np.convolve(ends, np.ones(2 * self.reach + 1), "valid") < 0.5
 
@@ -68,6 +69,7 @@ def unsmoothed(record: Record, kernel: Kernel) -> tuple[Motion, np.ndarray]:
     -------
     tuple of Motion, (n,) bool array
     """
+    # Fill short gaps by interpolation, and mark long ones.
     rows = np.arange(record.time.size)
     columns = []
     bad = np.zeros(record.time.size, bool)
@@ -84,9 +86,11 @@ def unsmoothed(record: Record, kernel: Kernel) -> tuple[Motion, np.ndarray]:
             bad |= ~whole & long
             series = np.interp(rows, rows[whole], series[whole])
         columns.append(series)
+    # At the ends of stretches the kernel mixes rows that do not follow each other.
     for part in record.stretches[:-1]:
         bad[max(part.stop - 2 * kernel.reach, 0) : part.stop + 2 * kernel.reach] = True
     x, y, psi, u, v, r = columns
+    # Velocities that were not measured, from smoothed positions and heading.
     if not is_measured(record, 3) or not is_measured(record, 4):
         u, v = to_body(kernel.smooth(psi), kernel.rate(x), kernel.rate(y))
     if not is_measured(record, 5):

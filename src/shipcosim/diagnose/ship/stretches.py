@@ -42,10 +42,12 @@ def in_stretches(log: xarray.Dataset, length: float) -> xarray.Dataset:
     xarray.Dataset
         Itself where it is not long.
     """
+    # Rows that average to the largest number allowed. A shorter log is used as it is.
     time = log["time"].values
     most = MOST_ROWS * rows_averaged(length, time[1] - time[0])
     if time.size <= most:
         return log
+    # Evenly spread parts of equal length, among rows with any value.
     rows = np.flatnonzero(
         np.any([np.isfinite(channel.values) for channel in log.data_vars.values()], axis=0)
     )
@@ -53,6 +55,7 @@ def in_stretches(log: xarray.Dataset, length: float) -> xarray.Dataset:
     if rows.size > most:
         first = np.linspace(0, rows.size - part, STRETCHES).round().astype(int)
         rows = rows[(first[:, None] + np.arange(part)).ravel()]
+    # Part them at long holes, and leave out what is too short.
     ends = np.flatnonzero(np.diff(rows, append=np.inf) > _SHORT * part)
     begins = np.concatenate([[0], ends[:-1] + 1])
     pairs = [(a, b) for a, b in zip(begins, ends, strict=True) if b - a >= _SHORT * part]
@@ -62,5 +65,6 @@ def in_stretches(log: xarray.Dataset, length: float) -> xarray.Dataset:
 
 def stretches_of(time: np.ndarray) -> list[slice]:
     """Rows that follow each other at even times, in order."""
+    # A stretch ends where the step is longer than the usual one.
     ends = np.flatnonzero(np.diff(time, append=np.inf) > 1.5 * (time[1] - time[0])) + 1
     return [slice(int(a), int(b)) for a, b in zip([0, *ends[:-1]], ends, strict=True)]

@@ -38,8 +38,11 @@ class QuadraticThrust(NamedTuple):
 
     def loads(self, rpm: Arithmetic, azimuth: Arithmetic) -> tuple[Load, Load, Load]:
         """Loads on the ship [N, N, N.m], and their derivatives by speed [rpm] and direction [rad]."""
+        # Unit vectors of the load along the thrust and across it, with their moments x Fy - y Fx.
         c = np.cos(self.axis + azimuth)
         s = np.sin(self.axis + azimuth)
+        # Quadratic law T = c n |n|, with the coefficient of
+        # the direction of rotation, and its slope 2 c |n|.
         share = np.where(rpm >= 0.0, self.ahead, self.astern)
         along = (c, s, self.x * s - self.y * c)
         across = (-s, c, self.x * c + self.y * s)
@@ -105,26 +108,33 @@ class Surrogate:
         tuple of three arrays
             X, Y, N. [N, N, N.m]
         """
+        # Co-simulated loads and slopes at these times.
         about, rest = self._at(time)
+        # Offsets are errors of the log: correct the inputs that were given.
         told = {
             name: given[name] + sign * getattr(part, off)
             for name, off, sign in _offsets(given, part)
         }
         given = {**given, **told}
+        # Linear expansion about the inputs and parameters of the co-simulation.
         found = list(rest[0])
         off = [given[name] - value for name, value in zip(self.about, about, strict=True)]
         off += [getattr(part, name) - value for name, value in self.nominal.items()]
         for deviation, slopes in zip(off, rest[1:], strict=True):
             found = [load + slope * deviation for load, slope in zip(found, slopes, strict=True)]
+        # The quadratic thrust law holds for large changes of speed and direction.
         if "rpm" in self.about:
             ideal = self.thrust.loads(given["rpm"], given["azimuth"])[0]
             found = [load + more for load, more in zip(found, ideal, strict=True)]
+        # A loss of thrust scales the whole load.
         kept = 1.0 - getattr(part, "thrust_loss", 0.0)
         surge, sway, yaw = found
         return kept * surge, kept * sway, kept * yaw
 
     def _at(self, time: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
         """`about` and `rest` at some times."""
+        # Interpolate linearly between the times of the
+        # co-simulation, and keep the result for the next call.
         asked = np.asarray(time, float).tobytes()
         found = self.met.get(asked)
         if found is None:

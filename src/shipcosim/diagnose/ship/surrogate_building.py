@@ -64,6 +64,7 @@ def with_surrogates(model: ShipModel, record: Record, motion: Motion) -> ShipMod
     """
     if not model.third_party:
         return model
+    # Build surrogates only where there is none for this log and these inputs.
     units = {name: drives_of(*pair) for name, pair in record.units.items()}
     new = {
         name: one
@@ -74,6 +75,7 @@ def with_surrogates(model: ShipModel, record: Record, motion: Motion) -> ShipMod
     third_party = model.third_party | {
         name: replace(new[name], surrogate=one) for name, one in surrogates.items()
     }
+    # Largest speed and its tolerance are known only after the co-simulation.
     parts = dict(model.parts)
     tolerances = dict(model.tolerances)
     for name, one in third_party.items():
@@ -85,6 +87,8 @@ def with_surrogates(model: ShipModel, record: Record, motion: Motion) -> ShipMod
 
 def _fits(surrogate: Surrogate, record: Record, units: Mapping[str, np.ndarray]) -> bool:
     """True if a surrogate was built for these times and similar inputs."""
+    # The record must lie in the times of the surrogate, and its
+    # drives must differ little from those it was built with.
     inside = surrogate.rows[0] <= record.time[0] and record.time[-1] <= surrogate.rows[-1] + 1e-6
     clock = without_holes(surrogate.rows, record.time)
     near = {
@@ -121,9 +125,11 @@ def surrogates_of(
     -------
     dict of str to Surrogate
     """
+    # Inputs of each FMU: the motion in still water, and the drives of its thruster.
     moved = dict(zip(MOTION, (*motion, motion.u, motion.v), strict=True))
     given = {name: {**moved, **units.get(name, {})} for name in third_party}
     runs = [run for name, one in third_party.items() for run in _runs(name, one, given[name])]
+    # Time grid of the co-simulation; holes of the log are closed.
     clock = without_holes(time, time)
     fine = _fine(
         clock, len(runs), max((one.step or 0.0 for one in third_party.values()), default=0.0)
@@ -132,6 +138,7 @@ def surrogates_of(
         name: {q: np.interp(fine, clock, values) for q, values in each.items()}
         for name, each in given.items()
     }
+    # Run all copies in one co-simulation, and form the derivatives of each FMU from its copies.
     table = _simulated(runs, third_party, fed, fine)
     return {
         name: _surrogate(one, [run for run in runs if run.of == name], table, fine, fed[name], time)
@@ -151,6 +158,7 @@ class _Run(NamedTuple):
 
 def _runs(name: str, one: ThirdPartyFmu, given: Mapping[str, np.ndarray]) -> Iterator[_Run]:
     """All copies of an FMU: as it is, and with each of its inputs and parameters changed."""
+    # One copy as it is, then one for each input and parameter with a small change.
     yield _Run(name, name)
     for quantity in dict.fromkeys(link.quantity for link in one.links):
         by = _CHANGE.get(quantity) or _CHANGE_OF_DRIVE * max(np.abs(given[quantity]).max(), 1.0)
@@ -162,6 +170,8 @@ def _runs(name: str, one: ThirdPartyFmu, given: Mapping[str, np.ndarray]) -> Ite
 
 def _fine(time: np.ndarray, runs: int, step: float) -> np.ndarray:
     """Times of the run: a quarter of the rows' step or the system's own, coarser where there are many copies."""
+    # Step: a quarter of a row, not below the system's, and
+    # coarser if all copies together take too many steps.
     row = time[1] - time[0]
     span = time[-1] - time[0]
     wanted = max(0.25 * row, step, min(row, runs * span / _MOST_STEPS))
@@ -176,12 +186,14 @@ def _simulated(
     fine: np.ndarray,
 ) -> xarray.Dataset:
     """Table of a co-simulation of all copies, settled beforehand; rows are those of the times and one more."""
+    # Time before the log in which the FMUs settle at its first inputs.
     h = fine[1] - fine[0]
     lead = int(np.ceil(_LEAD / h))
     components = {}
     connections = []
     inputs = {}
     columns = {}
+    # Each copy gets the parameters and connections of the FMU, with its own change.
     for run in runs:
         one = third_party[run.of]
         start = dict(one.component.start)
@@ -189,6 +201,7 @@ def _simulated(
             variable = one.parameters[run.number]
             start[variable] = number_of(one.component, variable) + run.by
         components[run.name] = replace(one.component, name=run.name, start=start, step_size=None)
+        # The change of an input is an offset of its connection.
         for link in one.links:
             place = f"{run.of} {link.quantity}"
             off = link.factor * run.by if link.quantity == run.quantity else 0.0
@@ -199,6 +212,7 @@ def _simulated(
             columns[place] = np.concatenate(
                 [np.full(lead, fed[run.of][link.quantity][0]), fed[run.of][link.quantity]]
             )
+    # Input table: the first value during settling, then the log.
     clock = h * np.arange(lead + fine.size + 1)
     table = make_table(
         clock, [(name, np.append(values, values[-1]), "", "") for name, values in columns.items()]
@@ -219,6 +233,7 @@ def _surrogate(
     rows: np.ndarray,
 ) -> Surrogate:
     """The surrogate of a third-party FMU from the runs of its copies."""
+    # Finite differences: load of the changed copy less that of the unchanged one, over the change.
     base, *others = (_on_ship(one, run.name, table) for run in runs)
     quantities = [run.quantity for run in runs if run.quantity]
     nominal = {n: number_of(one.component, v) for n, v in one.parameters.items()}
@@ -228,11 +243,13 @@ def _surrogate(
     about = {q: fed[q] for q in quantities}
     thrust = QuadraticThrust()
     most = 1.0
+    # Separate the quadratic thrust law, and its slopes, from load and derivatives.
     if "rpm" in about:
         top = next(
             one.component.variables[x.variable].maximum for x in one.links if x.quantity == "rpm"
         )
         factor = next(link.factor for link in one.links if link.quantity == "rpm")
+        # Largest speed of the FMU's own bounds, if these are plausible, else of the log.
         logged = float(max(np.abs(fed["rpm"]).max(), 1.0))
         most = max(abs(top / factor), logged) if top and np.isfinite(top) and top < 1e6 else logged
         thrust = fitted_thrust(base, fed["rpm"], fed["azimuth"], "azimuth" in about)
@@ -271,19 +288,26 @@ def fitted_thrust(
     QuadraticThrust
         Without thrust where the loads do not go with the squared speed.
     """
+    # Regressor n |n|. Without any speed there is no law.
     square = rpm * np.abs(rpm)
     scale = square @ square
     if scale == 0.0:
         return QuadraticThrust()
+    # A fixed thruster's axis is the direction of its
+    # mean force; a turning one's follows the azimuth.
     axis = 0.0 if turns else float(np.arctan2(load[1] @ square, load[0] @ square))
     along = np.cos(axis + azimuth) * load[0] + np.sin(axis + azimuth) * load[1]
+    # Least-squares coefficient of the force along the axis,
+    # then for each sense of rotation with enough data.
     both = along @ square / scale
     ways = [square * where for where in (rpm > 0.0, rpm < 0.0)]
     ahead, astern = (
         max(along @ way / (way @ way), 0.0) if way @ way > 0.01 * scale else both for way in ways
     )
+    # A law with negative coefficients is no propeller's.
     if both <= 0.0 or min(ahead, astern) <= 0.0:
         return QuadraticThrust()
+    # Lever arm by least squares of N = x Y - y X.
     levers = np.stack([load[1], -load[0]], axis=-1)
     x, y = np.linalg.lstsq(levers, load[2], rcond=1e-6)[0]
     return QuadraticThrust(float(ahead), float(astern), axis, float(x), float(y))

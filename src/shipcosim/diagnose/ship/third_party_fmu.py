@@ -107,6 +107,7 @@ def third_party_fmu_of(system: System, name: str, ship: str) -> ThirdPartyFmu:
         Without links where nothing that a log has feeds it; `problem_of` says so.
     """
     component = system.components[name]
+    # Connections into each input of the FMU.
     into = {}
     for connection in system.connections:
         if connection.target[0] == name:
@@ -115,6 +116,8 @@ def third_party_fmu_of(system: System, name: str, ship: str) -> ThirdPartyFmu:
     idle = []
     unclear = []
     drives = {kind: [] for kind in DRIVES}
+    # Sort the inputs: fed by the motion of the ship, by a
+    # drive of a thruster, or by nothing that a log has.
     for variable, feeding in into.items():
         if all(
             c.source[0] == ship and c.source[1] in MOTION and c.mapping is None for c in feeding
@@ -124,14 +127,18 @@ def third_party_fmu_of(system: System, name: str, ship: str) -> ThirdPartyFmu:
             drives[kind].append(feeding[0])
         else:
             idle.append(variable)
+    # With a speed the FMU needs no commanded thrust, which keeps its start value.
     if drives["rpm"]:
         idle += [c.target[1] for c in drives.pop("thrust")]
+    # Of several candidates for a drive, the one that is
+    # named for this thruster; else it is unclear which.
     for kind, candidates in drives.items():
         named = [c for c in candidates if c.source[1] == f"{name}_{kind}"] or candidates
         one_source = len({c.source for c in named}) == 1
         links += [_drive(system, kind, c) for c in named if one_source]
         unclear += [c.target[1] for c in named if not one_source]
         idle += [c.target[1] for c in candidates if c not in named]
+    # Connections from the FMU's outputs to the load on the ship.
     loads = tuple(
         (c.target[1][4], c.source[1], c.factor, c.offset)
         for c in system.connections
@@ -147,6 +154,7 @@ def _kind(system: System, connection: Connection) -> str | None:
     """Which drive an input would be, by the unit of what feeds it, or by its name where there is none."""
     source, given = connection.source
     label = given if source is None else connection.target[1]
+    # The unit decides, and the name must agree with it. Without a unit only a speed is recognised.
     unit = _unit(system, connection)
     named = next((kind for kind in DRIVES if label.endswith(kind)), None)
     if unit in (None, "", "1"):
@@ -166,6 +174,8 @@ def _unit(system: System, connection: Connection) -> str | None:
 def _drive(system: System, kind: str, connection: Connection) -> Link:
     """The link from a log to an input, through the system where one of its inputs feeds it."""
     unit = _unit(system, connection)
+    # Convert from the unit of the log to that of the input,
+    # then apply the connection's own factor and offset.
     per, offset = (1.0, 0.0) if unit in (None, "", "1") else conversion(DRIVES[kind], unit)
     if connection.source[0] is not None:
         return Link(kind, connection.target[1], per, offset)

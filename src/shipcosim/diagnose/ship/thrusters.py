@@ -56,6 +56,8 @@ def dp_thruster_of(model: ShipModel, name: str) -> DpThruster:
     DpThruster
     """
     unit = model.parts[name]
+    # Third-party thrusters by the fitted quadratic law. Its
+    # coefficients are per rpm^2, those here per (rev/s)^2.
     if name in model.third_party:
         surrogate = model.third_party[name].built_surrogate
         pointed = "azimuth" in model.drives(name)
@@ -64,11 +66,13 @@ def dp_thruster_of(model: ShipModel, name: str) -> DpThruster:
         return DpThruster(
             b.x, b.y, b.axis, pointed, False, 3600.0 * b.ahead, 3600.0 * b.astern, most
         )
+    # Azimuth thrusters by their bollard coefficients; they turn unless the system fixes them.
     if isinstance(unit, AzimuthParameters):
         turns = name not in model.fixed
         axis = model.fixed.get(name, 0.0)
         (ahead, astern) = unit.bollard[:2]
         return DpThruster(unit.x, unit.y, axis, turns, turns, ahead, astern, unit.rpm_max / 60.0)
+    # Tunnel thrusters push to starboard.
     thrust = 3600.0 * unit.thrust_coefficient
     return DpThruster(unit.x, 0.0, 0.5 * np.pi, False, False, thrust, thrust, unit.rpm_max / 60.0)
 
@@ -109,9 +113,12 @@ def _loads_of(
 ) -> Load:
     unit = model.parts[name]
     (n, azimuth) = units[name]
+    # The state of a tunnel thruster follows from its logged speed alone.
     if isinstance(unit, TunnelParameters):
         *_, surge, sway, yaw = tunnel_loads(tunnel_replay(n, tunnel=unit), u_r, tunnel=unit)
         return surge, sway, yaw
+    # An azimuth thruster may stand in the slipstream of its
+    # neighbour, whose speed and direction are needed then.
     state = azimuth_given(n, azimuth, unit=unit)
     neighbour = model.neighbours.get(name)
     extra = {}
@@ -141,6 +148,7 @@ def neighbours_of(system: System, parts: Mapping[str, Any]) -> dict[str, str]:
         if c.target[1].startswith("neighbour_")
     }
     found = {}
+    # Wired neighbours first, then the nearest by the sum of both distances.
     for name in units:
         here = parts[name]
         others = [other for other in units if other != name]
@@ -179,6 +187,8 @@ def fixed_of(system: System, parts: Mapping[str, Any]) -> dict[str, float]:
     dict of str to float
         [rad]
     """
+    # A thruster turns if its direction is connected, or
+    # if nothing drives it, and its azimuth rate is not 0.
     fed = {connection.target for connection in system.connections}
     found = {}
     for name in [name for name, part in parts.items() if isinstance(part, AzimuthParameters)]:
@@ -220,6 +230,8 @@ def with_thrust(model: ShipModel, ratio: float, std: float) -> ShipModel:
     -------
     ShipModel
     """
+    # The loss follows from 1 - loss_new = ratio (1 - loss_old);
+    # tolerance and standard deviation add up as squares.
     paths = thrust_numbers(model)
     values = {path: 1.0 - ratio * (1.0 - model.get(path)) for path in paths}
     known = {path: float(np.hypot(model.tolerances.get(path, 0.0), std)) for path in paths}

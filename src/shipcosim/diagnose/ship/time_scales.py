@@ -81,10 +81,12 @@ def fastest_rate(ship: ShipModel, motion: Motion) -> float:
 
 def _rates(ship: ShipModel, motion: Motion) -> list[np.ndarray]:
     """Rate at which each velocity alone would decay, by row. [1/s]"""
+    # Deceleration at all speeds of the log, without any input.
     hull = ship.parts["hull"]
     speeds = np.stack([motion.u, motion.v, motion.r]).reshape(3, -1)
     speeds = speeds[:, np.isfinite(speeds).all(0)]
     here = _decelerations(speeds, hull)
+    # Decay rate: minus the slope of the deceleration, by a finite difference away from zero.
     rates = []
     for axis, small in enumerate((_SMALL, _SMALL, 2.0 * _SMALL / hull.length)):
         moved = speeds.copy()

@@ -25,6 +25,7 @@ def tolerances_of(system: System, parts: Mapping[str, Any], vessel: str) -> dict
     dict of str to float
         By ``place.name``, in its unit.
     """
+    # Tolerances of the parameter set have precedence over assumed ones.
     found = {}
     for part, values in parts.items():
         place = vessel if part in ("hull", "wind") else part
@@ -40,6 +41,7 @@ def tolerances_of(system: System, parts: Mapping[str, Any], vessel: str) -> dict
 
 def _assumed(values: Any, item: Field, value: float) -> float:
     """Tolerance of a number of which nobody says how well it is known: its own, or a share of its size."""
+    # Tolerances scale with the value relative to the default; a share is of the value itself.
     about = item.metadata
     if about["tolerance"]:
         return about["tolerance"] * (

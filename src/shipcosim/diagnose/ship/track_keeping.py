@@ -60,18 +60,23 @@ def kept_on_track(
     tuple of Motion, dict of str to tuple of two arrays
         Motion, and speed and direction by thruster; (m, n) arrays.
     """
+    # Inputs at the middle of each integration step, and the ships at the start of the track.
     h = record.step
     n = record.time.size
     parts = record.substeps(ships)
     inputs = [record.inputs(ships, (i + 0.5) / parts) for i in range(parts)]
     ship = Motion(*(np.zeros(count) + value[..., 0] for value in track))
+    # Share of each thruster in a load, for each row: thrusters turn along the log.
     shares = dp.shares({name: azimuth for name, (_, azimuth) in record.units.items()}, held or {})
     shares = np.moveaxis(shares, -3, 0)
+    # State of the controller: commanded forces and integral action.
     told = np.zeros((shares.shape[-2], count))
     integral = np.zeros((3, count))
     rates = Motion(*np.zeros((6, count)))
     rows = []
     units = {name: [] for name in ships.thrusters}
+    # At each row: controller, first-order response of
+    # the thrusters, then integration over the step.
     for k in range(n):
         rows.append(ship)
         load, integral = dp.load(ship, Motion(*(value[..., k] for value in track)), integral)
@@ -88,12 +93,15 @@ def kept_on_track(
                 ship = ship._replace(
                     u=ship.u + jolts[k][0], v=ship.v + jolts[k][1], r=ship.r + jolts[k][2]
                 )
+            # Limit the velocity, so that a ship out of control stays finite.
             ship = dp.bounded(ship)
+            # At the end of a stretch start anew on the track, as the next row is much later.
             if k < n - 1 and record.is_last[k]:
                 ship = Motion(*(np.zeros(count) + value[..., k + 1] for value in track))
                 told = 0.0 * told
                 integral = 0.0 * integral
                 rates = Motion(*np.zeros((6, count)))
+    # Stack the rows into series, of the motion and of each thruster.
     motion = Motion(*(np.stack(series, axis=-1) for series in zip(*rows, strict=True)))
     series = {}
     for name, pairs in units.items():
@@ -124,6 +132,7 @@ def _at(inputs, k, units):
 
 def _moved(ship, last, inputs, model, h, dp):
     """The ships a step later by the rates in its middle, where those of the last step lead; and the rates."""
+    # Midpoint rule, where the state at the middle is predicted with the rates of the last step.
     middle = Motion(*euler(ship, last, 0.5 * h))
     rates = motion_rates(dp.bounded(middle), inputs, model)
     return Motion(*euler(ship, rates, h)), rates
@@ -144,12 +153,15 @@ class DpController:
 
     def __init__(self, model: ShipModel, h: float, fixed: Collection[str] = ()) -> None:
         hull = model.parts["hull"]
+        # Thrusters as the controller knows them.
         self.thrusters = {name: dp_thruster_of(model, name) for name in model.thrusters}
         self.h = h
         self.model = model
         self.fixed = fixed
+        # Bandwidth scales with the ship by Froude's law, and so does the delay of the thrusters.
         self.frequency = _FREQUENCY * np.sqrt(9.81 / hull.length) / 3.0
         self.delay = _ANSWER * np.sqrt(hull.length / 33.9)
+        # Diagonal mass with added mass, and the limit of the load: an acceleration of 0.05 m/s2.
         self.mass = np.array(
             [hull.mass + hull.A11, hull.mass + hull.A22, hull.inertia_yaw + hull.A66]
         )
@@ -167,12 +179,15 @@ class DpController:
         self, ship: Motion, want: Motion, integral: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         """Load that brings the ships back to the track, in their body frames; and the integral action."""
+        # Position error in body axes, and velocity error.
         c = np.cos(ship.psi)
         s = np.sin(ship.psi)
         dx = want.x - ship.x
         dy = want.y - ship.y
         error = np.stack([c * dx + s * dy, c * dy - s * dx, want.psi - ship.psi])
         rate = np.stack([want.u - ship.u, want.v - ship.v, want.r - ship.r])
+        # PID law tau = M (w^2 e + 2 zeta w e_dot +
+        # integral), limited to what a ship can be asked for.
         w = self.frequency
         integral = integral + self.h * _INTEGRAL * w * w * w * error
         wanted = self.mass[:, None] * (w * w * error + 2.0 * _DAMPING * w * rate + integral)
@@ -199,18 +214,24 @@ class DpController:
         (..., k, 3) array
             For k forces, in the order of the thrusters.
         """
+        # Columns of the allocation matrix: unit force
+        # along each thruster and, if it turns, across it.
         columns = []
         eases = []
         for name, unit in self.thrusters.items():
             angle = unit.axis + (azimuths[name] if unit.pointed else 0.0 * azimuths[name])
+            # Thrusters that are held or without thrust take no
+            # part; turning is less readily used than speed.
             alone = held.get(name, False) if unit.ahead else True
             for i in range(self._forces(name)):
                 c = np.cos(angle + 0.5 * np.pi * i)
                 s = np.sin(angle + 0.5 * np.pi * i)
                 columns.append(np.stack([c, s, unit.x * s - unit.y * c], axis=-1))
                 eases.append(np.where(alone, 0.0, _ACROSS if i else 1.0)[..., None] + np.zeros(3))
+        # Yaw moments are scaled to forces by a quarter of the length.
         scale = np.array([1.0, 1.0, 4.0 / self.model.length])
         ease = np.stack(np.broadcast_arrays(*eases), axis=-2)
+        # Weighted pseudo-inverse of the allocation matrix, with a small damping term.
         Bt = ease * scale * np.stack(np.broadcast_arrays(*columns), axis=-2)
         return ease * scale * (Bt @ np.linalg.inv(np.swapaxes(Bt, -1, -2) @ Bt + 1e-2 * np.eye(3)))
 
@@ -246,6 +267,7 @@ class DpController:
             if not unit.ahead:
                 found[name] = n + 0.0 * along, azimuth + 0.0 * along
                 continue
+            # Logged thrust plus the controller's, and a turn towards the force across.
             size = self.force(name, n) + along
             turn = 0.0
             if unit.turns:
@@ -267,6 +289,7 @@ class DpController:
     def speed(self, name: str, force: Arithmetic) -> np.ndarray:
         """Speed at which a thruster has that thrust at the bollard. [rev/s]"""
         unit = self.thrusters[name]
+        # Inverse of the quadratic law.
         return np.sign(force) * np.sqrt(
             np.abs(force) / np.where(force >= 0, unit.ahead, unit.astern)
         )

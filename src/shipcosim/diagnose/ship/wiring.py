@@ -68,11 +68,13 @@ def wiring_of(system: System, vessel: str, thrusters: Sequence[str]) -> Wiring |
     loads = {}
     drives = {}
     odd = {}
+    # Load of each thruster: its matrix of connections should be the identity.
     for name in thrusters:
         matrix = _matrix(system, vessel, name)
         if not np.allclose(matrix, np.eye(3), rtol=1e-9, atol=1e-12):
             loads[name] = matrix
             odd[name] = f"its load reaches {vessel} as {_told(matrix)}"
+        # Drive of each thruster: it should be its own logged speed and direction.
         drives[name] = _driven(system, name, thrusters)
         for kind, (source, factor) in drives[name].items():
             if source != name or abs(factor - 1.0) > 1e-9:
@@ -101,6 +103,7 @@ def _matrix(system: System, vessel: str, name: str) -> np.ndarray:
     matrix = np.zeros((3, 3))
     for connection in system.connections:
         (source, output) = connection.source
+        # Factors of the connections between load outputs and load inputs.
         (target, slot) = connection.target
         if (
             source == name
@@ -139,6 +142,7 @@ def _driven(system: System, name: str, thrusters: Sequence[str]) -> dict[str, tu
             and kind in _DRIVES
             and other in thrusters
         ):
+            # The unit conversion is no oddity: divide it out of the factor.
             unit = system.components[name].variables[variable].unit
             plain, _ = conversion(system.inputs[given].unit, unit)
             found[kind] = other, connection.factor / plain

@@ -70,6 +70,7 @@ class _Side:
 
     def _columns(self, first, last):
         """Columns of some segments that are near each other, from a row on."""
+        # Rows from the start of the first segment until the filter has forgotten the last one.
         time = self.motion.time
         axes = self.rest.shape[1]
         begin = max(int(np.searchsorted(time, first.min(), side="right")) - 1, 0)
@@ -77,8 +78,10 @@ class _Side:
         rows = slice(
             begin, int(np.searchsorted(self.forgotten, self.forgotten[over] + _FORGOTTEN)) + 1
         )
+        # Way made inside each segment: a rate wrong by 1 adds all of it to the level.
         inner = (time[rows, None] > first) & (time[rows, None] <= last)
         ways = np.cumsum(self.steps[rows, :, None] * inner[:, None, :], axis=0)
+        # Whiten with the part of the filter that belongs to these rows.
         whitener = replace(
             self.whitener, gains=self.whitener.gains[rows], scale=self.whitener.scale[rows]
         )
@@ -86,6 +89,8 @@ class _Side:
 
     def match(self, columns):
         """Match of columns with the rest, beside the scale of the whole log, (k,)."""
+        # Project out a scale error of the velocity in the
+        # whole log, by the regularised least-squares solution.
         scale = self.scale.ravel()
         rest = self.rest.ravel()
         shared = columns.with_series(scale) / self._scale_energy()
@@ -125,6 +130,7 @@ def wrong_clock(log: dict) -> list[Finding]:
     log : dict of (n,) arrays
         `time` [s] and roles in their units, NaN where not to be used; headings without jumps; labels put right.
     """
+    # Positions and headings, each where the motion stands clear of the noise.
     sides = [
         _side(motion)
         for motion in (position_motion(log), heading_motion(log))
@@ -133,9 +139,12 @@ def wrong_clock(log: dict) -> list[Finding]:
     sides = [side for side in sides if is_clear(side.motion, side.whitener)]
     if not sides:
         return []
+    # Divide the log into blocks, with one whitened regressor
+    # for each. A run of blocks is the sum of theirs.
     edges = _block_edges(sides)
     blocks = [side.column(edges[:-1], edges[1:]) for side in sides]
     gram = sum(side.gram(columns) for side, columns in zip(sides, blocks, strict=True))
+    # Greedy search: find the segment with most evidence, subtract its effect, and repeat.
     segments = []
     for _ in range(MOST_SEGMENTS):
         segment = _best(sides, blocks, gram, edges)
@@ -143,8 +152,10 @@ def wrong_clock(log: dict) -> list[Finding]:
             break
         segments.append(segment)
         sides = [_explained(side, segment) for side in sides]
+    # Residuals that remain correlated mean a model error, against which no segment can be trusted.
     if max(whiteness(side.rest) for side in sides) > ROUGHEST:
         return []
+    # A segment needs both comparisons, or one of them and the rate of such a segment.
     sure = [s for s in segments if _is_said_by_both(s)]
     alike = [s for s in segments if s not in sure and _is_like(s, sure)]
     return _findings([*sure, *alike])
@@ -158,9 +169,13 @@ def _block_edges(sides):
 
 
 def _side(motion):
+    # Innovations of the level, clipped against outliers.
     whitener = filter_for(motion)[0]
     rest = np.clip(whitener(motion.level), -CLOCK_CLIP, CLOCK_CLIP)
+    # The way that a wrong clock adds, from the smoothed
+    # velocity: its noise would correlate with the level.
     way = motion.way(motion.slow(motion.velocity))
+    # A filter of gain K forgets a factor 1 - K in each row; the sum counts it in nats.
     forgotten = np.cumsum(-np.log(np.maximum(1.0 - whitener.gains, np.exp(-_FORGOTTEN))))
     steps = np.diff(way, axis=0, prepend=way[:1])
     return _Side(motion, whitener, rest, whitener(way), steps, whiteness(rest), forgotten)
@@ -168,6 +183,7 @@ def _side(motion):
 
 def _explained(side, segment):
     """The side without what the segment explains."""
+    # Least-squares estimate of the rate error, subtracted from the residuals.
     column = side.column([segment.first], [segment.last])
     value = side.match(column)[0] / max(side.energy(column)[0], 1e-9)
     return replace(side, rest=side.rest - value * column.dense().reshape(side.rest.shape))
@@ -175,14 +191,18 @@ def _explained(side, segment):
 
 def _best(sides, blocks, gram, edges):
     """The segment with most evidence, None where there is too little."""
+    # Evidence of all runs of blocks at once, from cumulated sums.
     count = len(edges) - 1
     match = np.sum([side.match(c) for side, c in zip(sides, blocks, strict=True)], axis=0)
     span = differences(np.arange(count + 1))
     nats, value, _ = _evidence(*sums_of_runs(match, gram))
+    # Exclude runs that are too short, too long for
+    # part of a log, or off by less than the tolerance.
     nats[
         (span < FEWEST_BLOCKS) | (span > LARGEST_SHARE * count) | (np.abs(value) < CLOCK_TOLERANCE)
     ] = -np.inf
     first, last = np.unravel_index(np.argmax(nats), nats.shape)
+    # Both ends were chosen among all edges: a Bonferroni cost of two logarithms of their number.
     cost = 2.0 * np.log(count)
     if not nats[first, last] - cost > CLOCK_GAIN:
         return None
@@ -196,6 +216,8 @@ def differences(values: np.ndarray) -> np.ndarray:
 
 def sums_of_runs(match: np.ndarray, gram: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Match and energy of all runs of blocks from an edge (row) to another (column)."""
+    # With the double cumulated sum G of the Gram matrix, the
+    # energy of blocks i to j is G_ii + G_jj - G_ij - G_ji.
     grams = np.pad(np.cumsum(np.cumsum(gram, axis=0), axis=1), ((1, 0), (1, 0)))
     own = np.diag(grams)
     return (
@@ -206,6 +228,7 @@ def sums_of_runs(match: np.ndarray, gram: np.ndarray) -> tuple[np.ndarray, np.nd
 
 def nats_of_rate(match: np.ndarray, energy: np.ndarray) -> np.ndarray:
     """Evidence for a rate other than 1, from the match of a column with the data and its energy."""
+    # Bayes factor of a normal prior of width CLOCK_SLAB against a rate of exactly 1.
     precision = np.maximum(energy, 0.0) + CLOCK_SLAB**-2
     return 0.5 * match**2 / precision - 0.5 * np.log(precision * CLOCK_SLAB**2)
 
@@ -223,6 +246,7 @@ def _evidence(match, energy):
 def _refined(sides, first, last, cost):
     """The segment with its ends where the evidence puts them."""
     time = sides[0].motion.time
+    # Coarse then fine search: move one end at a time to the place of most evidence.
     for reach, stride in ((3 * CLOCK_REACH, 6), (CLOCK_REACH // 2, 1)):
         for end in (0, 1):
             near = np.abs(np.searchsorted(time, (first, last)[end]) - np.arange(len(time))) <= reach
@@ -236,8 +260,10 @@ def _refined(sides, first, last, cost):
                 else (np.full_like(places, first), places)
             )
             nats = _evidence(*_joint(sides, firsts, lasts))[0]
+            # The coarse search takes the best place, the fine one the median of the posterior.
             place = float(places[np.argmax(nats)]) if stride > 1 else _middle(places, nats)
             first, last = (place, last) if end == 0 else (first, place)
+    # Final estimate from both comparisons jointly, and from each alone.
     nats, value, std = (float(x[0]) for x in _evidence(*_joint(sides, [first], [last])))
     apart = tuple(_alone(side, first, last) for side in sides)
     return _Segment(first, last, nats - cost, value, std, apart)
@@ -263,6 +289,7 @@ def _alone(side, first, last):
 
 def _is_said_by_both(segment):
     """Whether positions and headings both say so, by about the same rate: a single side can have a fault of its own."""
+    # Each comparison alone must show a clear part of the joint estimate.
     telling = [
         value / segment.value > 0.4 and abs(value) > 2.5 * std for value, std in segment.apart
     ]
@@ -285,6 +312,7 @@ def _agree(apart, rate):
 
 def _findings(segments):
     found = []
+    # Group segments of equal rate around the one with most evidence.
     while segments:
         lead = max(segments, key=lambda s: s.gain)
         same = [
@@ -293,9 +321,11 @@ def _findings(segments):
             if abs(s.value - lead.value) < 3.0 * np.hypot(s.std, lead.std) + 0.02
         ]
         segments = [s for s in segments if s not in same]
+        # Common rate: mean weighted by inverse variances.
         weight = np.array([s.std**-2 for s in same])
         rate = 1.0 + float(weight @ [s.value for s in same] / weight.sum())
         spans = tuple(sorted((s.first, s.last) for s in same))
+        # Logistic function of the evidence; the rate has a model error besides its statistical one.
         probability = float(0.98 / (1.0 + np.exp(-lead.gain)))
         std = float(np.hypot(weight.sum() ** -0.5, RATE_UNSURE * abs(rate - 1.0)))
         rates = {"rate": ParameterEstimate(rate, std, "1")}

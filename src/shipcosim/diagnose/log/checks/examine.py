@@ -32,10 +32,13 @@ def examine(log: xarray.Dataset) -> list[Finding]:
     log : xarray.Dataset
         As from `read_log`.
     """
+    # Rows that are no measurement come first: they would spoil all comparisons between channels.
     logged = _arrays(log)
     useless = [*wraps(logged), *lifeless(logged)]
     used = without_findings(logged, useless)
+    # Mistakes of the whole log, judged jointly by all relations.
     throughout = _unless_in_part(misread(used, _stated_units(log)), used, _stated_units(log))
+    # Gaps and faults of parts are looked for in the log with these corrected.
     table = read_anew(used, throughout)
     start = logged["time"][0]
     empty = {
@@ -44,6 +47,7 @@ def examine(log: xarray.Dataset) -> list[Finding]:
     found = gaps(table | empty)
     if not any(finding.alternatives for finding in throughout):
         found += _in_parts(_with_even_heading(without_findings(table, found)), _stated_units(log))
+    # Segments were found in corrected time; give them in the log's own.
     rate = rate_of(throughout)
     found = [
         replace(f, segments=tuple(_as_logged(s, start, rate) for s in f.segments)) for f in found
@@ -53,6 +57,7 @@ def examine(log: xarray.Dataset) -> list[Finding]:
 
 def _unless_in_part(throughout, table, stated):
     """Mistakes throughout a log; none where wrong labels in parts of it explain more, and all of it."""
+    # Labels wrong in parts are the rival: each segment costs some evidence.
     if throughout:
         labels, right = mislabelled(_with_even_heading(table))
         more = labels and explained(right) > explained(table) + SEGMENT_COST * len(labels)
@@ -66,12 +71,16 @@ def _in_parts(table, stated):
 
     A label is wrong in a part of a log only where all channels agree throughout once it is put right.
     """
+    # A yaw rate that is too quiet is corrected first, since heading against rate is used below.
     quiet = silent_rate(table)
     table = undone(table, mislabel_in(quiet[0]), quiet[0].segments) if quiet else table
+    # Wrong labels in parts count only if the corrected log has no wrong label left.
     labels, right = mislabelled(table)
     if labels and not is_as_labelled(right, stated):
         labels = []
         right = table
+    # A wrong clock can look like a wrong label. Where both were found at
+    # one place, the label is dropped and the clock is estimated again.
     clock = wrong_clock(right)
     kept = [label for label in labels if not _is_the_clock(label, clock, table["time"])]
     if len(kept) < len(labels):
@@ -84,6 +93,7 @@ def _in_parts(table, stated):
 
 def _agreeing(clock):
     """Segments of a wrong clock; none where one lies in another, as they contradict each other."""
+    # Two segments that overlap by more than half of the shorter one contradict each other.
     segments = sorted(segment for finding in clock for segment in finding.segments)
     for (first, end), (start, later) in pairwise(segments):
         if min(end, later) - start > 0.5 * min(end - first, later - start):
@@ -111,6 +121,7 @@ def _is_the_clock(label, clock, time):
     """Whether a mislabel of a part of the log is where the clock is wrong even with the label put right."""
     if not label.segments or not clock:
         return False
+    # The label is explained by the clock where it overlaps it by more than half.
     part = inside(time, label.segments)
     wrong = inside(time, [s for finding in clock for s in finding.segments])
     return bool((part & wrong).sum() > 0.5 * part.sum())

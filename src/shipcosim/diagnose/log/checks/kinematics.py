@@ -88,6 +88,8 @@ def position_motion(log: dict) -> Motion | None:
     rows = complete_rows(log, roles)
     if len(rows) < 30:
         return None
+    # Turn the velocity from body to earth axes, and keep the
+    # share of each channel: a wrong label changes only its share.
     north, east, surge, sway, heading = (log[role][rows] for role in roles)
     cosine = np.cos(np.radians(heading))
     sine = np.sin(np.radians(heading))
@@ -125,12 +127,15 @@ def _motion(time, seen, velocity, parts):
 
 def after_gaps(time: np.ndarray, longest: float = LONGEST_BRIDGE) -> np.ndarray:
     """Rows before which more than so many usual steps are missing, the first row among them."""
+    # The first row counts as after a gap, since the time before it is minus infinity.
     steps = np.diff(time, prepend=-np.inf)
     return steps > longest * np.median(steps[1:])
 
 
 def _jumps(seen):
     """Rows at which a position leaps and stays there: another reference, rows lost, channels exchanged."""
+    # A leap differs from the median of its neighbours
+    # by more than the usual scatter and their range.
     change = np.diff(seen, axis=0, prepend=seen[:1])
     leap = np.zeros(len(seen), bool)
     for axis in range(seen.shape[1]):
@@ -156,6 +161,8 @@ class Filter:
 
     def __call__(self, levels: np.ndarray) -> np.ndarray:
         """Innovations of levels (n, ...) in units of their standard deviation; 0 where a row starts anew."""
+        # The level that the filter predicts follows a linear recursion.
+        # It is solved for all rows at once as a bidiagonal system.
         flat = levels.reshape(len(levels), -1)
         driven = np.vstack([flat[:1], self.gains[:-1, None] * flat[:-1]])
         before = np.append(
@@ -164,6 +171,7 @@ class Filter:
         innovations = flat - solve_tridiagonal(
             before, np.ones(len(flat)), np.zeros(len(flat)), driven
         )
+        # Normalised innovations; rows that start anew have none.
         white = innovations / (self.std * self.scale)[:, None]
         white[self.gains >= 1.0] = 0.0
         return white.reshape(levels.shape)
@@ -175,6 +183,7 @@ def filter_for(motion: Motion, levels: np.ndarray | None = None) -> list[Filter]
     The noise is taken from the calmer windows, so that a fault in a part of the log does not count as noise.
     """
     levels = motion.level[:, :, None] if levels is None else levels
+    # Score each noise ratio by the mean log-likelihood of its innovations in calm windows.
     drafts = filters(motion.time, motion.starts)
     stds = np.zeros((len(drafts), levels.shape[2]))
     scores = np.zeros((len(drafts), levels.shape[2]))
@@ -182,6 +191,7 @@ def filter_for(motion: Motion, levels: np.ndarray | None = None) -> list[Filter]
         known = draft.gains < 1.0
         stds[number], calm = _spreads(draft(levels)[known])
         scores[number] = -calm - np.mean(np.log(draft.scale[known]))
+    # The most likely ratio for each level.
     best = np.argmax(scores, axis=0)
     return [Filter(drafts[b].gains, drafts[b].scale, stds[b, k]) for k, b in enumerate(best)]
 
@@ -195,16 +205,21 @@ def filters(time: np.ndarray, starts: np.ndarray) -> list[Filter]:
     starts : (n,) array of bool
         Rows that cannot be compared with the one before.
     """
+    # Steps in units of the usual one: wander grows with time.
     steps = np.diff(time, prepend=time[0])
     steps = steps / np.median(steps[1:])
     ratios = np.array(RATIOS)
     variance = np.ones(len(RATIOS))
     gains = np.ones((len(steps), len(RATIOS)))
     scale = np.ones((len(steps), len(RATIOS)))
+    # Riccati recursion of the scalar Kalman filter, in units
+    # of the measurement noise, for all ratios at once.
     for row, (step, anew) in enumerate(zip(steps.tolist(), starts.tolist(), strict=True)):
         if row == 0 or anew:
             variance = np.ones(len(RATIOS))
             continue
+        # Innovation variance: prior variance, wander over the step, and
+        # measurement noise of 1. The posterior variance equals the gain.
         total = variance + ratios * step + 1.0
         variance = np.minimum(1.0 - 1.0 / total, 1.0 - 1e-9)
         gains[row], scale[row] = variance, total
@@ -213,11 +228,13 @@ def filters(time: np.ndarray, starts: np.ndarray) -> list[Filter]:
 
 def _spreads(white):
     """Standard deviation in calm windows, and mean of its logarithm over the calmer ones, of (n, a, k): two of (k,)."""
+    # Robust standard deviation (median absolute value) of each window.
     count = max(1, min(NOISE_WINDOWS, len(white) // 40))
     spreads = np.array(
         [1.4826 * np.median(np.abs(w), axis=(0, 1)) for w in np.array_split(white, count)]
     )
     spreads = np.sort(np.maximum(spreads, 1e-9), axis=0)
+    # Scale from a quantile of the windows, and mean logarithm over the calmer 60 %.
     return np.quantile(spreads, 0.4, axis=0), np.mean(
         np.log(spreads[: max(1, int(0.6 * count))]), axis=0
     )
@@ -231,6 +248,8 @@ def whiteness(white: np.ndarray) -> float:
 
 def _togetherness(white):
     tame = np.clip(white, -4.0, 4.0)  # a part may have few rows
+    # Integrated autocorrelation time: 1 + 2 times the sum
+    # of the correlations; correlated rows count less.
     lags = range(1, min(WHITENESS_LAGS + 1, len(white)))
     power = np.mean(tame**2) + 1e-12
     together = [np.mean(tame[lag:] * tame[:-lag]) / power for lag in lags]
@@ -243,7 +262,9 @@ def is_clear(motion: Motion, whitener: Filter, segment: Segment | None = None) -
     moving = whitener.gains < 1.0
     inner = slice(None) if segment is None else (time >= segment[0]) & (time <= segment[1])
     slow = motion.slow(motion.velocity)[inner]
+    # Noise of the velocity per unit of time, from gain and innovations of the filter.
     gain = np.median(whitener.gains[moving])
     std = whitener.std * np.median(whitener.scale[moving])
     wander = (gain * std) ** 2 / np.median(np.diff(time))
+    # A Gaussian kernel of width T leaves 1 / (2 sqrt(pi) T) of the density of white noise.
     return bool(np.mean(slow**2) > CLEAR_MOTION**2 * wander / (2.0 * np.sqrt(np.pi) * SLOW_MOTION))

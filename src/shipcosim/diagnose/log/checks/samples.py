@@ -59,13 +59,17 @@ def gaps(log: dict) -> list[Finding]:
         `time` [s], increasing, and roles in their units, as logged.
     """
     time = log["time"]
+    # Rows that are missing.
     found = [_finding(time, run) for run in _missing(log)]
+    # Rows in which the whole navigation is empty, held or interpolated; other channels may follow.
     everywhere = list(_flat_runs(log, tuple(role for role in NAVIGATION if role in log)))
     found += [_finding(time, _with_followers(log, run)) for run in everywhere]
+    # The same for single groups of channels, where the navigation as a whole is not lost.
     for group in GROUPS:
         for run in _flat_runs(log, tuple(role for role in group if role in log)):
             if not any(_overlap(run, known) for known in everywhere):
                 found.append(_finding(time, run))
+    # Leaps of the position, which lost rows leave when a logger closes the gap.
     found += [_finding(time, run) for run in _leaps(log)]
     return _joined(found)
 
@@ -79,11 +83,13 @@ def lifeless(log: dict) -> list[Finding]:
         As in `gaps`.
     """
     constant = [role for role in NAVIGATION if role in log and _is_constant(log[role])]
+    # Motion that other channels show: change of position, turning, and speed.
     moved = any(role in log and _changes(log[role]) for role in ("north", "east"))
     turned = "heading" in log and _changes(
         np.degrees(np.unwrap(np.radians(finite(log["heading"]))))
     )
     sailed = any(role in log and _changes(log[role]) for role in ("surge", "sway"))
+    # A channel should change if the one that is its integral or rate does.
     should = {
         "surge": moved,
         "sway": moved and turned,
@@ -115,6 +121,7 @@ def _changes(values):
 
 def noise_of(values: np.ndarray) -> float:
     """Standard deviation of white noise with the second differences of a channel."""
+    # The second difference of white noise has 6 times its variance.
     return float(np.sqrt(np.mean(np.diff(values, n=2) ** 2) / 6.0))
 
 
@@ -126,8 +133,10 @@ def _leaps(log):
     north, east, surge, sway = (log[role] for role in roles)
     steps = np.diff(log["time"])
     speed = np.hypot(surge, sway)
+    # Way made between rows, against the larger of both reported speeds times the step.
     went = np.hypot(np.diff(north), np.diff(east))
     told = np.maximum(speed[1:], speed[:-1]) * steps
+    # Usual scatter between both, but not below the resolution of the position.
     usual = np.nanquantile(np.abs(went - told), 0.9) if np.isfinite(went - told).any() else np.inf
     usual = max(
         usual, np.hypot(quantum(north), quantum(east))
@@ -142,6 +151,7 @@ def _leaps(log):
 def _missing(log):
     time = log["time"]
     steps = np.diff(time)
+    # A gap is a step of more than some rows, and longer than the shortest gap in time.
     lost = (steps > SHORTEST_GAP) & (steps > (FEWEST_GAP_ROWS + 0.5) * np.median(steps))
     every = tuple(role for role in log if role != "time")
     return [_Run(int(row), int(row) + 1, every, NO_ROWS) for row in np.flatnonzero(lost)]
@@ -176,13 +186,17 @@ def _flat_runs(log, roles):
         return
     time = log["time"]
     values = np.column_stack([log[role] for role in roles])
+    # Empty rows.
     for first, last in runs(np.all(np.isnan(values), axis=1)):
         if time[last - 1] - time[first] >= SHORTEST_GAP and last - first >= FEWEST_GAP_ROWS:
             yield _Run(first, last - 1, roles, NO_VALUES)
+    # Second differences below the channels' resolution mark straight
+    # or held values. A channel without values there does not count.
     bends = np.column_stack([_bend(log[role], role) for role in roles])
     limits = [_straight(log[role], role) for role in roles]
     straight = ((bends <= limits) | np.isinf(bends)).all(axis=1) & np.isfinite(bends).any(axis=1)
     least = max(FEWEST_GAP_ROWS, int(SHORTEST_GAP / np.median(np.diff(time))) - 2)
+    # Only runs longer than chance makes them, and long enough in time, are lost data.
     for first, last in _long_runs(straight | _same(values), least):
         kind = _kind(values[first:last])
         last = min(last + (kind == STRAIGHT), len(time) - 1)  # rows of the line, both ends included
@@ -199,6 +213,7 @@ def _kind(values):
 
 def _is_line(log, roles, first, last):
     """Whether each channel of the group is one straight line throughout, and not just at rest at zero."""
+    # Straight line between the inner ends of the run, against which each sample is compared.
     share = np.linspace(0.0, 1.0, last - first + 1)[1:-1]
     for role in roles:
         values = log[role][first : last + 1]
@@ -224,6 +239,7 @@ def _bend(values, role):
 
 def _straight(values, role):
     """Largest bend of a straight line after rounding: two of the channel's smallest steps."""
+    # Rounding bends a straight line by up to two of its smallest steps.
     bends = _bend(values, role)
     usual = np.median(finite(bends)) if np.isfinite(bends).any() else 0.0
     return 2.02 * quantum(values) + 1e-3 * usual
@@ -231,6 +247,7 @@ def _straight(values, role):
 
 def quantum(values: np.ndarray) -> float:
     """Resolution of a channel: the smallest step between its values that is no rounding error; 0 if it is fine."""
+    # Smallest step between levels. A channel in which most values differ has no visible resolution.
     levels = np.unique(finite(values))
     steps = np.diff(levels)
     steps = steps[steps > 1e-9 * (np.abs(levels).max(initial=0.0) + 1e-300)]
@@ -239,6 +256,7 @@ def quantum(values: np.ndarray) -> float:
 
 def runs(flags: np.ndarray) -> np.ndarray:
     """First and one past the last index of each run of true values: (k, 2)."""
+    # Edges of runs are where the flags change, with 0 before and after.
     edges = np.flatnonzero(np.diff(np.r_[0, np.asarray(flags, np.int8), 0]))
     return edges.reshape(-1, 2)
 
@@ -248,14 +266,18 @@ def _long_runs(flags, least):
 
     None where flags are what is usual, as in a channel of coarse resolution.
     """
+    # Short runs show how often flags follow each other by chance, in a geometric distribution.
     spans = runs(flags)
     lengths = np.diff(spans, axis=1)[:, 0]
     ordinary = lengths[lengths < least]
     others = len(flags) - lengths[lengths >= least].sum()
+    # If most rows are flagged, flags are ordinary for this channel.
     if others < FEWEST_OTHERS * len(flags) or ordinary.sum() > MOST_FLAGGED * others:
         return
+    # Chance that a flag follows a flag; the constants keep it defined without any short run.
     chance = ((ordinary - 1).sum() + 0.2) / (ordinary.sum() + 2.0)
     for (first, last), length in zip(spans, lengths, strict=True):
+        # Expected number of runs of this length by chance.
         if length >= least and len(flags) * chance ** (length - 1) < RUN_CHANCE:
             yield int(first), int(last)
 
@@ -264,6 +286,7 @@ def _with_followers(log, run):
     """The run, with the other channels too where these are empty, held or straight for the whole time."""
     others = [role for role in log if role not in (*run.channels, "time")]
     inner = slice(run.first, run.last + 1)
+    # The other channels join only if all of them are flat, and only those that change elsewhere.
     flat = [
         role
         for role in others
@@ -306,14 +329,17 @@ def wraps(log: dict) -> list[Finding]:
     full = np.where(
         np.abs(heading) <= fine, heading + 360.0, heading
     )  # 359.98 rounded is written as 0.0
+    # Try each number of samples between a row before and a row after the crossing of north.
     for between in range(1, min(LONGEST_WRAP, len(heading) - 2) + 1):
         crossing = np.zeros(len(heading) - between - 1, bool)
+        # 0 may stand for 360 at either end.
         for a, b in ((heading, heading), (full, heading), (heading, full)):
             crossing |= _long_way(
                 time, heading, a[: -between - 1], b[between + 1 :], 3.0 + 2.0 * fine, faster
             )
         for row in np.flatnonzero(crossing):
             bad[row + 1 : row + 1 + between] = True
+    # The same where the rows at the ends are missing.
     bad |= _round_south(log, faster)
     segments = tuple((float(time[first]), float(time[last - 1])) for first, last in runs(bad))
     note = "samples lie on the long way round between both sides of north"
@@ -331,17 +357,21 @@ def _long_way(time, heading, a, b, tolerance, faster):
     """
     n = len(a)
     between = len(heading) - len(a) - 1
+    # Both ends are near each other across north, but far
+    # apart as numbers, farther than the craft can turn.
     crossing = (
         (np.abs(b - a) > 180.0)
         & (np.abs(wrap_series(b - a)) < 45.0)
         & (np.abs(b - a) > faster * (between + 1))
     )
+    # The craft must not be turning as fast as this right before and after it.
     turning = np.nan_to_num(np.abs(wrap_series(np.diff(heading))))
     beside = np.minimum(
         np.r_[0.0, turning[: n - 1]], np.r_[turning[between + 1 :], 0.0]
     )  # before a, after b
     crossing &= np.abs(b - a) > 2.0 * beside * (between + 1)
     some = np.zeros(n, bool)
+    # Every sample between them must lie on the straight line of the numbers.
     for k in range(1, between + 1):
         share = (time[k : n + k] - time[:n]) / (time[between + 1 :] - time[:n])
         here = heading[k : n + k]
@@ -356,11 +386,13 @@ def _round_south(log, faster):
     They come and go within a few rows, much faster than the ship turns.
     """
     bad = np.zeros(len(log["heading"]), bool)
+    # Only rows with a heading, in (-180, 180], so that north is 0.
     known = np.flatnonzero(np.isfinite(log["heading"]))
     time = log["time"][known]
     heading = wrap_series(log["heading"][known])
     change = np.abs(wrap_series(np.diff(heading)))
     longest = (2 * LONGEST_WRAP + 1.5) * np.median(np.diff(log["time"]))
+    # Short excursions to the south between headings on both sides of north.
     for first, last in runs(np.abs(heading) > NEAR_NORTH):
         if first == 0 or last == len(known) or time[last] - time[first - 1] > longest:
             continue
@@ -385,10 +417,12 @@ def _far_off(values, is_angle):
     """Samples that are far from both neighbours on the same side, while those agree; at an end, far from all others."""
     if not np.isfinite(values).any():
         return np.zeros(len(values), bool)
+    # Robust scale of the changes: median absolute deviation plus resolution.
     change = np.diff(values)
     if is_angle:
         change = wrap_series(change)
     usual = 1.4826 * np.nanmedian(np.abs(change - np.nanmedian(change))) + quantum(values) + 1e-12
+    # A spike is far from both neighbours, in opposite directions, and the neighbours agree.
     before = change[:-1]
     after = change[1:]
     with np.errstate(invalid="ignore"):
@@ -396,6 +430,7 @@ def _far_off(values, is_angle):
             np.abs(before + after) < 6.0 * usual
         )
     far = np.r_[False, spike & (before * after < 0.0), False]
+    # An end has one neighbour only: it must be far outside the range of all other values.
     for end in () if is_angle or len(values) < 4 else (0, -1):
         others = np.delete(values, end)
         low = np.nanmin(others, initial=np.inf)

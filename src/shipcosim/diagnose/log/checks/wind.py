@@ -61,13 +61,19 @@ def mislabelled_wind(log: dict) -> list[Finding]:
     if len(rows) < 100:
         return []
     time, speed, wind_from, heading, surge, sway = (log[role][rows] for role in ("time", *ROLES))
+    # Velocity over ground, and the wind over north and east
+    # with the direction as labelled, mirrored, or from north.
     velocity = (surge + 1j * sway) * np.exp(1j * np.radians(heading))
     angles = {BOW: wind_from + heading, MIRRORED: heading - wind_from, NORTH: wind_from}
     winds = {name: _axes(speed * np.exp(1j * np.radians(angle))) for name, angle in angles.items()}
     motion = _still(time, _axes(velocity))
+    # The wind sensor averages, so compare with the velocity averaged over the same time.
     slow = motion.slow(motion.velocity)
+    # What is left is the wind over ground: a random walk
+    # with noise, with its own filter for each reading.
     levels = np.stack([wind - slow for wind in winds.values()], axis=2)
     filters = dict(zip(winds, filter_for(motion, levels), strict=True))
+    # First how the direction is counted, then unit and frame of the speed in that reading.
     frame, segment, gain = _frame(time, winds, slow, filters)
     return _finding(
         time, winds[frame], motion.slow(winds[frame]), slow, filters[frame], frame, segment, gain
@@ -90,6 +96,8 @@ class _Wind(Motion):
 def _frame(time, winds, slow, filters):
     """How the direction is counted, where, and the evidence for it; as labelled where nothing says otherwise."""
     likely = {}
+    # Log-likelihood of each row as apparent wind or as wind
+    # over ground, whichever is likelier in the whole log.
     for name, whitener in filters.items():
         white = [whitener(wind_less) for wind_less in (winds[name] - slow, winds[name])]
         rows = [-0.5 * np.sum(np.clip(w, -LABEL_CLIP, LABEL_CLIP) ** 2, axis=1) for w in white]
@@ -97,6 +105,8 @@ def _frame(time, winds, slow, filters):
             whitener.std * whitener.scale
         )
     best = (BOW, None, 0.0)
+    # Best segment for each other reading. The wind over ground
+    # must also be steadier there, as gusts can mimic evidence.
     for name in (MIRRORED, NORTH):
         gain, segment = best_segment(time, likely[name] - likely[BOW])
         rough = whiteness(in_segment(filters[name](winds[name] - slow), time, segment))
@@ -114,10 +124,13 @@ def _steadiness(wind, time, segment):
 
 def _finding(time, wind, smooth, slow, whitener: Filter, frame, segment, gain):
     """The mislabel that the slope on the ship's velocity leaves over."""
+    # Whitened regression of the wind on the ship's velocity:
+    # the slope tells apparent wind from wind over ground.
     y = whitener(wind)
     x = whitener(slow)
     if frame == BOW:
         return _unit(time, y, x, whitener(smooth), wind, slow)
+    # Posterior of each kind by the distance of the slope from its value.
     slope, std = _slope(in_segment(y, time, segment), in_segment(x, time, segment))
     kinds = SLOPES[frame]
     weights = {
@@ -131,6 +144,7 @@ def _finding(time, wind, smooth, slow, whitener: Filter, frame, segment, gain):
 def _unit(time, y, x, smooth, wind, slow):
     """Another unit, or the wind over ground with its direction from the bow, if the slope clearly says so."""
     found = []
+    # For each slope the gain in log-likelihood over slope 1, in rows, and the segment of most gain.
     for kind, b in SLOPES[BOW].items():
         gains = 0.5 * np.sum(
             np.clip(y - x, -LABEL_CLIP, LABEL_CLIP) ** 2
@@ -138,14 +152,21 @@ def _unit(time, y, x, smooth, wind, slow):
             axis=1,
         )
         gain, segment = best_segment(time, gains)
+        # Weigh the evidence by the correlation of the
+        # residuals; a unit of the whole log needs more.
         rough = whiteness(in_segment(y - b * x, time, segment))
         if kind == "apparent" or gain / rough < (LABEL_GAIN if segment else WIND_UNIT_GAIN):
             continue
+        # The slope must be near that of the unit, for the wind as
+        # logged and smoothed: noise affects these differently.
         slope, std = _slope(in_segment(y, time, segment), in_segment(x, time, segment))
         also, _ = _slope(in_segment(smooth, time, segment), in_segment(x, time, segment))
         near = all(abs(one - b) < max(WIND_SLOPE_NEAR * b, 0.2) for one in (slope, also))
+        # A unit changes the speed by its factor at both ends,
+        # and corrected the wind goes on as beside the segment.
         near &= b == 0.0 or leaps(time, np.hypot(*wind.T), segment, b)
         near &= _goes_on(time, wind - slow, wind / b - slow if b else wind, segment)
+        # The slope must be precise, and clearly not 1.
         if near and std < WIND_SLOPE_STD * max(b, 1.0) and abs(slope - 1.0) > 3.0 * std:
             found.append(
                 _named(LABEL[BOW, kind], segment, gain / rough + (0.0 if segment else 6.0), 1.0)
@@ -165,6 +186,7 @@ def leaps(time: np.ndarray, speed: np.ndarray, segment: Segment | None, factor: 
     factor : float
         Logged wind speed inside over that outside.
     """
+    # Compare medians close to the ends of the segment, where the wind itself has hardly changed.
     here, beside = _about(time, segment)
     if not here.any() or not beside.any():
         return True
@@ -177,6 +199,7 @@ def _goes_on(time, labelled, right, segment):
     The ship's own way makes the wind that she meets stronger and weaker too, most of all that of a fast small craft.
     """
     here, beside = _about(time, segment)
+    # Without neighbours there is nothing to compare.
     if not here.any() or not beside.any():
         return True
     usual = labelled[beside].mean(axis=0)
@@ -194,10 +217,12 @@ def _about(time, segment):
 
 
 def _slope(y, x):
+    # Least squares in units of the noise: slope and standard error.
     energy = max(float(np.sum(x * x)), 1e-9)
     return float(np.sum(x * y)) / energy, energy**-0.5
 
 
 def _named(label, segment, gain, share):
+    # Logistic function of the evidence over its threshold, times the share among the kinds.
     probability = float(share / (1.0 + np.exp(LABEL_GAIN - 6.0 - gain)))
     return finding_of(label, probability, segment)

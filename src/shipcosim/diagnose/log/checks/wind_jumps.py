@@ -35,6 +35,7 @@ def jumping_wind(log: dict) -> list[Finding]:
     part = {role: log[role][rows] for role in ("time", *ROLES)}
     logged = _wind(part)
     found = []
+    # For each label find the two jumps that undoing it explains best.
     for label in WIND_LABELS:
         undone = _wind(part | label.undo(part))
         gain, first, last = _best_pair(logged, undone)
@@ -43,6 +44,7 @@ def jumping_wind(log: dict) -> list[Finding]:
             found.append((gain, label, segment, _unsteadiness(undone[first:last])))
     if not found:
         return []
+    # Labels that explain nearly as well are told apart by the steadier wind over ground.
     most = max(gain for gain, *_ in found)
     gain, label, segment, _ = min(
         (entry for entry in found if entry[0] > most - JUMPS_TIED), key=lambda entry: entry[3]
@@ -64,6 +66,7 @@ def _unsteadiness(wind):
 
 def _best_pair(logged: np.ndarray, undone: np.ndarray) -> tuple[float, int, int]:
     """Gain of undoing a mislabel between two rows, less the cost of choosing them, and the first and last row."""
+    # Candidates for the ends are the rows of the largest changes.
     sizes = np.abs(np.diff(logged))
     ordered = np.sort(sizes)
     rows = 1 + np.sort(np.argsort(-sizes)[:LARGEST_JUMPS])
@@ -71,6 +74,7 @@ def _best_pair(logged: np.ndarray, undone: np.ndarray) -> tuple[float, int, int]
     begins = _gain(sizes[rows - 1], np.abs(undone[rows] - logged[rows - 1]), ordered)
     ends = _gain(sizes[rows - 1], np.abs(logged[rows] - undone[rows - 1]), ordered)
     total = begins[:, None] + ends
+    # Ends must be in order and apart. The choice of both costs two logarithms of their number.
     total[rows[None] - rows[:, None] < BETWEEN_JUMPS] = -np.inf
     first, last = np.unravel_index(int(np.argmax(total)), total.shape)
     gain = float(total[first, last]) - 2.0 * np.log(rows.size)
@@ -79,5 +83,6 @@ def _best_pair(logged: np.ndarray, undone: np.ndarray) -> tuple[float, int, int]
 
 def _gain(given: np.ndarray, otherwise: np.ndarray, ordered: np.ndarray) -> np.ndarray:
     """How much commoner one size of changes is than another, by those of the log in order. [nats]"""
+    # Rank of each change among the changes of the log: an empirical tail probability.
     above = [ordered.size + 1.0 - np.searchsorted(ordered, size) for size in (otherwise, given)]
     return np.log(above[0] / above[1])

@@ -28,21 +28,28 @@ def silent_rate(log: dict) -> list[Finding]:
     if motion is None:
         return []
     rate = motion.velocity[:, 0]
+    # Resolution of the channel, and second differences as a measure of its noise.
     fine = quantum(rate)
     bends = np.abs(np.diff(rate, n=2, prepend=rate[:2]))
+    # The heading turns, while the rate is below its own
+    # resolution in the whole log: wrong unit throughout.
     if _is_below_its_resolution(rate, fine) and _turns(motion, None) > 3.0 * np.std(
         motion.slow(rate)
     ):
         return [finding_of(RADIAN, 0.98)] if _signs_turn(motion) else []
+    # Usual noise of the log from its noisier windows;
+    # below 3 resolutions it cannot be seen to fall.
     windows = np.array_split(bends, max(4, len(bends) // 60))
     usual = float(np.quantile([window.mean() for window in windows], 0.8))
     if usual <= 3.0 * fine:
         return []
+    # Log-likelihood ratio of exponential distributions: noise 57 times smaller against usual noise.
     quiet = max(usual / (RADIAN.scale or 1.0), 0.25 * fine)
     gains = np.clip(np.log(usual / quiet) - bends / quiet + bends / usual, -QUIET_CLIP, QUIET_CLIP)
     gain, segment = best_segment(motion.time, gains)
     if segment is None or gain < QUIET_GAIN:
         return []
+    # The segment must be much quieter, and the heading must turn more than the rate reports.
     inner = in_segment(bends, motion.time, segment).mean()
     outer = usual
     told = np.std(in_segment(motion.slow(rate), motion.time, segment))

@@ -50,17 +50,21 @@ def numbers_of(name: str, cells: Any, decimal: str) -> tuple[np.ndarray, list[st
     """
     import pandas
 
+    # Bring minus signs and exponents of Fortran to the usual form.
     text = cells.astype("str").str.strip()
     missing = cells.isna() | text.str.lower().isin(NOTHING)
     grouping = "," if decimal == "." else "."
     plain = text.str.replace("\u2212", "-", regex=False)
     plain = plain.str.replace(r"(?<=[\d.])[dD](?=[+-]?\d+$)", "e", regex=True)
+    # Remove the grouping of thousands only where the whole cell
+    # has this form, then put a point for the decimal sign.
     if decimal == "," or plain.str.contains(",", regex=False).any():
         is_grouped = plain.str.fullmatch(
             rf"[+-]?\d{{1,3}}(?:[{grouping}]\d{{3}})+(?:[{decimal}]\d*)?"
         )
         plain = plain.where(~is_grouped, plain.str.replace(grouping, "", regex=False))
         plain = plain.str.replace(decimal, ".", regex=False) if decimal == "," else plain
+    # A few damaged cells are left empty; with more of them the column holds texts.
     numbers: Any = pandas.to_numeric(plain.where(~missing), errors="coerce")
     damaged: Any = numbers.isna() & ~missing
     count = int(damaged.sum())
@@ -88,6 +92,7 @@ def without_fillers(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str
     >>> without_fillers("surge", np.array([1.0, -9999.0, 1.5, -9999.0]))[0].tolist()
     [1.0, nan, 1.5, nan]
     """
+    # A filler is a usual one, stands there at least twice, and is far outside all other values.
     known = finite(values)
     for filler in (known.min(), known.max()) if len(known) > 2 else ():
         rest = known[known != filler]
@@ -109,6 +114,7 @@ def with_unit(cells: np.ndarray, decimal: str) -> tuple[np.ndarray, str] | None:
     >>> with_unit(np.array(["5.5 kn", None, "6 kn"], object), ".")
     (array([5.5, nan, 6. ]), 'kn')
     """
+    # All cells must have one and the same unit.
     found = [None if cell is None else re.fullmatch(WITH_UNIT, cell) for cell in cells]
     told = {match["unit"] for match in found if match}
     if len(told) != 1 or any(

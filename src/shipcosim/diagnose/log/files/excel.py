@@ -37,6 +37,8 @@ def text_of_sheet(path: Path, sheet: str | None = None) -> tuple[str, list[str]]
     except ImportError as error:
         remedy = "Install it by `pip install shipcosim[excel]`, or save the sheet as .csv."
         raise error_at(str(path), "workbooks of Excel need openpyxl.", remedy) from error
+    # Check the unpacked size before reading, against
+    # archives that are small but unpack to a huge file.
     try:
         with zipfile.ZipFile(path) as parts:
             size = sum(part.file_size for part in parts.infolist())
@@ -52,6 +54,7 @@ def text_of_sheet(path: Path, sheet: str | None = None) -> tuple[str, list[str]]
         raise error_at(str(path), f"has no sheet '{sheet}'.", suggestion(sheet, sheets))
     if not sheets:
         raise error_at(str(path), "is no workbook that can be read: it has no sheet.")
+    # Without a name the sheet with the most cells is read.
     used = sheet or max(sheets, key=lambda name: sum(len(row) for row in sheets[name]))
     rows = [[_text(cell) for cell in row] for row in sheets[used]]
     said = (

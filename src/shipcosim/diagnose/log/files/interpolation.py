@@ -25,12 +25,15 @@ def at_times(clock: np.ndarray, times: np.ndarray, values: np.ndarray, unit: str
     """
     if len(times) < 2:
         return np.full(len(clock), np.nan)
+    # Angles are interpolated unwrapped.
     turns = unit == "deg"
     there = np.interp(clock, times, np.unwrap(values, period=360.0) if turns else values)
+    # Usual step of the channel; no value across a hole, or outside by more than half a step.
     after = np.clip(np.searchsorted(times, clock), 1, len(times) - 1)
     step = float(np.median(np.diff(times)))
     before = times[after - 1]
     is_far = (times[after] - before > _FAR * step) & (clock != before) & (clock != times[after])
     outside = (clock < times[0] - 0.5 * step) | (clock > times[-1] + 0.5 * step)
+    # Wrap back, where the channel was not signed.
     back = np.mod(there, 360.0) if turns and values.min() >= 0.0 else there
     return np.where(is_far | outside, np.nan, back)

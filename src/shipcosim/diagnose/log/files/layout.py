@@ -58,6 +58,7 @@ def layout_of(
     ShipcosimError
         If it is no table, or has no names.
     """
+    # Find the first row of values, and above it the names and units.
     separator = form.separator or separator_of(lines)
     first, width = _first_row(source, lines, separator)
     above = [
@@ -72,6 +73,7 @@ def layout_of(
         raise error_at(
             source, found, f"Name them in a channel file: file = {{names = [{names}, ...]}}."
         )
+    # An index column of data frames has values, but no name.
     if (
         separator != ","
         and len(header) == width - 1
@@ -89,10 +91,12 @@ def _skipped(above: list[int]) -> tuple[str, ...]:
 
 def _first_row(source: str, lines: list[str], separator: str) -> tuple[int, int]:
     """Index of the first line of values, and the number of its cells."""
+    # The width of the table is the most frequent number of cells, from a sample of the lines.
     rows = [i for i, line in enumerate(lines) if line.strip() and not is_comment(line)]
     picked = rows[:: max(len(rows) // 2000, 1)]
     widths = Counter(len(cells_in(lines[i], separator)) for i in picked)
     width = widths.most_common(1)[0][0] if widths else 0
+    # First line of this width that holds mostly figures, or begins with one as messages do.
     for i in rows:
         cells = cells_in(lines[i], separator)
         told = [cell for cell in cells if not is_nothing(cell)]
@@ -115,6 +119,7 @@ def _header(lines, above, separator, width, is_unit):
     """Line of the names, the units of a row of units, and the names; None without names."""
     units = ()
     below = None
+    # Go upwards from the values: perhaps a row of units, then the row of names.
     for i in reversed(above):
         text = lines[i].lstrip()
         if is_comment(text):
@@ -136,6 +141,7 @@ def _header(lines, above, separator, width, is_unit):
 
 
 def _is_row_of_units(row, is_unit):
+    # Most cells must be spellings of units; in brackets half of them are enough.
     told = [cell.strip("[]() ") for cell in row if cell.strip("[]() ")]
     marked = sum(cell[:1] in "([" and cell[-1:] in ")]" for cell in row if cell)
     known = sum(map(is_unit, told))
@@ -146,11 +152,13 @@ def _is_row_of_units(row, is_unit):
 
 def _header_cells(text, separator, width):
     """Cells of what may be a header of so many columns, None where it is none."""
+    # Columns with a separator may end in empty cells.
     if separator != " ":
         row = cells_in(text, separator)
         while len(row) > width and not row[-1]:
             row.pop()
         return row if width - 1 <= len(row) <= width else None
+    # With blanks as separators a unit belongs to its name: try several ways to split.
     glued = re.sub(r"\s+(?=[\[(])", "", text)
     for row in (
         text.split(),

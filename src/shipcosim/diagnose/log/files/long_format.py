@@ -53,6 +53,7 @@ def spread(log: LogColumns, form: FileLayout) -> LogColumns:
     names, value = _long(log, form)
     if not names or value is None:
         return log
+    # Among the other columns find one of units, and one of times.
     rest = [column for column in log.values if column not in (*names, value)]
     unit = next((column for column in rest if column.strip().lower() in ("unit", "units")), None)
     clocks = [column for column in rest if column != unit and _is_clock(log.values[column])]
@@ -69,6 +70,7 @@ def _long(log, form):
     """Columns that name values, and the one that holds them; none and None where the log is none of that kind."""
     if form.name is not None and form.value is not None:
         return [form.name], form.value
+    # Usual names of such columns, where the values look like names.
     lower = {column.strip().lower(): column for column in log.values}
     value = next((lower[word] for word in _VALUES if word in lower), None)
     names = [
@@ -96,17 +98,20 @@ def _is_clock(values):
 def _wide(log, names, value, clock, unit):
     import pandas
 
+    # Rows with a name and a time; several columns of names are joined.
     frame: Any = pandas.DataFrame({column: log.values[column] for column in log.values})
     told = frame[names].notna().all(axis=1) & frame[clock].notna()
     frame = frame[told]
     key = frame[names[0]].astype("str")
     for more in names[1:]:
         key = key + "." + frame[more].astype("str")
+    # One row for each time, in the order of the file.
     rows, times = pandas.factorize(frame[clock])
     count = len(times)
     values: dict[str, np.ndarray] = {clock: np.asarray(times)}
     units = {clock: log.units[clock]}
     again = 0
+    # One column for each name; the first value at a time is kept.
     for name, part in frame.groupby(key, sort=False):
         at = rows[frame.index.get_indexer(part.index)]
         again += len(at) - len(np.unique(at))
@@ -144,16 +149,19 @@ def brought_together(
     time, signals and list of str
         Interpolated between a channel's own times, angles the short way round, not across holes; what is to be said.
     """
+    # If more than a few rows hold most of the channels, the log needs no interpolation.
     is_finite = {name: np.isfinite(values) for name, (values, _) in signals.items()}
     there = {name: rows for name, rows in is_finite.items() if rows.any()}
     counts = np.sum(list(there.values()), axis=0) if there else np.zeros(len(time))
     if len(there) < 3 or (counts > 0.5 * len(there)).mean() > _ALONE:
         return time, signals, []
+    # Times of one channel, preferably the heading, are the common clock.
     base = next(
         (n for n in ("heading", "latitude", "north", "surge") if n in there), next(iter(there))
     )
     clock = np.unique(time[there[base] & np.isfinite(time)])
     found = {}
+    # Interpolate each channel from its own rows, in order of time and without repeated times.
     for name, (values, unit) in signals.items():
         rows = np.flatnonzero(is_finite[name] & np.isfinite(time))
         rows = rows[np.argsort(time[rows], kind="stable")]

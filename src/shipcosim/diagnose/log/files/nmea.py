@@ -43,6 +43,7 @@ def _clock(text: str) -> float:
 def _position(fields: list[str]) -> Values:
     """Latitude, its hemisphere, longitude and its hemisphere, as degrees."""
     found = {}
+    # NMEA writes degrees times 100 plus minutes, and the hemisphere apart.
     for name, text, side, sides in (
         ("latitude", *fields[:2], "NS"),
         ("longitude", *fields[2:4], "EW"),
@@ -172,6 +173,7 @@ def columns_of_sentences(
     ShipcosimError
         If no sentence says the time, none gives a channel, or many are damaged.
     """
+    # Read all sentences; many damaged ones mean a bad recording.
     read = _read(lines)
     count = len(read.sentences) + len(read.damaged)
     if len(read.damaged) > _MOST_DAMAGED * count:
@@ -180,6 +182,7 @@ def columns_of_sentences(
             f"{source}, line {read.damaged[0] + 1}", found, "Record them anew, or as a table."
         )
     said = _told(read)
+    # Time of each sentence, and the channels that the sentences give.
     times, more = _times(source, read)
     channels, used = _channels(read, times)
     if not channels:
@@ -187,6 +190,7 @@ def columns_of_sentences(
             f"holds sentences of NMEA, and none gives a channel: {', '.join(read.unread) or 'ZDA'}."
         )
         raise error_at(source, found, f"Read are {', '.join(_KINDS)}.")
+    # Bring all channels to the times of the heading or the position.
     base = next(name for name in ("heading", "latitude", *channels) if name in channels)
     clock = channels[base][0]
     values = {"time": clock} | {
@@ -199,6 +203,7 @@ def columns_of_sentences(
 
 def _read(lines: list[str]) -> _Read:
     read = _Read()
+    # Keep sentences with a right checksum of a kind that is read; count the others for the message.
     for number, line in enumerate(lines):
         if not line.strip():
             continue
@@ -223,6 +228,7 @@ def _read(lines: list[str]) -> _Read:
 
 
 def _checksum(body: str) -> int:
+    # The checksum is the exclusive or of all characters between $ and *.
     found = 0
     for char in body.encode("latin-1", "replace"):
         found ^= char
@@ -252,6 +258,7 @@ def _told(read: _Read) -> list[str]:
 
 def _times(source: str, read: _Read) -> tuple[np.ndarray, list[str]]:
     """Time of each sentence that was read, NaN where it is not known, and what is to be said. [s]"""
+    # Stamps before the sentences are the time of reception, if nearly all sentences have one.
     stamped = [read.stamps[number] for number, *_ in read.sentences]
     if sum(map(bool, stamped)) > _ENOUGH * len(stamped):
         texts = np.array([stamp or None for stamp in stamped], object)
@@ -262,6 +269,7 @@ def _times(source: str, read: _Read) -> tuple[np.ndarray, list[str]]:
             pass
         if found := seconds_of(texts):
             return found[0], ["Times are those that stand before the sentences.", *found[1]]
+    # Else the clock times within sentences, interpolated by line number for those without.
     timed = [(k, values) for k, (_, _, values) in enumerate(read.sentences) if "clock" in values]
     if len(timed) < 2:
         found = "holds sentences of NMEA, and none of GGA, RMC, GLL and ZDA says the time."
@@ -290,12 +298,15 @@ def _times(source: str, read: _Read) -> tuple[np.ndarray, list[str]]:
 
 def _with_dates(timed: list[tuple[int, Values]]) -> tuple[np.ndarray, list[str]]:
     """Times of day as times that go on past midnight, over whole days too where sentences have a date. [s]"""
+    # Clock times go on past midnight; dates then show whole days that were not logged.
     seconds, said = seconds_of_clock(np.array([values["clock"] for _, values in timed]))
     dated = np.array([k for k, (_, values) in enumerate(timed) if "date" in values], int)
     if not len(dated):
         return seconds, said
     days = np.array([timed[k][1]["date"] for k in dated])
     clocks = np.array([timed[k][1]["clock"] for k in dated])
+    # Whole days that are missing at each dated sentence,
+    # and at the others by the nearest date in time.
     lacking = np.round((DAY * (days - days[0]) + clocks - seconds[dated]) / DAY) * DAY
     every = np.arange(len(timed))
     before = np.maximum(np.searchsorted(dated, every, "right") - 1, 0)
@@ -314,6 +325,7 @@ def _channels(
     read: _Read, times: np.ndarray
 ) -> tuple[dict[str, tuple[np.ndarray, np.ndarray]], dict[str, list[str]]]:
     """Times and values of each channel by one source, and which channels a source gives."""
+    # Sort the values by channel and kind of sentence.
     found: dict[str, dict[str, list[tuple[float, float]]]] = {}
     for (_, kind, values), time in zip(read.sentences, times, strict=True):
         for name, value in values.items():
@@ -325,6 +337,7 @@ def _channels(
     for name in _UNITS:
         if name not in found:
             continue
+        # Of the sources with nearly the most values take the preferred one.
         most = max(map(len, found[name].values()))
         enough = {
             kind: pairs for kind, pairs in found[name].items() if len(pairs) >= _ENOUGH * most

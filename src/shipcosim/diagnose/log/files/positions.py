@@ -32,6 +32,7 @@ def is_minutes(values: np.ndarray, largest: float) -> bool:
     >>> [is_minutes(np.array([value]), 90.0) for value in (6324.0949, 63.4, 6390.0)]
     [True, False, False]
     """
+    # Most numbers must be too large for degrees, and nearly all must have minutes below 60.
     known = np.abs(finite(values))
     if not len(known) or (known > largest).mean() < 0.5:
         return False
@@ -65,6 +66,7 @@ def hemisphere_signs(cells: np.ndarray, role: str) -> np.ndarray | None:
     """
     if cells.dtype.kind == "f":
         return None
+    # Signs by the first letter; every cell must be a word for a hemisphere.
     known = HEMISPHERES[role]
     signs = np.array(
         [known.get(str(cell).strip().upper()[:1], np.nan) if cell else np.nan for cell in cells]
@@ -85,6 +87,7 @@ def degrees_of_texts(cells: np.ndarray, largest: float) -> np.ndarray | None:
         Of the degrees: 90 or 180.
     """
     found = np.full(len(cells), np.nan)
+    # Parse degrees, minutes and seconds of each text, with the hemisphere before or behind.
     for row, cell in enumerate(cells):
         if cell is None:
             continue
@@ -92,6 +95,7 @@ def degrees_of_texts(cells: np.ndarray, largest: float) -> np.ndarray | None:
         if match is None:
             return None
         degrees = float(match["degrees"])
+        # A number beyond all degrees is in degrees and minutes without a separator.
         if match["minutes"] is None and abs(degrees) > largest:
             degrees = float(degrees_of_minutes(np.array([degrees]))[0])
         parts = float(match["minutes"] or 0.0) / 60.0 + float(match["seconds"] or 0.0) / 3600.0

@@ -71,6 +71,7 @@ def refuse_foreign(path: Path) -> None:
     --------
     >>> refuse_foreign(Path("log.csv"))
     """
+    # The first bytes tell the format, whatever the name; the name decides only without them.
     head = b""
     if path.is_file():
         with path.open("rb") as file:

@@ -96,6 +96,7 @@ def _read(path: Path, form: FileLayout) -> LogColumns:
 
 
 def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
+    # Layout first, then the rows of the right length, then the decimal sign, then each column.
     lines = text.splitlines()
     layout = layout_of(source, lines, form, is_unit)
     rows, said = _rows(source, lines, layout)
@@ -144,6 +145,8 @@ def _rows(source: str, lines: list[str], layout: Layout) -> tuple[list[str], lis
     comments = sum(1 for line in rest if line.strip()) - len(rows)
     if comments:
         said.append(f"{_count(comments, 'comment line')} between rows left out.")
+    # Many short rows have empty cells at their end; a few
+    # odd rows are left out; anything else is no table.
     rows, counts = _without_last_separator(rows, separator, width)
     bad = counts != width
     if (counts < width).mean() > _FEW and bad.sum() > 1 and not (counts > width).any():
@@ -159,6 +162,7 @@ def _rows(source: str, lines: list[str], layout: Layout) -> tuple[list[str], lis
             f"{_count(bad.sum(), 'row')} without {width} cells left out, the first '{shown}'."
         )
         rows = [line for line, wrong in zip(rows, bad, strict=True) if not wrong]
+    # Loggers that are started again write the header again.
     header = list(layout.header)
     again = {
         i
@@ -247,6 +251,7 @@ def _frame(rows: list[str], separator: str, width: int, texts: Any = None) -> An
 
 def _with_decimal_sign(source, frame, rows, separator, form):
     """Decimal sign of a file, and its table once more where a point may group thousands."""
+    # Columns of texts show whether the decimal sign is a comma.
     texts = [i for i in frame if frame[i].dtype.kind not in "fiub"]
     if form.decimal is not None:
         decimal = form.decimal
@@ -254,6 +259,8 @@ def _with_decimal_sign(source, frame, rows, separator, form):
         decimal = decimal_of(source, _with_comma(frame[i] for i in texts)) or "."
     if decimal == ".":
         return decimal, frame
+    # With a decimal comma, numbers with a point were
+    # read wrongly: read these columns again as texts.
     points = {i: "str" for i in frame if frame[i].dtype.kind == "f"}
     anew = _frame(rows, separator, frame.shape[1], points)
     for i in points:

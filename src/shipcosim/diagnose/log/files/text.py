@@ -39,6 +39,7 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
         raise error_at(str(path), "is larger than the memory.", "Read a part of it.") from error
     if not content.strip(b"\x00 \r\n\t"):
         raise error_at(str(path), "is empty.", "Each row is a time and its values.")
+    # Decode, and refuse what is no text.
     used = encoding or _encoding_of(content)
     try:
         text = content.decode(used)
@@ -54,6 +55,8 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
 
 
 def _encoding_of(content: bytes) -> str:
+    # Byte order mark, then zero bytes of UTF-16, then
+    # UTF-8; any other text is in an encoding of one byte.
     for mark, name in _MARKS:
         if content.startswith(mark):
             return name

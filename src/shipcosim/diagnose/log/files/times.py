@@ -82,6 +82,7 @@ def epoch_unit(values: np.ndarray) -> str | None:
     known = finite(values)
     if not len(known):
         return None
+    # Quantiles rather than extremes, as single stamps may be damaged.
     first, last = np.quantile(known, [0.02, 0.98])
     return next(
         (unit for unit, size in EPOCHS.items() if _SINCE < first / size and last / size < _UNTIL),
@@ -115,6 +116,7 @@ def seconds_of(
     """
     import pandas
 
+    # Bring all stamps to one form, without their time zone.
     cells, zone = _uniform(pandas.Series(texts, dtype="object"))
     known = cells.dropna()
     if not len(known):
@@ -123,6 +125,7 @@ def seconds_of(
         cells = cells.astype("object")
     if (short := _minutes_and_seconds(cells, unit)) is not None:
         return short
+    # Clock times without a date.
     for clock in _CLOCKS:
         if _fits(known, clock):
             parsed = pandas.to_datetime(
@@ -130,6 +133,7 @@ def seconds_of(
             )
             if _whole(parsed, cells):
                 return seconds_of_clock(_since_first(parsed, "2000-01-01"))
+    # Try every form of date and clock; day and month can give two readings.
     readings = {}
     for key, dates in _DATES.items():
         for date, (between, clock) in product(dates, product(_BETWEEN, _CLOCKS)):
@@ -142,6 +146,7 @@ def seconds_of(
         return _other_stamps(cells)
     if not readings:
         return None
+    # Decide between the readings, then subtract the zones.
     times, said = _decided(readings, str(known.iloc[0]))
     if zone is not None:
         times = times - zone
@@ -158,6 +163,7 @@ def _marks_of(form: str) -> str:
 def _fits(known, form):
     """Whether the first and the last of the stamps have this form."""
     if _WORD.sub("", known.iloc[0]) != _marks_of(form):
+        # Compare the separators first, which is fast, then parse the first and last stamp.
         return False
     try:
         for cell in (known.iloc[0], known.iloc[-1]):
@@ -178,6 +184,7 @@ def _uniform(cells) -> tuple[Any, np.ndarray | None]:
     texts = texts.str.replace(_ZONE, "", regex=True)
     first = texts.dropna().iloc[0] if texts.notna().any() else ""
     ahead = None
+    # Offset of the time zone, east positive.
     if _OTHER_ZONE.search(first):
         zones = texts.str.extract(_OTHER_ZONE)["zone"].str.replace(":", "")
         sign = np.where(zones.str.startswith("-"), -1.0, 1.0)
@@ -187,6 +194,7 @@ def _uniform(cells) -> tuple[Any, np.ndarray | None]:
         texts = texts.str.replace(_OTHER_ZONE, lambda found: found["fraction"] or "", regex=True)
     if _COLON_FRACTION.match(first):
         texts = _with_point(texts)
+    # Point as decimal sign, and a fraction in all stamps if any has one.
     texts = texts.str.replace(r"(:\d\d),(\d+)", r"\1.\2", regex=True)
     has_point = texts.str.contains(r":\d\d\.\d+|\d{6}\.\d+", regex=True, na=False)
     if has_point.any() and not has_point.all():
@@ -221,6 +229,7 @@ def _with_point(texts):
 def _minutes_and_seconds(cells, unit):
     """Stamps such as 59:59.5 as seconds, going on past the hour; None for others."""
     parts = cells.str.extract(_ONE_COLON)
+    # All stamps must have exactly one colon.
     if parts["minutes"].isna().any() and (parts["minutes"].isna() & cells.notna()).any():
         return None
     has_fraction = parts["fraction"].notna().any()
@@ -228,6 +237,7 @@ def _minutes_and_seconds(cells, unit):
     seconds = parts["seconds"].astype(float)
     if unit == "hh:mm" or not minutes.notna().any():
         return None
+    # Below 24 without a fraction it may be hours and minutes: ask.
     if not has_fraction and unit != "mm:ss" and minutes.max() < 24:
         found = f"'{cells.dropna().iloc[0]}' can be hours and minutes or minutes and seconds."
         remedy = 'Say which as its unit in a channel file: time = {column = "...", unit = "mm:ss"}, or "hh:mm".'
@@ -265,6 +275,7 @@ def _decided(readings: dict[str, np.ndarray], shown: str) -> tuple[np.ndarray, l
         names = " or ".join(_NAMES[order] for order in orders)
         said = f"Dates such as '{shown}' can be {names}: the same for times within the log."
         return first, [said] if len(orders) > 1 else []
+    # With the wrong order of day and month the log leaps by weeks.
     leaps = {order: _largest_step(values) for order, values in readings.items()}
     smooth = [order for order, leap in leaps.items() if leap < 20 * DAY]
     if len(smooth) == 1 and len(orders) > 1:
@@ -301,6 +312,7 @@ def seconds_of_clock(seconds: np.ndarray, period: float = DAY) -> tuple[np.ndarr
     >>> seconds_of_clock(np.array([86398.0, 86399.0, 0.0, 1.0]))[0].tolist()
     [86398.0, 86399.0, 86400.0, 86401.0]
     """
+    # A fall by more than half a period is a passage of its end, a rise as large a row out of order.
     known = np.flatnonzero(np.isfinite(seconds))
     steps = np.diff(seconds[known])
     days = np.cumsum((steps < -0.5 * period).astype(float) - (steps > 0.5 * period))

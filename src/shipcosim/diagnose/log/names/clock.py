@@ -37,11 +37,14 @@ def time_of(
     ShipcosimError
         If day and month of stamps can be exchanged.
     """
+    # A stamp in two columns is the most precise. Otherwise take the
+    # best usable guess, or any column of texts that are stamps.
     if pair := _seconds_and_nanoseconds(log):
         return pair, [replace(g, role="", why=f"'{pair.column}' is the time") for g in guesses]
     usable = [one for guess in guesses if (one := _usable(guess, log, form))]
     if not usable:
         usable = [one for name in log.values if (one := _stamps(name, log, form))]
+    # Exact names first, and clock times before dates.
     usable.sort(
         key=lambda g: (g.rank, log.values[g.column].dtype.kind == "O" and _is_date(g.column))
     )
@@ -71,6 +74,7 @@ def _all_between(values, least, most):
 
 def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
     """A guess with the unit of its numbers, or with the date beside its clock; None where it is no time."""
+    # Texts and stamps are read as they are; so are numbers with a stated unit.
     values = log.values[guess.column]
     if values.dtype.kind == "O":
         return _stamps(guess.column, log, form, guess)
@@ -82,13 +86,16 @@ def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
         return guess
     if guess.channel.nanoseconds:
         return guess
+    # A constant column is no time, unless its name is exactly that.
     known = finite(values)
     if len(np.unique(known[:1000])) < 2 and len(np.unique(known)) < 2:
         return None if guess.rank > EXACT else guess
+    # Counts since 1970 are recognised by their size, whatever the name.
     if epoch_unit(values):
         return replace(guess, rank=min(guess.rank, SURE), why="")
     if guess.rank == EXACT:
         return guess
+    # Clock times as numbers need a name that suggests a clock.
     if _is_clock_number(known) and set(words_of(guess.column)) & {
         "utc",
         "hhmmss",
@@ -107,6 +114,7 @@ def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
         )
     if _is_date(guess.column):
         return None
+    # Without a stated unit, choose one in which the rows are a usual step apart.
     steps = np.diff(known)
     step = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 0.0
     if step == 0.0 or _STEPS[0] <= step <= _STEPS[1]:
@@ -144,6 +152,7 @@ def _stamps(
     name: str, log: LogColumns, form: FileLayout, guess: Guess | None = None
 ) -> Guess | None:
     """A column of texts that are stamps, with the column of dates beside it where they are clock times."""
+    # Try the first, middle and last text before reading all of them.
     values = log.values[name]
     told = [value for value in values if value is not None] if values.dtype.kind == "O" else []
     if not told or not any(char.isdigit() for char in str(told[0])):
@@ -155,11 +164,13 @@ def _stamps(
     except ShipcosimError:
         pass  # reading says how it can be read
     guess = guess or Guess(name, "time", Channel(column=name), SURE)
+    # Clock times without a date take the date from a column beside it.
     is_clock = ":" in str(told[0]) and len(str(told[0]).split(":")[0].strip()) <= 2
     dates = [other for other in log.values if _is_date(other) and other != name]
     if is_clock and dates:
         channel = guess.channel.model_copy(update={"date": dates[0]})
         return replace(guess, channel=channel, rank=min(guess.rank, SURE), why="")
+    # A constant date without a clock time is no time.
     if ":" not in str(told[0]) and len(set(map(str, sample))) < 2:
         return None
     return replace(guess, rank=min(guess.rank, SURE), why="")

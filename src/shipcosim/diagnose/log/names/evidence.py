@@ -29,6 +29,7 @@ def unit_of_speed(
     speed : (n,) array
         In the unknown unit.
     """
+    # Rows in which all channels have values; the distance made in k rows is the reference.
     rows = np.isfinite(time) & np.isfinite(north) & np.isfinite(east) & np.isfinite(speed)
     t = time[rows]
     way = (north + 1j * east)[rows]
@@ -47,6 +48,7 @@ def unit_of_rate(time: np.ndarray, heading: np.ndarray, rate: np.ndarray) -> str
     rows = np.isfinite(time) & np.isfinite(heading) & np.isfinite(rate)
     if rows.sum() < 4 * _SPANS[0]:
         return None
+    # Unwrapped heading: its change over k rows is the reference.
     turned = np.unwrap(heading[rows], period=360.0)
     return _unit_by(time[rows], rate[rows], lambda k: turned[k:] - turned[:-k], _RATES)
 
@@ -56,9 +58,12 @@ def _unit_by(time, rate, change, units):
     steps = np.diff(time)
     if len(time) < 4 * _SPANS[0] or not (steps > 0.0).all():
         return None
+    # Integral of the reported rate by the trapezium rule.
     told = np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * steps)))
     best = 0.0
     ratio = None
+    # Compare changes over several spans: short ones drown in noise,
+    # long ones in drift. Keep the span of highest correlation.
     for k in _SPANS:
         if len(time) < 4 * k:
             break
@@ -66,15 +71,18 @@ def _unit_by(time, rate, change, units):
         norm = float(np.sqrt((x @ x) * (y @ y)))
         if norm > 0.0 and (x @ y) / norm > max(best, _ALIKE):
             best = (x @ y) / norm
+            # Ratio of the energy to the cross product: slope of the inverse regression.
             ratio = (y @ y) / (x @ y)
     if ratio is None:
         return None
+    # Nearest unit on a logarithmic scale; none if the ratio fits none of them.
     unit = min(units, key=lambda name: abs(np.log(ratio / units[name])))
     return unit if abs(np.log(ratio / units[unit])) < _FAR else None
 
 
 def _without_leaps(x, y):
     """Two kinds of changes without those that are far larger than most: start-up rows, and rows that were lost."""
+    # Limits from a quantile, so that the leaps themselves do not set them.
     usual = [np.quantile(np.abs(values), 0.9) for values in (x, y)]
     kept = (np.abs(x) <= _LEAP * usual[0]) & (np.abs(y) <= _LEAP * usual[1])
     return x[kept], y[kept]
@@ -109,11 +117,14 @@ def frame_of_angle(
     clear = []
     unclear = []
     for name, heading in readings.items():
+        # Direction in which the craft should go under this reading.
         course = np.radians(heading) + (0.0 if drift is None else drift)
         rows = np.isfinite(time) & np.isfinite(north) & np.isfinite(east) & np.isfinite(course)
         way = (north + 1j * east)[rows]
         bow = np.exp(1j * course[rows])
         best = 0.0 + 0.0j
+        # Mean direction of the way made against it, weighted by distance.
+        # Its length is near 1 if the reading follows the course.
         for k in _SPANS:
             if len(way) < 4 * k:
                 break
@@ -122,7 +133,9 @@ def frame_of_angle(
             total = np.abs(moved).sum()
             mean = (moved * np.conj(middle)).sum() / total if total > 0.0 else 0.0
             best = max(best, complex(mean), key=abs)
+        # The angle must be small too, apart from drift.
         is_clear = abs(best) > _CLEAR and abs(np.degrees(np.angle(best))) < _BESIDE
         (clear if is_clear else unclear).append((name, abs(best), abs(np.degrees(np.angle(best)))))
+    # Accept a reading only if it alone is clear, and all others clearly fail.
     others_out = all(length < _UNCLEAR or beside > _BESIDE for _, length, beside in unclear)
     return clear[0][0] if len(clear) == 1 and others_out else None

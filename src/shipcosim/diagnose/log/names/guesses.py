@@ -83,6 +83,7 @@ def guesses_of(column: str, log: LogColumns, thrusters: Thrusters | None) -> lis
     values = log.values[column]
     stated = log.units[column]
     role = role_of(column)
+    # The name is a role, or a thruster of this system with what drives it.
     if role and (column in ROLES or thrusters is None or column.rpartition("_")[0] in thrusters):
         if refused := _of_a_map(column, stated, thrusters):
             return [refused]
@@ -92,6 +93,7 @@ def guesses_of(column: str, log: LogColumns, thrusters: Thrusters | None) -> lis
     words = words_of(column)
     if not words or (words == ("column", words[-1]) and column.startswith("column ")):
         return [Guess(column, why="it has no name")]
+    # Names of thrusters come before other meanings, unless they lead to no thruster.
     if drive := drive_of(words, stated, values):
         found = _of_thruster(column, drive, stated, thrusters)
         if found[0].role or meaning_of(words).role is None:
@@ -109,6 +111,7 @@ def _by_meaning(column, words, stated, values):
     """By the words of the name, with a unit at its end or without."""
     meaning = meaning_of(words)
     unit = stated
+    # A name without a meaning may end in a unit; read it without this.
     if (meaning.role is None or meaning.doubt) and not stated:
         for target in _SUFFIXES:
             rest, suffix = unit_after(words, target)
@@ -122,6 +125,7 @@ def _by_meaning(column, words, stated, values):
     if meaning.role is None:
         return Guess(column, why=meaning.reason or "its name is not known")
     role = meaning.role
+    # Exclude units of another quantity, and texts where numbers are needed.
     if unit and role not in ("time", "latitude", "longitude") and not _measures(unit, role):
         return Guess(
             column, why=f"its unit '{unit}' is none of {role}, which is in {ROLES[role].unit}"
@@ -132,6 +136,7 @@ def _by_meaning(column, words, stated, values):
     given = unit if unit and not stated else None
     doubt = meaning.doubt
     sign = 1
+    # Positive to port means the opposite sign of the role.
     if doubt and role in _TO_STARBOARD and "port" in words:
         doubt = "by its name positive to port"
         sign = -1
@@ -159,6 +164,7 @@ def _of_thruster(
     column: str, drive: Drive, stated: str, thrusters: Thrusters | None
 ) -> list[Guess]:
     """What a thruster's column may be."""
+    # Thrusters that the name can mean; without a system the name itself is the thruster.
     if thrusters is None:
         name = "_".join(sorted(drive.place)) or "propeller"
         names = [name]
@@ -171,11 +177,13 @@ def _of_thruster(
         return [Guess(column, why=why)]
     if not names:
         return [Guess(column, why=f"no thruster of the system is meant by it: there is {there}")]
+    # Pulses and per cent become a speed only by a map.
     if drive.quantity in ("pwm", "percent"):
         return [Guess(column, why=_needs_a_map(column, drive.quantity, names[0], thrusters))]
     if not drive.quantity:
         return [Guess(column, why=f"it says no quantity of {names[0]}: rpm, azimuth or thrust")]
     found = []
+    # Each possible thruster must be driven by this quantity, in a unit that converts.
     for name in names:
         role = f"{name}_{drive.quantity}"
         unit = _THRUSTER_UNITS[drive.quantity]

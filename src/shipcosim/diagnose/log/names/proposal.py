@@ -79,18 +79,22 @@ def propose(
         What was said of the file.
     """
     form = form or FileLayout()
+    # Guesses for each column alone, then the best for each role.
     every = [guess for column in log.values for guess in guesses_of(column, log, thrusters)]
     every = _known_together(every)
     chosen, left = _chosen([g for g in every if g.role and g.role != "time"])
     left += [g for g in every if not g.role]
+    # Time, quaternions and hemispheres need several columns.
     clock, others = time_of([g for g in every if g.role == "time"], log, form)
     chosen |= {"time": clock} if clock else {}
     left += others
     left = _with_quaternion(chosen, log, left)
     left = _with_hemispheres(chosen, log, left)
+    # Conventions and values settle what names leave open.
     _by_convention_of_ros(chosen, log)
     settled(chosen, log, form)
     left += _of_one_kind(chosen, log)
+    # Columns that no channel uses keep the reason of their first guess.
     taken = {name for guess in chosen.values() for name in guess.channel.columns}
     unused = {guess.column: guess for guess in reversed(left) if guess.column not in taken}
     order = list(log.values)
@@ -131,6 +135,7 @@ def _chosen(guesses):
     kinds = {"feedback": 0, "": 1, "command": 2}
     chosen = {}
     left = []
+    # Rank by certainty, then measured before commanded values.
     for role in dict.fromkeys(guess.role for guess in guesses):
         ranked = sorted(
             (g for g in guesses if g.role == role), key=lambda g: (g.rank, kinds[g.kind])
@@ -144,6 +149,7 @@ def _chosen(guesses):
             )
         elif best.kind == "command" and rest:
             best = replace(best, said=())
+        # Two equal candidates make a guess of either.
         same = [g for g in rest if g.rank == best.rank == SURE and g.kind == best.kind]
         if same:
             best = replace(best, rank=GUESS, why=f"'{same[0].column}' says the same")
@@ -161,6 +167,7 @@ def _chosen(guesses):
 def _with_quaternion(chosen, log, left):
     """A heading from the four columns of an attitude, where there is no other."""
     if "heading" in chosen and chosen["heading"].rank < GUESS:
+        # Columns that share a prefix and end in the components of a quaternion.
         return left
     ends = {"w": "w", "x": "x", "y": "y", "z": "z", "0": "w", "1": "x", "2": "y", "3": "z"}
     groups: dict[tuple, dict[str, str]] = {}
@@ -197,6 +204,7 @@ def _by_convention_of_ros(chosen, log):
             guess, channel=guess.channel.model_copy(update=update), why=f"{why} (REP 103)"
         )
 
+    # Only guesses follow the convention; what is sure stays as it is.
     is_open = {role for role, guess in chosen.items() if guess.rank == GUESS}
     if {"north", "east"} <= is_open and all(
         chosen[role].why.startswith("x north") for role in ("north", "east")
@@ -256,6 +264,7 @@ def _of_one_kind(chosen, log):
             if role in chosen:
                 left.append(replace(chosen.pop(role), role="", channel=UNUSED, why=why))
 
+    # Pairs need both of their roles.
     for pair in _PAIRS:
         there = [role for role in pair if role in chosen]
         if len(there) == 1:
@@ -264,12 +273,14 @@ def _of_one_kind(chosen, log):
                 there,
                 f"it is {there[0].replace('_', ' ')}, and no column is {other.replace('_', ' ')}",
             )
+    # Of two positions keep the surer one.
     whole = [pair for pair in _POSITIONS if pair[0] in chosen]
     if len(whole) == 2:
         ranks = [max(chosen[role].rank for role in pair) for pair in whole]
         worse = whole[1] if ranks[0] <= ranks[1] or ranks[0] < GUESS else whole[0]
         best = whole[0] if worse is whole[1] else whole[1]
         drop(worse, f"{best[0]} and {best[1]} are used instead")
+    # Of several velocities keep one that changes, then the surer one.
     ways = [
         pair for pair in (("surge", "sway"), *_PAIRS[:1:-1]) if all(role in chosen for role in pair)
     ]

@@ -54,6 +54,7 @@ def drive_of(words: tuple[str, ...], unit: str, values: np.ndarray) -> Drive | N
     >>> drive_of(words_of("wind speed"), "", np.zeros(2)) is None
     True
     """
+    # Command or feedback, and the words without those.
     told = vocabulary()["words"]
     kind = next((k for k in ("feedback", "command") if any(w in told[k] for w in words)), "")
     rest = [
@@ -64,6 +65,7 @@ def drive_of(words: tuple[str, ...], unit: str, values: np.ndarray) -> Drive | N
     if any(word in told["other"] for word in rest):
         return None
     generic = set(vocabulary()["thruster"]["generic"]["words"])
+    # Quantity and place; the name must clearly be one of a thruster.
     quantity, word, rest = _quantity(rest)
     place = frozenset(_places().get(w, w) for w in rest if w not in generic)
     is_named = len(rest) > len(place) or word in _SURE or bool(set(rest) & set(_places()))
@@ -73,6 +75,7 @@ def drive_of(words: tuple[str, ...], unit: str, values: np.ndarray) -> Drive | N
         return None
     if not quantity and not (place or generic & set(rest)):
         return None
+    # Unit and values decide between pulses, per cent and others.
     quantity, doubt = _by_values(quantity, word, unit.strip().lower(), values)
     return Drive(quantity, place, kind, doubt)
 
@@ -97,6 +100,8 @@ def thrusters_named(
     >>> thrusters_named(frozenset({"bow"}), ship)[0], thrusters_named(frozenset({"stern"}), ship)[0]
     (['tunnel'], [])
     """
+    # The same place, then one whose words contain the
+    # others, then by number, then by what is usual.
     placed = {name: _place_of(name) for name in thrusters}
     if same := [name for name, words in placed.items() if words == place]:
         return same, "" if len(same) == 1 else "it names several"
@@ -162,6 +167,7 @@ def _quantity(words):
 
 def _by_values(quantity, word, unit, values):
     """The quantity by its unit and its numbers besides."""
+    # A stated unit decides; without a quantity the range of the values does.
     known = finite(values) if values.dtype.kind == "f" else np.empty(0)
     if unit in ("%", "pct", "percent"):
         return "percent", ""

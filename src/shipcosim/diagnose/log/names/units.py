@@ -45,6 +45,7 @@ def name_and_unit(header: str) -> tuple[str, str]:
         "name"
     ]:
         return name, found["unit"].strip()
+    # Brackets are the standard form. In other forms the last part must be the spelling of a unit.
     header = header.strip().strip("'\"").strip()
     if found := _BRACKETS.match(header):
         return found["name"].strip(), found["unit"].strip()
@@ -73,6 +74,8 @@ def unit_for(spelling: str, target: str) -> str:
     ('kN', 'parsec')
     """
     spelling = spelling.strip()
+    # A spelling such as ms can stand for several units:
+    # take the first that measures the same quantity.
     wanted = spelled_unit(target)
     options = [
         unit
@@ -102,6 +105,7 @@ def unit_after(words: tuple[str, ...], target: str) -> tuple[tuple[str, ...], st
     ((('surge',), 'm/s'), (('yaw', 'rate'), 'deg/s'))
     """
     wanted = spelled_unit(target)
+    # Longest suffix first, with any separator between its words.
     for count in range(min(_LONGEST_SUFFIX, len(words) - 1), 0, -1):
         last = words[-count:]
         for text in dict.fromkeys(("_".join(last), "/".join(last), "".join(last))):

@@ -32,6 +32,7 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: FileLayout) -> None
     form : FileLayout
         What was said of it.
     """
+    # Positions first, as heading, axes and speeds are judged by them.
     _settle_degrees(chosen, log)
     motion = _motion(chosen, log, form)
     _settle_heading(chosen, log, form, motion)
@@ -45,6 +46,7 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: FileLayout) -> None
         # The unit of a wind speed with a sailor's short name is mostly knots.
         if _is_open(chosen, role) and len(chosen[role].column.strip()) <= 4:
             _guess(chosen, role, "kn", "no unit is stated: kn or m/s")
+    # Angles within pi may be radians.
     for role, guess in list(chosen.items()):
         is_angle = role in ("wind_from", "true_wind_from", "course_over_ground") or role.endswith(
             "_azimuth"
@@ -62,6 +64,7 @@ def _settle_degrees(chosen, log):
         known = (
             np.abs(_finite(log.values[guess.column])) if guess and not guess.unit else np.empty(0)
         )
+        # Integers far beyond any degrees; latitude and longitude share the unit.
         beyond = len(known) and np.median(known) > 1e4 * largest and known.max() <= 1e7 * largest
         other = chosen.get("longitude" if role == "latitude" else "latitude")
         follows = len(known) and other is not None and other.channel.unit == TEN_MILLIONTHS
@@ -115,6 +118,7 @@ def _motion(chosen, log, form) -> Any:
     time = _values(chosen, "time", log, form)
     if time is None:
         return None
+    # North and east, or a local plane of latitude and longitude.
     position = [_values(chosen, role, log, form) for role in ("north", "east")]
     if any(values is None for values in position):
         latitude, longitude = (
@@ -130,6 +134,7 @@ def _motion(chosen, log, form) -> Any:
         meridian, parallel = metres_per_degree(float(latitude[known[0]]))
         turned = wrap_series(np.radians(longitude - longitude[known[0]]), TURN)
         position = [meridian * (latitude - latitude[known[0]]), parallel * np.degrees(turned)]
+    # Only rows with increasing times can be compared.
     rows = np.concatenate(([True], np.diff(time) > 0.0))
     return time, *(np.where(rows, values, np.nan) for values in position)
 
@@ -146,6 +151,8 @@ def _settle_heading(chosen, log, form, motion):
     raw = _values(chosen, "heading", log, form)
     if raw is None or not len(_finite(raw)):
         return
+    # Candidates: degrees, radians unless values are too
+    # large, and angles anticlockwise from east for a yaw.
     units = {"deg": 1.0, "rad": 180.0 / np.pi}
     if not is_open or np.abs(_finite(raw)).max() > _DEGREES:
         units = {"deg": 1.0}
@@ -154,6 +161,7 @@ def _settle_heading(chosen, log, form, motion):
         readings |= {(unit, "ENU"): 90.0 - size * raw for unit, size in units.items()}
     if len(readings) == 1:
         return
+    # Compare with the course, given positions and, if known, the drift angle.
     found = None
     is_placed = all(
         chosen[role].rank < GUESS
@@ -182,6 +190,7 @@ def _settle_heading(chosen, log, form, motion):
                 "no unit is stated, and no value is beyond 2 pi: rad or deg",
             )
         return
+    # Write the reading into the channel: unit, frame of the quaternion, or sign and offset.
     unit, frame = found
     said = f"in {unit} and {'clockwise from north' if frame == 'NED' else 'anticlockwise from east'}, as the course says"
     update = {} if not is_open else {"unit": unit}
@@ -202,6 +211,7 @@ def _settle_axes(chosen, log, form, motion):
         return
     if chosen["heading"].rank == GUESS:
         return
+    # The heading tells which axis is north: with exchanged axes it looks counted from east.
     heading = _values(chosen, "heading", log, form)
     time, x, y = motion
     readings = {"NED": heading, "ENU": 90.0 - heading}
@@ -221,6 +231,8 @@ def _settle_speed(chosen, role, log, form, motion):
     """Unit of a speed by the positions."""
     raw = log.values[chosen[role].column]
     unit = None
+    # Compare the speed, from both components if these
+    # are open, with the distance between positions.
     if motion is not None and motion[1] is not None and raw.dtype.kind == "f":
         speed = raw
         if role in ("surge", "sway", "north_velocity", "east_velocity"):
@@ -249,6 +261,7 @@ def _settle_rate(chosen, log, form, motion):
     heading = _values(chosen, "heading", log, form)
     raw = log.values[chosen["yaw_rate"].column]
     unit = None
+    # Compare with the change of heading.
     if heading is not None and motion is not None and raw.dtype.kind == "f":
         unit = unit_of_rate(motion[0], heading, raw)
     guess = chosen["yaw_rate"]

@@ -67,12 +67,14 @@ def meaning_of(words: tuple[str, ...]) -> Meaning:
     told = vocabulary()["words"]
     fillers = set(told["filler"])
     whole = " ".join(words)
+    # The whole name first, with or without filler words.
     for phrase in (whole, " ".join(w for w in words if w not in fillers)):
         if found := _phrases().get(phrase):
             return found
     for word in words:
         if word in told["other"]:
             return Meaning(None, reason=told["other"][word])
+    # Set points are no measurements, even where the rest of the name is a role.
     if any(word in told["command"] for word in words):
         rest = tuple(w for w in words if w not in told["command"])
         if rest and meaning_of(rest).role:
@@ -86,6 +88,7 @@ def meaning_of(words: tuple[str, ...]) -> Meaning:
 
 def _within(words):
     """The longest name that stands within the words, as a guess."""
+    # Longest phrase first; short and ambiguous ones are left out.
     for length in range(len(words) - 1, 0, -1):
         for start in range(len(words) - length + 1):
             phrase = " ".join(words[start : start + length])

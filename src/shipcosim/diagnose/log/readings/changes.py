@@ -60,6 +60,8 @@ class LogInterpretation:
     @property
     def form(self) -> tuple[str, str]:
         """The form of the velocity in which it is proportional to the change of position."""
+        # Mirroring the position is the same as mirroring velocity and heading
+        # instead, so only the difference between them and the position counts.
         flipped = "position" in self.mirrored
         taken = "mirrored" if ("velocity" in self.mirrored) != flipped else "as is"
         turned = "mirrored" if ("heading" in self.mirrored) != flipped else "body"
@@ -68,8 +70,11 @@ class LogInterpretation:
     @property
     def factor(self) -> complex:
         """Logarithm of the factor between the change of position and that form."""
+        # The change of position is p_dot = w E for velocity w and
+        # E = exp(i heading); over the earth no heading turns it.
         turning = 1.0 if self.earth else self.heading
         factor = self.time * self.velocity * turning / self.position
+        # A mirrored position conjugates the whole equation, and with it the factor.
         factor = complex(factor).conjugate() if "position" in self.mirrored else complex(factor)
         return complex(math.log(abs(factor)), math.atan2(factor.imag, factor.real))
 
@@ -83,11 +88,15 @@ class LogInterpretation:
         angle : float
             By how much the change of position is turned against this reading. [rad]
         """
+        # Bring the logged mean course into the axes of
+        # this interpretation: mirror it, then turn it.
         flipped = "velocity" in self.mirrored
         mirrored = "heading" in self.mirrored
         course = courses[self.earth, self.earth and (mirrored != flipped)]
         course = course.conjugate() if flipped else course
         turn = complex(self.velocity) * (complex(self.heading).conjugate() if self.earth else 1.0)
+        # Only the angle counts. A free angle of the axes
+        # is set to the angle that the positions show.
         return course * turn / abs(turn) * (cmath.exp(1j * angle) if "axes" in self.free else 1.0)
 
     @property
@@ -202,15 +211,19 @@ def changes(stated: dict[str, str]) -> list[LogMistake]:
 
 
 def _time(stated):
+    # Factors are relative to the unit that is stated,
+    # or to seconds. A stated unit is less often wrong.
     own = TIME_COSTS.get(stated or "s", (1.0, 0.0))[0]
     extra = STATED * bool(stated)
     for unit, (factor, cost) in TIME_COSTS.items():
         if factor != own:
             sentence = f"time is in {unit}, not {stated or 's'}"
             yield LogMistake("time", cost + extra, _factor_of("time", factor / own), None, sentence)
+    # Clocks that run at a usual wrong rate, such as twice too fast.
     for factor, cost in FACTORS.items():
         said = f"{factor:g} s pass in each logged second"
         yield LogMistake("time", cost, _factor_of("time", factor), None, said)
+    # A clock of any rate: a narrow prior for small errors, and a wide one that costs more.
     said = CLOCK
     for std, cost in ((0.05, 5.5), (1.5, 8.0)):
         yield LogMistake(
@@ -220,6 +233,7 @@ def _time(stated):
 
 def _units(stated) -> Iterator[LogMistake]:
     for channels, units in CHANNEL_UNITS.items():
+        # Without a stated unit the first one listed, the unit of the role, is assumed.
         given = stated.get(channels[0])
         own = given if given in units else next(iter(units))
         extra = STATED * bool(given)
@@ -260,9 +274,11 @@ def _freed(reading, what):
 
 def _odd(stated) -> Iterator[LogMistake]:
     """What has no name or cannot be put right, and must be beaten by what has one."""
+    # Units that a header states are wrong less often, so these mistakes cost more then.
     of_velocity, of_rate = (STATED * bool(stated.get(role)) for role in ("surge", "yaw_rate"))
     lengths = ("north and east are in another unit, or badly scaled",)
     angles = ("heading is in another unit, or badly scaled",)
+    # Usual wrong factors that belong to no unit.
     for factor, cost in ODD_FACTORS.items():
         said = f"surge and sway must be multiplied by {factor:.3g}"
         yield LogMistake(
@@ -278,6 +294,7 @@ def _odd(stated) -> Iterator[LogMistake]:
         yield LogMistake(
             "unit of rate", cost + of_rate, _factor_of("rate", factor), None, said, None, angles
         )
+    # Factors of any size, with a wide prior of their logarithm.
     said = "surge and sway are in an unknown unit, or badly scaled"
     free = Slab("scale", 1.5)
     cost = 8.0 + of_velocity
@@ -288,6 +305,7 @@ def _odd(stated) -> Iterator[LogMistake]:
     free = Slab("rate", 1.5)
     cost = 8.0 + of_rate
     yield LogMistake("unit of rate", cost, lambda r: _freed(r, "rate"), None, said, free, angles)
+    # An angle between the grid and the heading looks the same as an error of the heading.
     yield LogMistake(
         "turned",
         6.5,

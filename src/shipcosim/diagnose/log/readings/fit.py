@@ -104,15 +104,19 @@ def fitted(
     }
     if not pairs:
         return {}
+    # Thin the rows, and thin each array only once: pairs share them.
     rows = _rows(len(time), [seen for seen, _ in pairs.values()])
     thinned = {id(one): one[rows] for pair in pairs.values() for one in pair}
     time = time[rows]
     pairs = {key: (thinned[id(seen)], thinned[id(told)]) for key, (seen, told) in pairs.items()}
+    # Rows after a gap start the filter anew. With too few other rows nothing can be fitted.
     starts = after_gaps(time)
     if (~starts).sum() < FEWEST_FITTED:
         return {}
+    # Fit each pair, and compare it with a random walk of the observed channel alone.
     fits, alone = _fits(filters(time, starts), pairs, labelled, axes)
     best = max(fits, key=lambda key: fits[key].likelihood - alone[key])
+    # Correlated residuals carry less information: divide the evidence by their correlation.
     rough = whiteness(np.column_stack([fits[best].rest.real, fits[best].rest.imag][:axes]))
     found = {
         key: _relation(fit, (fit.likelihood - alone[key]) / rough, rough)
@@ -123,6 +127,8 @@ def fitted(
 
 def _rows(count, series):
     """Every so many rows that there are not too many, and that a position of coarse resolution changes between them."""
+    # Limit the cost of long logs. Then thin further while
+    # most steps show no change of a coarse channel.
     stride = max(1, math.ceil(count / MOST_FITTED))
     while (
         count / stride > 4 * FEWEST_FITTED
@@ -134,14 +140,19 @@ def _rows(count, series):
 
 def _fits(drafts: list[Filter], pairs, labelled, axes):
     """Of each pair the fit under the noise that suits it best, and how likely what is seen is by itself."""
+    # Whiten each array only once, as columns of one matrix.
     columns = {id(one): one for pair in pairs.values() for one in pair}
     stacked = np.stack(list(columns.values()), axis=1)
     place = {name: number for number, name in enumerate(columns)}
     fits: dict = {}
+    # Noise of the reported channel itself, from differences of neighbouring rows.
     noises = {id(told): _noise_of_rows(told, axes) for _, told in pairs.values()}
+    # Likelihood of each observed channel without any explanation, under its best noise ratio.
     alone = dict.fromkeys((id(seen) for seen, _ in pairs.values()), -np.inf)
+    # Try each ratio of wander to noise, and keep for each pair the one with the largest likelihood.
     for draft, ratio in zip(drafts, RATIOS, strict=True):
         known = draft.gains < 1.0
+        # The Jacobian of the whitening enters the likelihood, so that ratios can be compared.
         scale = draft.scale[known]
         white = whitened(draft, stacked)
         offset = -axes * float(np.sum(np.log(scale)))
@@ -151,6 +162,8 @@ def _fits(drafts: list[Filter], pairs, labelled, axes):
         for key, (seen, told) in pairs.items():
             fit = fit_rows(white[:, place[id(seen)]], white[:, place[id(told)]], axes, offset)
             if key not in fits or fit.likelihood > fits[key].likelihood:
+                # White noise of a rate adds up to a random walk. This is the variance
+                # that it has after the whitening, by the median gain of the filter.
                 gain = float(np.median(draft.gains[known]))
                 adds_up = 1.0 / (
                     gain * (2.0 - gain) * np.median(scale) ** 2
@@ -184,6 +197,8 @@ def fit_rows(seen: np.ndarray, told: np.ndarray, axes: int, offset: float) -> Ro
     offset : float
         Of the logarithm of the likelihood, by the whitening.
     """
+    # Iteratively reweighted least squares with Huber weights:
+    # outliers count as little as their distance requires.
     weights = np.ones(len(told))
     for _ in range(ROBUST_ROUNDS):
         factor = np.vdot(weights * told, seen) / max(np.vdot(weights * told, told).real, 1e-300)
@@ -195,6 +210,7 @@ def fit_rows(seen: np.ndarray, told: np.ndarray, axes: int, offset: float) -> Ro
 
 def _noise_of_rows(told, axes):
     """Variance of an axis of the noise of what is told from row to row; too large where waves are as short as rows."""
+    # The fourth difference removes the motion and leaves the noise of neighbouring rows.
     rows = np.abs(np.diff(told, n=4))
     return _spread(rows, axes) ** 2 / ROUGHNESS
 
@@ -206,6 +222,8 @@ def _spread(off, axes):
 
 def _likelihood(rest, axes):
     """Logarithm of the likelihood of white rows but for a constant, and their variance; single rows count so much."""
+    # Gaussian likelihood at the estimated variance. Large
+    # residuals are clipped, so outliers count little.
     off = np.abs(rest)
     variance = float(np.mean(np.minimum(off, FIT_CLIP * _spread(off, axes)) ** 2)) / axes + 1e-300
     return -0.5 * axes * len(rest) * math.log(variance), variance
@@ -213,10 +231,14 @@ def _likelihood(rest, axes):
 
 def _relation(fit, evidence, rough):
     """The relation of a fit."""
+    # Standard error: the larger of the jackknife over windows and
+    # of that of least squares with the residuals' correlation.
     windows = np.array_split(np.arange(len(fit.told)), RELATION_WINDOWS)
     energy = np.vdot(fit.told, fit.told).real
     size = max(abs(fit.factor), 1e-300)
     std = max(_jackknife(fit, windows), math.sqrt(rough * fit.variance / energy) / size)
+    # Noise in the regressor attenuates the factor; correct its
+    # logarithm, and add the uncertainty of the correction.
     low, unsure = _too_small(len(fit.told) / (size**2 * energy), fit)
     factor = complex(math.log(size) + low, np.angle(fit.factor))
     return Relation(factor, (math.hypot(std, unsure), std), evidence, _throughout(fit, windows))
@@ -237,12 +259,14 @@ def _too_small(per_row, fit):
 
 def _jackknife(fit, windows):
     """Deviation of the factor by what the windows of a log say, relative to its size."""
+    # Per window the energy of the regressor and its product with the residual.
     sums = np.array(
         [
             [np.vdot(fit.told[w], fit.told[w]).real, np.vdot(fit.told[w], fit.rest[w])]
             for w in windows
         ]
     )
+    # One window with a fault of its own may not dominate the standard error.
     tame = np.minimum(np.abs(sums[:, 1]), 4.0 * np.quantile(np.abs(sums[:, 1]), ROBUST_SHARE))
     return float(
         np.sqrt(np.sum(tame**2)) / max(np.real(sums[:, 0]).sum() * abs(fit.factor), 1e-300)
@@ -251,8 +275,11 @@ def _jackknife(fit, windows):
 
 def _throughout(fit, windows):
     """Whether a relation holds in all of a log."""
+    # Clip single rows, so that outliers do not count as a part in which the relation fails.
     clip = FIT_CLIP**2 * fit.variance
     seen, rest = (np.minimum(np.abs(one) ** 2, clip) for one in (fit.seen, fit.rest))
+    # Noise level of the calmer windows. Residuals
+    # beyond some multiple of it are unexplained motion.
     noise = float(np.quantile([rest[w].mean() for w in windows], CALM_SHARE))
     usual = np.array([NOISIER * noise * len(w) for w in windows])
     left = np.array([rest[w].sum() for w in windows])
@@ -264,6 +291,7 @@ def _throughout(fit, windows):
         return bool(np.maximum(apart, 0.0).sum() > UNLABELLED * np.abs(apart).sum())
     # Units of what is seen: what is explained is held against what is left beyond noise; no window counts for many.
     told = np.array([seen[w].sum() for w in windows]) - left
+    # Limit the weight of one window with much motion.
     most = max(
         float(np.quantile(np.abs(told), ROBUST_SHARE)), 2.0 * FIT_CLIP**2 * noise
     )  # noise itself says less

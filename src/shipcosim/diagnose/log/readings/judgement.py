@@ -83,10 +83,13 @@ def judged(evidence: Evidence, changes: Sequence[LogMistake]) -> tuple[list[Judg
     evidence : Evidence
     changes : sequence of LogMistake
     """
+    # Score each combination, and the hypothesis that none of them explains the log.
     best = _best_forms(evidence)
     tried = list(_combinations(changes))
     scored = [_score(combination, evidence) for combination in tried]
     likely = np.array([*(score for score, _ in scored), best - UNEXPLAINED_COST])
+    # Posterior probabilities: the exponentials of the scores,
+    # normalised. The largest is subtracted first to avoid overflow.
     shares = np.exp(likely - likely.max())
     shares = shares / shares.sum()
     found = [
@@ -115,6 +118,7 @@ def _combinations(changes) -> Iterator[tuple[LogMistake, ...]]:
 
 def _best_forms(evidence):
     """What the likeliest forms say, whatever their factors."""
+    # The largest evidence of each relation, without any penalty on its factor or angle.
     position = max(
         (r.evidence for forms in evidence.position.values() for r in forms.values()), default=0.0
     )
@@ -125,15 +129,21 @@ def _best_forms(evidence):
 
 def _score(combination, evidence) -> tuple[float, tuple[float, float]]:
     """Log of the probability of a combination, but for a constant, and the rate of the clock with its deviation."""
+    # Relations that belong to the units and forms of this combination.
     reading = reading_of(combination)
     cost = sum(change.cost for change in combination)
     relation = evidence.relation_of(reading)
     rate = evidence.rate.get(reading.heading_unit)
+    # This heading or position cannot be compared, while another interpretation can: excluded.
     if (evidence.position and relation is None) or (evidence.rate and rate is None):
         return -np.inf, (1.0, 0.0)
+    # Add the log-likelihoods of the relations: wind,
+    # position with its angle and course, and yaw rate.
     said = evidence.wind.likelihood(
         reading, off_angle(relation, reading) if relation is not None else 0.0
     )
+    # Deviations of the factors from what the combination
+    # predicts, with a wide prior where a factor is free.
     slabs = {change.slab.of: change.slab.std for change in combination if change.slab}
     off = [_off_position(relation, reading, slabs), _off_rate(rate, reading, slabs)]
     if relation is not None:
@@ -146,15 +156,18 @@ def _score(combination, evidence) -> tuple[float, tuple[float, float]]:
         # Whether heading and yaw rate go the same way, as evidence.
         agrees = (math.cos(rate.factor.imag) > 0.0) == (reading.rate_factor > 0.0)
         said += rate.evidence if agrees else 0.0
+    # Usual speeds and time steps tell units apart that no relation between channels does.
     said += _usual(evidence.speed, abs(reading.velocity), USUAL_SPEED) + _usual(
         evidence.step, reading.time, USUAL_STEP
     )
+    # A free clock rate is integrated out, as it scales both relations.
     factors, clock = _factors([one for one in off if one], slabs.get("time"))
     return said + factors - cost, (reading.time * math.exp(clock[0]), reading.time * clock[1])
 
 
 def _usual(logged, factor, usual):
     """Log-density of a speed or a step, against what is usual."""
+    # Lognormal density of the logged value in the unit of this reading.
     if not logged or not np.isfinite(logged):
         return 0.0
     middle, spread = usual
@@ -163,6 +176,7 @@ def _usual(logged, factor, usual):
 
 def _angle(relation, reading):
     """Log-density of the angle of a factor that was found."""
+    # A free angle has the density of a uniform prior over all directions.
     if "angle" in reading.free:
         return -math.log(2.0 * math.pi)
     return _log_density(np.array([off_angle(relation, reading)]), relation.std[1], ANGLE_TOLERANCE)[
@@ -174,10 +188,15 @@ def _ahead(relation, reading, courses):
     """Log-density of the direction in which the craft goes against her bow, over that of any: most go ahead."""
     if reading.heading_unit not in courses:
         return 0.0
+    # Mean course relative to the bow. Its length says
+    # how constant it is; a changing course says nothing.
     course = reading.course(courses[reading.heading_unit], off_angle(relation, reading))
     if abs(course) < ONE_COURSE:
         return 0.0
+    # Circular standard deviation of the course, widened by the usual drift angle.
     spread = math.hypot(DRIFT, math.sqrt(-2.0 * math.log(min(abs(course), 1.0))))
+    # Mixture: most craft go ahead, some astern, the rest
+    # in any direction; relative to the uniform density.
     shares = [
         share
         * 2.0
@@ -219,20 +238,27 @@ def _off_rate(rate, reading, slabs):
 
 def _factors(offs, slab):
     """Log-density of the factors found, and the logarithm of the clock's rate with its deviation where it is free."""
+    # Without a free clock the densities of the factors multiply.
     if slab is None or not offs:
         return sum(_one_factor(*off)[0] for off in offs), (0.0, 0.0)
+    # The clock rate adds the same logarithm to all factors. Its estimate is their weighted mean.
     stds = np.array([np.hypot(std, tolerance[0]) for _, std, tolerance, _ in offs])
     weights = stds**-2 / np.sum(stds**-2)
     centre = float(weights @ [off[0] for off in offs])
     spread = float(np.sum(stds**-2) ** -0.5)
+    # Integrate the joint density over the clock rate on
+    # a grid about this estimate; its prior is normal.
     at = centre + 2.0 * max(stds) * GRID
     log = sum(_one_factor(value - at, std, tolerance, free) for value, std, tolerance, free in offs)
     log = log - 0.5 * (at / slab) ** 2 - math.log(slab * math.sqrt(2.0 * math.pi))
+    # Sum on the grid relative to the largest value, against underflow.
     top = float(log.max())
     return top + math.log(float(np.sum(np.exp(log - top))) * (at[1] - at[0])), (centre, spread)
 
 
 def _one_factor(value, std, tolerance, free):
+    # A free factor has the wide normal density of its
+    # prior instead of the tolerance of instruments.
     value = np.atleast_1d(value)
     if free is not None:
         return -0.5 * (value / free) ** 2 - math.log(free * math.sqrt(2.0 * math.pi))
@@ -241,6 +267,7 @@ def _one_factor(value, std, tolerance, free):
 
 def _log_density(value, std, tolerance):
     """Of a deviation as measured, and as instruments differ: mostly by the first tolerance, a few by the second."""
+    # Measured uncertainty and both tolerances of instruments: a mixture of two normal densities.
     near = math.hypot(std, tolerance[0])
     far = math.hypot(std, tolerance[1])
     densities = [

@@ -51,9 +51,12 @@ def misread(log: dict, stated: dict[str, str]) -> list[Finding]:
     list of Finding
         What is sure; and what is left open, as one finding with `alternatives`.
     """
+    # The kinematic relations in the log; without any there is nothing to compare.
     evidence = evidence_of(log)
     if not evidence.position and not evidence.rate:
         return []  # what is usual alone says nothing
+    # Posterior of all combinations of mistakes. The angle of a grid is estimated
+    # only where positions were not converted from latitude and longitude.
     readings, unexplained = judged(evidence, changes(stated))
     angle = _angle(readings[0], evidence) if "latitude" not in stated else None
     return (
@@ -88,6 +91,7 @@ def is_as_labelled(log: dict, stated: dict[str, str]) -> bool:
     stated : dict of str to str
     """
     readings, unexplained = judged(evidence_of(log), changes(stated))
+    # A wrong clock does not concern the labels.
     labels_only = [change for change in readings[0].changes if change.slot != "time"]
     return not labels_only and unexplained < LEFT_OPEN
 
@@ -102,17 +106,22 @@ def evidence_of(log: dict) -> Evidence:
     """
     if "heading" not in log:
         return Evidence({}, {})
+    # The heading as logged, and read as radians or as degrees instead.
     headings = {unit: unit * log["heading"] for unit in (1.0, DEGREE, 1.0 / DEGREE)}
+    # Heading against the integral of the yaw rate.
     rate = rate_relations(log["time"], headings, log["yaw_rate"]) if "yaw_rate" in log else {}
     position = {}
     speed = None
     courses = {}
+    # Position against the integral of the velocity, with positions in metres or in degrees.
     if {"north", "east", "surge", "sway"} <= set(log):
         positions = {False: log["north"] + 1j * log["east"]}
         if _can_be_degrees(log):
             metres = POSITION_IN_DEGREES.undo(log)
             positions[True] = metres["north"] + 1j * metres["east"]
         position = position_relations(log, headings, positions)
+        # Size and direction of the velocity: usual values
+        # tell readings apart that the relations do not.
         speeds = np.hypot(log["surge"], log["sway"])
         speeds = finite(speeds)
         speed = root_mean_square(speeds) if speeds.size else None
@@ -120,6 +129,7 @@ def evidence_of(log: dict) -> Evidence:
             unit: _courses(log["surge"] + 1j * log["sway"], values)
             for unit, values in headings.items()
         }
+    # Only headings that can be followed from row to row are compared with the wind.
     units = {*rate, *(unit for unit, _ in position)}
     followed = {unit: heading for unit, heading in headings.items() if unit in units}
     return Evidence(
@@ -136,8 +146,11 @@ def _courses(velocity, heading):
     """Mean direction of the velocity against the bow, as `Reading.course` takes it; fast rows count for more."""
     turn = np.exp(1j * np.radians(heading))
     velocity, turn = (one[np.isfinite(velocity) & np.isfinite(turn)] for one in (velocity, turn))
+    # Weights by speed: at low speed the direction is mostly
+    # noise. The length is 1 for a constant direction.
     weights = np.abs(velocity)
     energy = max(float(np.sum(np.abs(velocity) ** 2)), 1e-300)
+    # Velocity as logged, and turned back from the earth with the heading as it is or mirrored.
     ways = {(False, False): 1.0, (True, False): np.conj(turn), (True, True): turn}
     return {way: complex(np.sum(weights * velocity * of) / energy) for way, of in ways.items()}
 
@@ -155,6 +168,7 @@ def _can_be_degrees(log):
 
 def _holds_throughout(best, evidence):
     """Whether a reading holds in the whole log, not in the larger part of it, by the relations of what it changes."""
+    # Relations concern the best reading only through the channels that it changes.
     reading = reading_of(best.changes)
     changed = {role for change in best.changes for role in change.channels}
     relations = [
@@ -170,10 +184,12 @@ def _holds_throughout(best, evidence):
 
 def _angle(best, evidence):
     """By how much the grid is turned where no compass can be off by as much; None where it is not, or not alone."""
+    # An angle is estimated only where it is free, and unique only without mirrored positions.
     reading = reading_of(best.changes)
     relation = evidence.relation_of(reading)
     if relation is None or "angle" not in reading.free or "position" in reading.mirrored:
         return None
+    # Larger than any error of a compass, the angle must be one of the grid.
     angle = ParameterEstimate(
         float(np.degrees(off_angle(relation, reading))), float(np.degrees(relation.std[1])), "deg"
     )
@@ -184,20 +200,24 @@ def _findings(
     readings: list[Judged], unexplained: float, angle: ParameterEstimate | None
 ) -> list[Finding]:
     """Findings of the changes that are sure, and one of what is left open; `angle`: of a grid that can be put right."""
+    # Marginal probability of each mistake: the sum over all combinations that contain it.
     readings = _with_known_rates(readings)
     shares: dict[str, float] = {}
     for one in readings:
         for said in {change.sentence for change in one.changes}:
             shares[said] = shares.get(said, 0.0) + one.probability
+    # Each sentence stands for the change of its likeliest combination.
     first = {
         change.sentence: change for one in reversed(readings) for change in one.changes
     }  # likeliest last
+    # Sure mistakes are findings of their own, unless another cause looks the same.
     sure = [
         said
         for said, share in shares.items()
         if share > READING_SURE and (not first[said].or_else or angle)
     ]
     found = [_named(first[said], shares[said], readings, angle) for said in sure]
+    # What remains besides the sure mistakes, with its probability and clock rate.
     rests: dict[tuple[LogMistake, ...], float] = {}
     rates: dict[tuple[LogMistake, ...], float] = {}
     for one in readings:
@@ -207,6 +227,8 @@ def _findings(
             )
             rests[rest] = rests.get(rest, 0.0) + one.probability
             rates.setdefault(rest, one.rate[0])
+    # The rest may well be nothing, and is not reported
+    # then. If no combination explains the log, nothing is.
     if unexplained + rests.get((), 0.0) > LEFT_OPEN:
         return found if unexplained < LEFT_OPEN else []
     return [*found, _left_open(rests, rates)]
@@ -214,10 +236,12 @@ def _findings(
 
 def _with_known_rates(readings):
     """Readings in which a clock of any rate is one of a usual rate, where that explains as much."""
+    # Likeliest combination for each set of other changes that has a clock of a usual wrong rate.
     usual = {
         _beside_clock(one): one for one in reversed(readings) if _clock_of(one) not in (None, CLOCK)
     }
     found = []
+    # A free clock rate within 3 standard errors of a usual one is replaced by the usual one.
     for one in readings:
         other = usual.get(_beside_clock(one)) if _clock_of(one) == CLOCK else None
         if (
@@ -239,7 +263,9 @@ def _beside_clock(one):
 
 def _named(change, probability, readings, angle):
     """The finding of one change."""
+    # No probability of 1: the priors are assumed.
     probability = min(probability, MOST_SURE)
+    # An angle near half a turn is also two wrong signs.
     if change.or_else:
         both = "both have the other sign, or " if abs(angle.estimate) > 180.0 - COMPASS_OFF else ""
         said = f"{change.sentence}; it looks the same if {both}{' or '.join(change.or_else)}"
@@ -261,14 +287,17 @@ def _clock(change, readings):
 
 def _left_open(rests, rates):
     """One finding of several readings that explain a log alike: the likeliest, and the others beside it."""
+    # The likeliest non-empty set leads; the others are its alternatives.
     (first, share), *others = sorted(rests.items(), key=lambda entry: (not entry[0], -entry[1]))
     words = {rest: _words(rest, rates[rest]) for rest in rests}
+    # Keep those that are not unlikely, and at least one.
     likely = [rest for rest, p in others if p > UNLIKELY_READING] or [
         rest for rest, _ in others[:1]
     ]
     beside = [said for change in first for said in change.or_else]
     beside += [words[rest] or NOTHING_ELSE for rest in likely if words[rest] != words[first]]
     channels = tuple(dict.fromkeys(role for change in first for role in change.channels))
+    # Causes that no log can tell apart share the probability.
     share = share / (1 + len(first[0].or_else))
     alternatives = tuple(dict.fromkeys(beside))[:MOST_ALTERNATIVES]
     return Finding(

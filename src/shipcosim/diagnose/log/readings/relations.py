@@ -45,6 +45,7 @@ def position_relations(log: dict, headings: dict, positions: dict) -> dict:
     -------
     dict of (heading, position) to dict of form to Relation
     """
+    # Rows in which velocity and all readings of heading and position have values.
     velocity = log["surge"] + 1j * log["sway"]
     known = np.isfinite(velocity) & np.all(
         [np.isfinite(v) for v in (*headings.values(), *positions.values())], axis=0
@@ -54,6 +55,7 @@ def position_relations(log: dict, headings: dict, positions: dict) -> dict:
         return {}
     time = log["time"][rows]
     known_positions = {position: seen[rows] for position, seen in positions.items()}
+    # Integrate the velocity of each form, for each reading of the heading that can be followed.
     pairs: dict = {}
     for heading, values in headings.items():
         if not _can_be_followed(wrap_series(np.diff(values[rows]))):
@@ -64,6 +66,8 @@ def position_relations(log: dict, headings: dict, positions: dict) -> dict:
         }
         for position, seen in known_positions.items():
             pairs |= {(heading, position, form): (seen, way) for form, way in ways.items()}
+    # Fit all pairs at once, since they share thinning
+    # and whitening, and sort the results by reading.
     found: dict = {}
     labelled = (1.0, False, ("as is", "body"))
     for (heading, position, form), relation in fitted(time, pairs, labelled).items():
@@ -85,19 +89,24 @@ def rate_relations(time: np.ndarray, headings: dict, rate: np.ndarray) -> dict:
     -------
     dict of heading to Relation
     """
+    # Rows in which the yaw rate and all readings of the heading have values.
     rows = np.flatnonzero(
         np.isfinite(rate) & np.all([np.isfinite(v) for v in headings.values()], axis=0)
     )
     if len(rows) < 2 * FEWEST_INCREMENTS:
         return {}
+    # The change of heading that the yaw rate predicts.
     told = _integral(time[rows], rate[rows])
     pairs = {}
+    # Unwrap the heading between rows, which needs turns of less than half a revolution.
     for name, heading in headings.items():
         change = wrap_series(np.diff(heading[rows]))
         if _can_be_followed(change):
             beside = wrap_series(
                 np.diff(heading[rows] - told)
             )  # she can turn by more than half a turn between rows
+            # If the predicted turns are too large for that, and the heading
+            # follows them, unwrap the difference to the prediction instead.
             if not _can_be_followed(np.diff(told)) and np.quantile(np.abs(beside), 0.9) < ALONGSIDE:
                 change = np.diff(told) + beside
             pairs[name] = np.r_[0.0, np.cumsum(change)].astype(complex), told.astype(complex)

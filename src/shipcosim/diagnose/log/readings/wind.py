@@ -54,23 +54,31 @@ class WindRelations:
         angle : float
             By how much the change of position is turned against this reading. [rad]
         """
+        # Factor of the velocity in the relation a E = W
+        # + w E, before the turn of the wind's own frame.
         mirrored = "heading" in reading.mirrored
         flipped = "velocity" in reading.mirrored
         told = complex(reading.velocity) * (
             cmath.exp(1j * angle) if "axes" in reading.free else 1.0
         )
+        # Likelihood of each way in which the wind channels may be labelled, with its cost.
         said = []
         for seen, cost in SEEN.items():
             key = (reading.heading_unit, mirrored, seen, (flipped, reading.earth))
             if key not in self.fits:
                 return 0.0
+            # Velocity over the earth, or wind from north,
+            # moves the heading's factor to the other side.
             turned = reading.earth and seen != "north"
             factor = told * (complex(reading.heading).conjugate() if turned else 1.0)
             factor *= complex(reading.heading) if seen == "north" and not reading.earth else 1.0
             said += [
                 _at(self.fits[key], factor / unit) - cost - more for unit, more in UNITS.items()
             ]
+            # Factor 0: the wind is logged over ground already.
             said.append(_at(self.fits[key], 0.0) - cost - WIND_LABEL_COST)
+        # Sum the probabilities of all labels of the wind. The
+        # floor limits what the wind can say against a reading.
         top = max(said)
         return max(top + math.log(sum(math.exp(one - top) for one in said)), -MOST_OF_WIND)
 
@@ -78,6 +86,7 @@ class WindRelations:
 def _at(fit, factor):
     """Log-likelihood with the factor that a reading says, give or take what wind sensors are off."""
     likelihood, found, variance = fit
+    # Wind sensors follow the velocity to about a fifth only, which widens the variance.
     wide = variance + (WIND_SCALE * abs(factor)) ** 2
     return likelihood - 0.5 * abs(found - factor) ** 2 / wide - math.log(wide / variance)
 
@@ -96,18 +105,23 @@ def wind_relations(log: dict, headings: dict[float, np.ndarray]) -> WindRelation
     -----
     A ship that hardly moves is not judged by it: noise of her velocity would make all factors too small.
     """
+    # Complete rows, thinned to limit the cost.
     roles = ("wind_speed", "wind_from", "surge", "sway")
     rows = complete_rows(log, (*roles, "heading"))
     rows = rows[:: max(1, math.ceil(len(rows) / MOST_FITTED))]
     if not headings or len(rows) < FEWEST_WIND_ROWS:
         return WindRelations({})
+    # Apparent wind and velocity as complex numbers: ahead and i times to starboard.
     time = log["time"][rows]
     apparent = log["wind_speed"][rows] * np.exp(1j * np.radians(log["wind_from"][rows]))
     velocity = log["surge"][rows] + 1j * log["sway"][rows]
+    # Noise of the velocity attenuates the factor, so the ship must move well above this noise.
     if np.mean(np.abs(velocity) ** 2) < 2.0 * (CLEAR_MOTION * _noise(velocity)) ** 2:
         return WindRelations({})
+    # A third of the noise ratios is enough for the wind.
     drafts = filters(time, after_gaps(time))[::3]
     fits: dict = {}
+    # Turn the wind by each reading of the heading, and fit each form of the velocity to it.
     for unit, heading in headings.items():
         for mirrored in (False, True):
             turn = np.exp((-1j if mirrored else 1j) * np.radians(heading[rows]))
@@ -140,6 +154,7 @@ def _noise(velocity):
 
 def _fitted(drafts, seen, told):
     """Of each pair the fit under the noise that suits it best."""
+    # Whiten all series together, and keep for each pair the filter with the largest likelihood.
     stacked = np.stack([*seen.values(), *told.values()], axis=1)
     fits: dict[tuple, RowsFit] = {}
     for draft in drafts:
@@ -156,6 +171,7 @@ def _fitted(drafts, seen, told):
 
 def _tamed(fits):
     """Likelihoods over the best one, and variances of the factors, by how much what is left hangs together."""
+    # Residuals of the best fit show their correlation, by which all evidence is divided.
     best = max(fits.values(), key=lambda fit: fit.likelihood)
     rough = whiteness(np.column_stack([best.rest.real, best.rest.imag]))
     return {
