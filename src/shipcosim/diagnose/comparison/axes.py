@@ -271,8 +271,8 @@ def axes_of(felt: Felt, commanded: Commanded, model: ShipModel) -> list[Axis]:
     rows = felt.usable
     # Force that the motion needs: M nu_dot + C_RB(nu) nu, smoothed as all other loads are.
     force = model.mass_matrix @ felt.rates + kernel.smooth(moving_mass(motion, model))
-    # Blocks longer than the kernel, as smoothing correlates the errors within it; few enough to
-    # keep the regression quick.
+    # Blocks longer than the kernel, as smoothing correlates the errors within it, and at most
+    # MOST_BLOCKS of them.
     block = max(int(BLOCK_WIDTHS * kernel.width / kernel.step), int(rows.sum() / MOST_BLOCKS), 1)
     thrust = sum(commanded.thrusters.values(), np.zeros_like(commanded.hull))
     found = []

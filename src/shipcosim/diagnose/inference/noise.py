@@ -52,10 +52,11 @@ def first_noise(record: Record, length: float) -> Noise:
     third = np.diff(record.measured, 3, axis=-2)
     silent = ~np.any(np.isfinite(third), axis=-2, keepdims=True)
     white = np.sqrt(np.nanmedian(np.where(silent, 0.0, third**2), axis=-2) / 0.455 / 20.0)
-    # A channel may be constant or rounded: no noise below the resolution of usual instruments.
+    # A floor, as a rounded or constant channel would appear free of noise; a channel without
+    # measurements gets 1.
     least = np.array([0.02, 0.02, 5e-4, 3e-3, 3e-3, 1e-4])
     white = np.where(silent[..., 0, :], 1.0, np.maximum(white, least))
-    # Jolts and random walk scale with the accelerations of ships of this length.
+    # Start values of accelerations; those in yaw by a lever of a quarter of the length.
     turning = 4.0 / length  # 1/m, from accelerations to those in yaw
     jolt = np.array([1e-3, 1e-3, 1e-3 * turning])
     walk = np.array([1e-5, 1e-5, 1e-5 * turning])

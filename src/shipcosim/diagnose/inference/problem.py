@@ -61,9 +61,9 @@ def identification_problem(
             for path in parameter.paths
         }
         ship = replace(ship, tolerances=ship.tolerances | unknown_wind)
+    wanted = tuple(hypothesis for hypothesis in everyone if hypothesis not in hidden)
     # Noise and linear problem depend on each other: prepare with first noise, tune it, prepare
     # again.
-    wanted = tuple(hypothesis for hypothesis in everyone if hypothesis not in hidden)
     start = first_noise(record, ship.length) if noise is None else noise
     problem = prepared(IdentificationProblem(record, ship, wanted, start, motion))
     return problem if noise is not None else prepared(replace(problem, noise=tuned_noise(problem)))

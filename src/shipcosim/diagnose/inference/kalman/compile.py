@@ -68,9 +68,9 @@ def compile_filter(platform: str, out: Path) -> Path:
     with (
         tempfile.TemporaryDirectory() as folder
     ):  # takes the import library that the linker leaves for Windows
-        # The digest in the library tells whether it was compiled from the present source.
         library = Path(folder, target.name)
         command = [sys.executable, "-m", "ziglang", "cc", "kalman.c", *_options(platform)]
+        # The digest in the library tells whether it was compiled from the present source.
         command += [f'-DSOURCES="{digest(platform)}"', "-o", str(library)]
         subprocess.run(command, cwd=FOLDER, check=True)
         target.write_bytes(library.read_bytes())
