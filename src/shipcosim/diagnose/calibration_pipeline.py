@@ -374,7 +374,6 @@ def _judged(reference, found, suspects):
             remarks.append(
                 f"{number.name} is {off:.1f} of its tolerances off: is its value right, and the tolerance?"
             )
-    # Unmodelled errors of single logs.
     for name, kinds in found.unmodelled.items():
         for kind, gain in kinds.items():
             if gain > NOT_WELL:

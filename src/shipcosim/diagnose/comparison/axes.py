@@ -107,7 +107,6 @@ class Axis:
 
     def total(self, commanded: Commanded) -> np.ndarray:
         """What all thrusters are commanded, (n,) array."""
-        # Forces of the thrusters add up on the axis.
         return sum(
             (self.smoothed(load) for load in commanded.thrusters.values()), np.zeros(self.felt.size)
         )

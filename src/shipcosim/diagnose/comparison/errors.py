@@ -117,8 +117,8 @@ def errors_over_none(
         1:, None
     ]
     time = counts * record.step
-    # Constant surge, sway and yaw rate: the ship sails along an arc, whose chord is v t sinc(r t /
-    # 2) at half the turn.
+    # With constant velocities the ship sails along an arc: its chord is the distance times sinc of
+    # half the turn, in the direction at half the turn.
     (x, y, psi, u, v, r) = (value[rows] for value in seen)
     turned = (
         np.exp(1j * psi)

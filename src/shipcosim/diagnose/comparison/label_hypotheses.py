@@ -113,7 +113,6 @@ def changes_of(record: Record, model: ShipModel) -> list[tuple[LabelError, ...]]
     """
     # Of a command that never changes nothing tells the sign.
     names = [name for name in model.thrusters if np.ptp(record.units[name][0]) > 0.0]
-    # Only thrusters of the same make can be exchanged without the log showing it otherwise.
     pairs = [
         pair for pair in combinations(names, 2) if model.make_of(pair[0]) == model.make_of(pair[1])
     ]

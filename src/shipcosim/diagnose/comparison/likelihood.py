@@ -196,7 +196,7 @@ def likelihood_of(log: Blocks, commanded: Commanded, ahead: dict[str, np.ndarray
 
 def _columns(log, i, commanded, ahead):
     """The sum of the thrusters' loads, and by what they may differ from it, each with its standard deviation."""
-    # Thrusters that act on this axis; ways is the difference of thrust ahead and astern.
+    # Thrusters that act on this axis; ways is half the difference of thrust ahead and astern.
     loads = {name: load[i] for name, load in commanded.thrusters.items() if np.any(load[i])}
     ways = sum(
         (load * (ahead[name] - 0.5) for name, load in loads.items()),

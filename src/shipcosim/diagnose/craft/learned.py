@@ -135,8 +135,8 @@ class LearnedCraft:
     each_without: tuple[LearnedCraft, ...] = ()
 
     def on(self, model: ShipModel) -> ShipModel:
-        # Uncertainty of learning adds to what tolerances the numbers have already.
         """The ship with these numbers, known as well as their standard deviations say."""
+        # The uncertainty of learning adds to the tolerances that the numbers have already.
         known = {
             path: float(np.hypot(model.tolerances.get(path, 0.0), std))
             for path, std in self.std.items()

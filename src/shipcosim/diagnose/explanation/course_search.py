@@ -213,7 +213,7 @@ def _otherwise(given: ExplainedLog, plain: Identification) -> Iterator[Explained
     # The plain form, where another one was learnt.
     if found.problem.model.form_scale:
         yield replace(given, identification=plain, fits=(fitted(plain.problem),))
-    # Tuned noise has grown to cover the cause: bound the random walk by that of healthy ships.
+    # Tuned noise may have grown to cover the cause: bound the random walk by that of healthy ships.
     walk = np.minimum(plain.problem.noise.walk, CALM_WALK * np.array([1.0, 1.0, WALK_IN_YAW]))
     if np.any(walk < 0.9 * np.asarray(plain.problem.noise.walk)):
         noise = replace(plain.problem.noise, walk=walk)

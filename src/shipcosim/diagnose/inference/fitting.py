@@ -228,8 +228,8 @@ def _fitted(problem, hypotheses, values, rounds):
     finite = {
         path: v if np.isfinite(v) else problem.model.get(path) for path, v in (values or {}).items()
     }
-    # Nothing is re-estimated about the companions and nonlinear numbers before the first round.
     values = bounded(hypotheses, finite)
+    # Companions and nonlinear numbers keep the ship's values until the first estimate.
     about = {}
     motion = problem.motion
     last = None

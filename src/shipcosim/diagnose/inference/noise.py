@@ -131,8 +131,8 @@ def tuned(
 
 def _begun(noise: Noise, left: Linear, record: Record) -> Noise:
     """The noise with the frequency of waves, and their share in the noise of the velocities, that suit a log best."""
-    # A grid over frequencies and levels: the likelihood has local maxima in the frequency, which
-    # Newton's method does not leave.
+    # Newton's method only finds a local maximum, so it starts from the best point of a grid over
+    # wave frequency and levels.
     rows = [(frequency, *levels) for frequency in _FREQUENCIES for levels in _LEVELS]
     frequency, white, wave = np.array(rows).T
     many = _scaled(noise, np.zeros((len(rows), len(_GROUPS))))

@@ -121,8 +121,8 @@ def tuned_noise(problem: IdentificationProblem, fit: Fit | None = None) -> Noise
 
 
 def beside_likeliest(problem: IdentificationProblem) -> Fit:
-    # Noise tuned beside nothing would absorb a large error, so the likeliest cause is fitted first.
     """The fit with the cause that explains most at first sight, if it does so beyond chance."""
     fit = fitted(problem)
+    # Noise tuned without it would absorb the effect of a large cause.
     gain, hypothesis, values = screened(problem, fit)[0]
     return fitted(problem, (hypothesis,), values) if gain > TUNED_BESIDE else fit

@@ -148,7 +148,6 @@ def trial_evidence(
 
 
 def known_numbers(model: ShipModel) -> list[tuple[str, float]]:
-    # Tolerances of hull and thrusters, without the wind's, as trials are sailed calm.
     """What is uncertain whatever the cause: tolerances of hull and thrusters, current, compass and antenna.
 
     Returns
@@ -156,6 +155,7 @@ def known_numbers(model: ShipModel) -> list[tuple[str, float]]:
     list of (str, float)
         Number of the ship and standard deviation; compass and antenna, `MOUNTING`, last.
     """
+    # Tolerances of hull and thrusters, without the wind's, as trials are sailed calm.
     places = (model.vessel, *model.thrusters)
     found = [
         (path, size) for path, size in model.tolerances.items() if path.rpartition(".")[0] in places

@@ -136,6 +136,7 @@ def as_ordered(record: Record, log: xarray.Dataset, model: ShipModel) -> Record:
             ),
             None,
         )
+        # Orders as logged; the averaged ones where the log has a hole.
         own = speed if role is None else told[role][1] * _known(log[role].values, speed, at)
         azimuth = f"{name}_azimuth"
         units[name] = (
@@ -148,7 +149,6 @@ def as_ordered(record: Record, log: xarray.Dataset, model: ShipModel) -> Record:
 
 
 def _known(series, otherwise, at):
-    # Present commanded values, the averaged ones where there is none.
     """Values of a series at some rows, others where there is none."""
     return np.where(np.isfinite(series[at]), series[at], otherwise)
 

@@ -85,8 +85,8 @@ def rows_without_condition(record: Record) -> dict[str, np.ndarray]:
     ]
     most = max(tries, key=lambda one: one[0], default=(0, None))
     if most[0]:
-        # Free drift: predictions that lie wholly on rows without thrust.
         found["other headings"] = most[1]
+    # Free drift: predictions that lie wholly on rows without thrust.
     powered = ~is_idle(record)
     if sorted_by(powered, rows, record)[1].size and powered.mean() >= LEAST_TRAINED:
         found["free drift"] = powered
