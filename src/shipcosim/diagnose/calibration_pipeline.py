@@ -150,14 +150,18 @@ def calibrate(
     given = given_system(system).given
     with threadpool_limits(1):
         problems = problems_of(logs, given, channels, causes, say)
+        # Faults of the logs first; logs that may be misread make no reference.
         found = {name: corrected(problem) for name, problem in problems.items()}
         _check_usable(found)
+        # A craft far from the file's is learned by regression instead.
         if any(one.comparison.started_craft for one in found.values()):
             say("fitting the ship's numbers")
             return _calibrated_craft(found, given, out)
+        # Fit all logs together: common numbers of the ship, weather by log.
         several = SeveralLogs({name: one.problem for name, one in found.items()}, is_well=True)
         say("fitting the ship's numbers")
         fitted = calibrated_to(several)
+        # Look for causes that the fit may have absorbed: beside it, and in each log by itself.
         say("is she well?")
         suspects = causes_beside(fitted)
         named = {name: _named_in(problem) for name, problem in problems.items()}
@@ -165,6 +169,7 @@ def calibrate(
         errors = remaining_errors(fitted)
     told = {name: ReferenceLog(**_about(name, one)) for name, one in found.items()}
     ship = next(iter(found.values())).ship
+    # Unmodelled errors that such logs have anyway: later logs must exceed them.
     ordinary = {
         kind: max(one[kind] for one in fitted.unmodelled.values()) for kind in _KINDS_OF_THE_LOG
     }
@@ -182,6 +187,7 @@ def calibrate(
         )
         for name, one in found.items()
     )
+    # A reference is only written if nothing speaks against it.
     refusals, remarks = _judged(reference, fitted, suspects)
     refusals = (*_reasons_not_to_trust(each, named), *refusals)
     result = CalibratedShip(reference, each, refusals, remarks)
@@ -212,6 +218,7 @@ def _calibrated_craft(
     reference = learned_reference(
         craft, ship, list(told.values()), given.name, shipcosim.__version__
     )
+    # With several logs each is predicted by what the others taught (cross-validation).
     each = craft.each_without or (craft,)
     logs = []
     for others, (name, one) in zip(each, found.items(), strict=True):
@@ -339,8 +346,10 @@ def _judged(reference, found, suspects):
     """Why these logs make no reference, and what to know of one that they do make."""
     refusals = []
     remarks = []
+    # Unbounded moves of the numbers, to compare with the bounded estimates.
     names, _, by, _ = numbers_of(found.fit)
     moved = dict(zip(names, by, strict=True))
+    # Causes that still gain beside the calibrated ship.
     for label, gain in suspects.items():
         text = f"The logs still look like {label} beside the calibrated ship ({gain:.0f} nats)"
         if gain > NOT_WELL:
@@ -351,6 +360,8 @@ def _judged(reference, found, suspects):
             remarks.append(
                 f"{text}. If it is there, later logs will be held against a ship that has it."
             )
+    # Numbers at their bounds refuse the reference; those at the edge of their tolerances get a
+    # remark.
     for number in reference.numbers:
         wanted = number.nominal + moved[number.name]
         if abs(wanted - number.estimate) > BEYOND * number.std:

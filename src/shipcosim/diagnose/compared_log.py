@@ -122,6 +122,8 @@ def compared(log: CheckedLog) -> ComparedLog:
     that is far off is in the ship from here on.
     """
     length = log.ship.length
+    # A long log is reduced to stretches; the ship gets its kind of wind and surrogates of
+    # third-party FMUs.
     log = replace(log, repaired=in_stretches(log.repaired, length))
     ship = as_logged(log.ship, log.repaired)
     record = record_of(log.repaired, ship)
@@ -134,20 +136,25 @@ def compared(log: CheckedLog) -> ComparedLog:
     said = f"Rows {step:.3g} s apart do not show this ship's answers: no cause is named. {most:.2g} s would."
     too_slow = (said,) if step > most else ()
     unknown = _unknown_thrusters(log.repaired, ship)
+    # Rows that are too few, or too far apart, show no forces.
     if too_slow or felt.usable.sum() < FEWEST_USABLE:
         return _stage(log, LogComparison(errors, (), obstacles=too_slow + unknown))
+    # Loads by the model, and regressions of measured force by axis.
     commanded = commanded_by(record, felt, ship)
     axes = axes_of(felt, commanded, ship)
     over_none = errors_over_none(record, felt, errors)
+    # Unlogged thrusters make every cause uncertain; only large missing forces are reported.
     if unknown:
         missing = tuple(missing_loads(axes, commanded, felt, ship, over_none))
         large = tuple(one.discrepancy for one in missing if one.is_large)
         return _stage(log, LogComparison(errors, large, obstacles=unknown, missing=missing))
+    # Labels first, as gains and ratio depend on them.
     labels = read_labels(record, felt, axes, ship)
     gains = gains_of(axes, labels.used.commanded, labels.used.ahead)
     ratio = common_ratio(gains)
     missing = missing_loads(axes, labels.used.commanded, felt, ship, over_none)
     told = tuple(discrepancies_of(labels, gains, ratio, missing))
+    # A ratio far off would bend every later fit: the ship starts with it.
     gross = ratio is not None and ratio.differs(GROSS)
     comparison = LogComparison(errors, told, tuple(gains), labels, ratio, missing=tuple(missing))
     found = _stage(log, comparison)
@@ -199,6 +206,7 @@ def learned_from(
     LearnedCraft or None
         None where logs are too short, or she predicts no better than the file's for sure.
     """
+    # Common horizons for all logs: the median of what suits each.
     each = [comparison.errors["horizon_s"] for _, comparison in logs]
     horizons = [float(horizon) for horizon in np.median(each, axis=0)]
     parts = []
@@ -208,6 +216,7 @@ def learned_from(
         logged = with_surrogates(logged, record, first_motion(record, logged))
         parts.append(craft_log(record, logged, horizons, part, whole=len(logs) > 1))
     usable = [one for one in parts if one is not None]
+    # All logs must be usable, and the result surely better on held-out parts.
     craft = learn(usable) if len(usable) == len(logs) else None
     is_better = craft is not None and craft.errors is not None and craft.errors.is_better
     return craft if is_better else None

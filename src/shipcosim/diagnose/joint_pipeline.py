@@ -115,10 +115,12 @@ def diagnose_jointly(
     given, reference, out, folder = prepared_system(system, reference, out)
     found = find_common_causes(logs, given.given, channels, causes, say, reference)
     say("extending the system")
+    # Causes of the ship go into the system, those of one log's weather do not.
     of_ship = [shared.what for shared in found.findings if shared.what.component not in found.logs]
     about = {"source": ", ".join(found.logs), "sha256": ""}
     extended = extended_by(given, of_ship, about, found.causes, out, found.craft)
     errors = {}
+    # Each log is predicted with what the other logs say, so that it does not judge its own fit.
     if found.basis:
         errors = errors_by_log(
             cast(JointFit, found.basis.verdict.judgement.fit),
@@ -152,12 +154,14 @@ def _findings_without(found: JointDiagnosis, name: str) -> tuple[list[Finding], 
         return [], []
     crude = []
     judgement = basis.verdict.judgement
+    # Size of the common ratio without this log, if the ratio was named.
     if basis.has_ratio and (ratio := basis.ratios.without(name)):
         crude = list(ratio_findings(ratio.ratio, ratio.std, found.causes))
     said = {shared.what.label for shared in found.findings}
     named = [one for one in judgement.fit.hypotheses if one.label in said]
     if not named:
         return crude, []
+    # Causes of the ship sized by the other logs, those of the weather by the log itself.
     of_ship = sizes_without(basis.verdict.logs, name, named, judgement.fit.values)
     return [*crude, *of_ship], weather_of(cast(JointFit, judgement.fit), name, named)
 
@@ -200,12 +204,14 @@ def find_common_causes(
     ship = ship_by(system, reference)
     with threadpool_limits(1):
         problems = problems_of(logs, system, channels, causes, say, reference=reference)
+        # Each log is diagnosed by itself before the logs are compared.
         alone = {}
         for name, problem in problems.items():
             say(f"{name} by itself")
             alone[name] = causes_in(problem, ship, lambda *_: None, reference)
     say("what the logs have in common")
     known = {name: _identification(one) for name, one in alone.items()}
+    # Logs that cannot tell causes, or whose channels may be misread, are left out.
     left_out = {name: why for name, one in alone.items() if (why := _unusable(one))}
     found = JointDiagnosis(
         "ambiguous" if any(one.verdict == "ambiguous" for one in alone.values()) else "unknown",
@@ -252,6 +258,7 @@ def _together(
     found: JointDiagnosis, usable: dict[str, Identification], ship: ShipModel, say: Progress
 ) -> JointDiagnosis:
     """What the usable logs say together."""
+    # Labels that other logs show are corrected in logs that do not tell; these are compared anew.
     relabelled = _relabelled(found.findings, usable)
     read = {
         name: replace(_as_read(usable[name], ship), log=with_right_labels(usable[name].log, faults))
@@ -262,6 +269,7 @@ def _together(
         again = compared(checked(one))
         stages[name] = again.repaired, again.comparison
     comparisons = {name: comparison for name, (_, comparison) in stages.items()}
+    # One ratio of thrust to inertia, put into the ship where it is far off.
     ratios = ratio_of_logs({name: one.ratio for name, one in comparisons.items() if one.ratio})
     start = ratios.common if ratios.common is not None and ratios.common.differs(GROSS) else None
     about = {name: _about_common(one, read.get(name), ship, start) for name, one in usable.items()}
@@ -325,12 +333,15 @@ def _stated(found: JointDiagnosis) -> JointDiagnosis:
         return found
     judgement = basis.verdict.judgement
     ratios = basis.ratios
+    # Ratios that contradict each other, one of them far off, keep any common cause from being
+    # named.
     is_split = ratios.common is None and any(one.differs(GROSS) for one in ratios.each.values())
     common = ratios.common if basis.has_ratio else None
     crude = ratio_findings(common.ratio, common.std, found.causes) if common else ()
     causes = () if is_split else judgement.findings
     logs = basis.verdict.logs
     labels = {one.label: one for one in logs.hypotheses}
+    # Findings of the data, the common ratio, and causes by all logs.
     findings = (
         *(_with_relabelled(one, found.relabelled) for one in found.findings),
         *(Shared(one, tuple(ratios.each)) for one in crude),
@@ -363,6 +374,7 @@ def _stated(found: JointDiagnosis) -> JointDiagnosis:
 
 def _sizes(basis: JointBasis, crude: Sequence[Finding], causes: Sequence[Finding]) -> SizesOfLogs:
     """How large each log by itself would have what is common."""
+    # The ratio by each log, then the causes fitted to each log by itself.
     each = basis.ratios.each
     sizes = {
         one.label: {

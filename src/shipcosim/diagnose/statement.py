@@ -48,6 +48,7 @@ def stated(log: JudgedLog) -> Diagnosis:
             baseline=comparison.errors,
             basis=log,
         )
+    # Findings of the log and of connections come before causes of the ship.
     of_log = (*found.faults, *found.misconnections, *comparison.findings(found.causes))
     seen = {one.cause for one in (*of_log, *judgement.candidates, *judgement.findings)}
     rivals = (
@@ -59,6 +60,7 @@ def stated(log: JudgedLog) -> Diagnosis:
     # How far the form of the ship's loads differs from the model's, with what that hides.
     form = load_form(log)
     form_of = replace(form, hides=hidden_by_form(log, excitation)) if form else None
+    # A consistent ship with faults of the data is named; one of another form has its own verdict.
     verdict = judgement.verdict
     if verdict == "consistent" and of_log:
         verdict = "named"
@@ -102,6 +104,7 @@ def named_if_better(found: Diagnosis, predicted: PredictedLog) -> tuple[Diagnosi
     comparison = predicted.comparison
     if not found.is_named or comparison is None:
         return found, predicted
+    # On rows kept from the fit the causes must not predict worse than the plain ship.
     without, within = (rms(comparison.errors, "position", model) for model in ("plain", "extended"))
     if within <= WORSE * without:
         return found, predicted
@@ -138,6 +141,7 @@ def verified(found: Diagnosis, predicted: PredictedLog) -> Diagnosis:
     """
     if found.verdict != "consistent" or predicted.comparison is None:
         return found
+    # Errors that no healthy ship reaches contradict a consistent verdict.
     healthy = healthy_errors(predicted.comparison)
     if not healthy.beyond:
         return replace(found, healthy=healthy)

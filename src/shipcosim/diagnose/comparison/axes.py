@@ -113,6 +113,7 @@ class Axis:
 
     def by_way(self, commanded: Commanded, ahead: Mapping[str, np.ndarray]) -> np.ndarray:
         """Force of all thrusters where they push ahead, and where they push astern, (2, n) array."""
+        # Each thruster's load counts where its propeller turns that way; those of one way add up.
         loads = commanded.thrusters.items()
         return np.stack(
             [
@@ -163,9 +164,13 @@ class Axis:
         tuple of float, float
             Infinite where nothing of what is felt goes with it.
         """
+        # Reverse regression: commanded load on measured force and all other loads, whose signs
+        # turn.
         unit = self.felt_unit
         columns = np.concatenate([self.felt[:, None] / unit, -self.rest], axis=1)
         found = regressed(total, columns, np.r_[True, self.positive], self.block)
+        # The slope is the inverse of the gain; the delta method carries its standard deviation
+        # over.
         slope = found.coefficients[0] / unit
         if slope <= 0.0:
             return np.inf, np.inf
@@ -194,11 +199,14 @@ class Axis:
 
     def _fit(self, columns: np.ndarray, one_sign: bool) -> AxisFit:
         k = len(columns)
+        # Thrusters' columns without a prior, then all else with the prior of unmodelled forces.
         every = np.concatenate([columns.T, self.rest], axis=1)
         positive = np.r_[np.full(k, one_sign), self.positive]
         found = regressed(
             self.felt, every, positive, self.block, np.r_[np.full(k, np.inf), self._prior]
         )
+        # Log-likelihood ratio of Gaussian residuals, n/2 log(s0/s1), with n the independent
+        # residuals: rows are autocorrelated.
         without = self._without
         support = (
             0.5
@@ -208,12 +216,15 @@ class Axis:
         hull, damping, std = self._water(found, k)
         gains = found.coefficients[:k]
         deviations = found.std[:k]
+        # Coefficient of determination about zero.
         share = 1.0 - found.squares / self.felt_unit**2
         return AxisFit(gains, deviations, float(support), found.squares, share, damping, std, hull)
 
     @cached_property
     def _prior(self) -> np.ndarray:
         """What forces that no model knows may be, as coefficients of their columns."""
+        # Damping and model loads are free but for their sign; coupling and steady forces have a
+        # standard deviation of a share of the commanded force.
         return np.where(
             self.positive,
             np.inf,
@@ -229,6 +240,8 @@ class Axis:
         """The water's load as fitted, and its size along the model's with the standard deviation."""
         own = slice(k, k + _OF_HULL)
         columns = self.rest[:, :_OF_HULL]
+        # Project the fitted water load onto the model's: a weighted sum of the coefficients, whose
+        # variance follows from their covariance.
         along = columns.T @ self.hull / max(float(self.hull @ self.hull), 1e-30)
         variance = float(along @ found.covariance[own, own] @ along)
         return (
@@ -255,12 +268,16 @@ def axes_of(felt: Felt, commanded: Commanded, model: ShipModel) -> list[Axis]:
     kernel = felt.kernel
     motion = felt.motion
     rows = felt.usable
+    # Force that the motion needs: M nu_dot + C_RB(nu) nu, smoothed as all other loads are.
     force = model.mass_matrix @ felt.rates + kernel.smooth(moving_mass(motion, model))
+    # Blocks longer than the kernel, as smoothing correlates the errors within it, and at most
+    # MOST_BLOCKS of them.
     block = max(int(BLOCK_WIDTHS * kernel.width / kernel.step), int(rows.sum() / MOST_BLOCKS), 1)
     thrust = sum(commanded.thrusters.values(), np.zeros_like(commanded.hull))
     found = []
     wind = np.zeros_like(commanded.hull) if commanded.wind is None else commanded.wind
     for i, (listed, sign) in enumerate(rest_of(motion, commanded)):
+        # The same kernel on both sides of the equation biases neither.
         rest = kernel.smooth(listed)[:, rows].T
         size = root_mean_square(kernel.smooth(thrust[i])[rows]) + 1e-9
         hull, air = (kernel.smooth(load[i])[rows] for load in (commanded.hull, wind))
@@ -281,6 +298,7 @@ def rest_of(motion: Motion, commanded: Commanded) -> list[tuple[np.ndarray, np.n
     -------
     list of three pairs, (q, n) array and (q,) bool array
     """
+    # Loads whose coefficient has a known sign: the hull's own, linear and quadratic damping, wind.
     speeds = np.stack([motion.u, motion.v, motion.r])
     found = []
     wind = commanded.wind
@@ -291,6 +309,7 @@ def rest_of(motion: Motion, commanded: Commanded) -> list[tuple[np.ndarray, np.n
             *([wind[i]] if wind is not None and np.any(wind) else []),
             *groups["damping"],
         ]
+        # Coupling and steady force may have any sign.
         listed = [*positive, *groups["coupling"], *groups["steady"]]
         found.append(
             (np.stack(np.broadcast_arrays(*listed)), np.arange(len(listed)) < len(positive))
@@ -301,8 +320,11 @@ def rest_of(motion: Motion, commanded: Commanded) -> list[tuple[np.ndarray, np.n
 def _beside(speeds: np.ndarray, psi: np.ndarray) -> list[Mapping[str, list[np.ndarray]]]:
     """By axis: what else damps it, what couples it to the others, and what is steady."""
     u, v, r = speeds
+    # A steady force lies in the earth's frame where the ship turned enough to tell it from one in
+    # her own.
     once = [np.ones_like(u)]
     earth = [np.cos(psi), np.sin(psi)] if np.ptp(psi) > TURNED_ROUND else once
+    # Products of velocities that couple the axes, and damping by the forward speed.
     return [
         {"damping": [], "coupling": [v * r, r * r], "steady": earth},
         {"damping": [-np.abs(u) * v], "coupling": [u * r], "steady": earth},

@@ -40,24 +40,33 @@ def causal_support(felt: Felt, commanded: Sequence[Commanded], unit: float) -> n
     (k,) array
         Summed over the axes; 0 where the log has too few blocks. [nats]
     """
+    # Blocks of a share of the time that the ship needs to respond, so that a command's effect shows
+    # in the next one.
     count = max(1, round(CAUSAL_STEP * unit / felt.kernel.step))
     motion = felt.motion
     speeds = blocks(np.stack([motion.u, motion.v, motion.r]), count)
     heading = blocks(motion.psi, count)
+    # A block counts if all of its rows are usable.
     usable = blocks(felt.usable.astype(float), count) > 1.0 - 1e-9
+    # Blocks with a complete past of all lags.
     rows = np.arange(CAUSAL_ORDER + 1, usable.size)
     rows = rows[[bool(usable[row - CAUSAL_ORDER - 1 : row + 1].all()) for row in rows]]
     found = np.zeros(len(commanded))
+    # Total commanded load of each interpretation, averaged as the velocities are.
     loads = [
         blocks(sum(one.thrusters.values(), np.zeros_like(one.hull)), count) for one in commanded
     ]
     for axis in range(3):
         past = _past(axis, speeds, heading, rows)
+        # Too few blocks for that many coefficients.
         if rows.size < 3 * past.shape[1]:
             continue
+        # Remove the past from velocity and commands by an orthonormal basis (Frisch-Waugh): what is
+        # left is the innovation.
         basis = np.linalg.qr(past)[0]
         left = _without(basis, speeds[axis][rows])
         for number, load in enumerate(loads):
+            # Commands of the blocks before only, never of the same block.
             before = np.stack(
                 [load[axis][rows - 1 - lag] for lag in range(COMMANDS_BEFORE)], axis=1
             )
@@ -75,15 +84,19 @@ def _past(axis: int, speeds: np.ndarray, heading: np.ndarray, rows: np.ndarray) 
     """What the motion before says of a velocity, scaled columns."""
     u, v, r = speeds
     own = speeds[axis]
+    # Past velocities, more lags of the axis itself.
     columns = [
         speeds[one][rows - 1 - lag]
         for one in range(3)
         for lag in range(CAUSAL_ORDER if one == axis else 2)
     ]
+    # Products at the last block: Coriolis coupling, quadratic damping, and forward speed.
     products = (u * v, u * r, v * r, u * u, r * r, own * np.abs(own), np.abs(u) * own)
     columns += [product[rows - 1] for product in products]
+    # A steady force in the ship's frame or the earth's.
     columns += [np.ones(rows.size), np.cos(heading[rows - 1]), np.sin(heading[rows - 1])]
     found = np.stack(columns, axis=1)
+    # Unit root mean square, so that the basis is well conditioned.
     return found / (np.sqrt((found**2).mean(0)) + 1e-12)
 
 
@@ -93,10 +106,12 @@ def _without(basis: np.ndarray, columns: np.ndarray) -> np.ndarray:
 
 def _gained(left: np.ndarray, columns: np.ndarray) -> float:
     """Log-likelihood that columns with coefficients that must not be negative gain on residuals."""
+    # Commands that the past predicts entirely say nothing.
     size = np.sqrt((columns**2).sum(0))
     if not np.any(size > 0.0) or not np.any(left):
         return 0.0
     unit = columns / np.maximum(size, 1e-300)
+    # Residuals of the least-squares fit with coefficients that are not negative.
     after = left - unit @ least_squares(unit, left)
     bound = (
         HUBER * 1.4826 * np.median(np.abs(after)) + 1e-300
@@ -106,4 +121,5 @@ def _gained(left: np.ndarray, columns: np.ndarray) -> float:
         far = np.abs(series)
         return np.where(far < bound, far**2, 2.0 * bound * far - bound**2).sum()
 
+    # Log-likelihood ratio with Huber's loss in place of the sum of squares.
     return float(0.5 * left.size * np.log(loss(left) / loss(after)))

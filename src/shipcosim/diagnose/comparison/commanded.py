@@ -47,9 +47,12 @@ def commanded_by(record: Record, felt: Felt, model: ShipModel) -> Commanded:
     Commanded
     """
     inputs = record.inputs(model)
+    # Inputs belong to the steps between rows: the motion at their beginning.
     motion = felt.motion
     size = record.time.size
     steps = type(motion)(*(value[:-1] for value in motion))
+    # Loads by the model at the measured velocities; only the thrusters and the wind are taken from
+    # them.
     found = {name: _rows(load, size) for name, load in loads(steps, inputs, model).items()}
     hull = _rows(hull_loads(motion.u, motion.v, motion.r, hull=model.parts["hull"]), size)
     return Commanded({name: found[name] for name in model.thrusters}, hull, found.get("wind"))
@@ -57,6 +60,8 @@ def commanded_by(record: Record, felt: Felt, model: ShipModel) -> Commanded:
 
 def _rows(load: Load, size: int) -> np.ndarray:
     """A load as (3, n) array; what is known of each step only, held at the last row."""
+    # Components may be scalars or series: bring all to the same length, and repeat the last step
+    # for the last row.
     rows = np.stack(
         [np.broadcast_to(axis, np.broadcast_shapes(*map(np.shape, load))) for axis in load]
     )
@@ -69,6 +74,7 @@ def moving_mass(motion: Motion, model: ShipModel) -> np.ndarray:
     hull = model.parts["hull"]
     mass = hull.rigid_body[0]
     ahead = hull.centre_of_gravity_x
+    # Rigid body about an origin ahead of which the centre of gravity lies (Fossen's C_RB).
     u = motion.u
     v = motion.v
     r = motion.r
@@ -77,6 +83,7 @@ def moving_mass(motion: Motion, model: ShipModel) -> np.ndarray:
 
 def late(commanded: Commanded, rows: float) -> Commanded:
     """The same with thrusters that act that many rows later."""
+    # Interpolate between rows, as the delay need not be a whole number of them.
     at = np.arange(commanded.hull.shape[1])
     moved = {
         name: np.stack([np.interp(at - rows, at, axis) for axis in load])

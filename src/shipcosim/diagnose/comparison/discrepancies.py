@@ -46,8 +46,10 @@ def discrepancies_of(
     -------
     list of Discrepancy
     """
+    # Wrong signs come first, whatever their size.
     signs = sorted(_wrong_signs(labels, gains), key=lambda one: -one.share)
     found = []
+    # A ratio common to all axes is one finding; else each axis has its own.
     off = [one for one in gains if one.is_off and one.is_known]
     if ratio is not None and ratio.differs(MENTIONED):
         share = max((_explained_by_gain(one) for one in off), default=0.0)
@@ -62,6 +64,7 @@ def discrepancies_of(
         ]
     if all(one.is_common for one in off):  # else what one thruster lacks passes for damping
         found += [one for gain in off for one in _damping(gain)]
+    # Late thrust, by the support that it loses without the delay.
     if labels.used.is_late:
         text = f"thrust acts {labels.used.lag:.2g} s after its command"
         found.append(
@@ -70,9 +73,12 @@ def discrepancies_of(
             )
         )
     found = [*signs, *sorted(found, key=lambda one: -one.share)]
+    # Axes that one of these findings explains already.
     explained = {one.axis for one in found} | set(
         ratio.axes if ratio and ratio.differs(MENTIONED) else ()
     )
+    # A large difference without any explanation is reported by itself, and its axis is not repeated
+    # as a remainder.
     large = [one for one in missing if one.is_large and one.axis not in explained]
     rest = [
         gain for gain in gains if gain.is_off and gain.axis.name not in {one.axis for one in large}
@@ -91,17 +97,23 @@ def is_of_damping(one: Discrepancy) -> bool:
 
 def _wrong_signs(labels: Labels, gains: Sequence[AxisGain]) -> Iterator[Discrepancy]:
     """Axes on which the thrusters do the opposite of what they are commanded, as logged; else the labels themselves."""
+    # Interpretations that would correct wrong labels: the best, and those that cannot be told from
+    # it.
     readings = [labels.best, *labels.rivals] if labels.is_wrong else []
     why = " or ".join("; ".join(map(in_words, one.changes)) for one in readings)
     told = False
     for one in gains:
         axis = one.axis
+        # Gain of the logged commands, of any sign.
         before = axis.total(labels.logged.commanded)
         fit = axis.compared(before[None])
         gain = float(fit.gains[0])
         std = float(fit.std[0])
+        # Report only gains that are surely negative, on axes where the commands explain much of the
+        # force.
         if gain >= -SURE_OF_GAIN * std or fit.support < LEAST_SUPPORT or fit.share < TOLD:
             continue
+        # Corrected labels account for the sign if they change the commands on this axis.
         because = bool(why) and axis.is_changed(labels.logged.commanded, labels.best.commanded)
         if (
             one.is_balanced and not because
@@ -109,10 +121,12 @@ def _wrong_signs(labels: Labels, gains: Sequence[AxisGain]) -> Iterator[Discrepa
             continue
         told |= because
         text = f"{FORCES[axis.name]}: wrong sign" + (f", as with {why}" if because else "")
+        # Share of the unexplained mean square that the negative gain removes.
         share = float(
             np.clip(1.0 - fit.squares / axis.unexplained(np.zeros(before.size)), 0.0, 1.0)
         )
         yield Discrepancy(text, None, axis.name, gain, std, "1", share)
+    # Labels that are wrong without a reversed axis are reported once, for the ship as a whole.
     if why and not told:
         gained = float(
             np.clip(1.0 - labels.logged.support / max(labels.best.support, 1e-9), 0.0, 1.0)
@@ -144,12 +158,14 @@ def _weak(one: AxisGain) -> Iterator[Discrepancy]:
     """A gain on one axis, or those of its thrusters where they differ."""
     if max(one.support_of_each, one.fit.support) < LEAST_SUPPORT:
         return
+    # Different gains ahead and astern say more than a mean of the two.
     share = _explained_by_gain(one)
     if one.differs_by_way and one.ways is not None:
         (ahead, std), (astern, other) = one.ways
         text = f"{FORCES[one.axis.name]} of thrust astern over inertia {astern:.2f} of the model's, ahead {ahead:.2f}"
         yield Discrepancy(text, None, one.axis.name, astern, other, "1", share)
         return
+    # Gains of single thrusters, where they can be told apart and differ surely from 1.
     apart = {} if one.is_common or not one.has_thrusters_apart else one.each
     apart = {
         n: v
@@ -160,6 +176,7 @@ def _weak(one: AxisGain) -> Iterator[Discrepancy]:
     for name, value in apart.items():
         text = f"{FORCES[one.axis.name]} of {name} over inertia {value:.2f} of the model's"
         yield Discrepancy(text, name, one.axis.name, value, one.each_std[name], "1", share)
+    # Otherwise one gain for all thrusters of the axis.
     if one.is_common and one.is_known and one.differs(MENTIONED):
         text = f"{FORCES[one.axis.name]} over inertia {one.gain:.2f} of the model's"
         yield Discrepancy(text, None, one.axis.name, one.gain, one.std, "1", share)
@@ -169,19 +186,24 @@ def _damping(one: AxisGain) -> Iterator[Discrepancy]:
     """What the water resists, where the log tells it."""
     axis = one.axis
     fit = one.fit
+    # Damping can only be compared where thrust has a positive gain and the model a load of the
+    # water.
     if fit.gains[0] <= 0.0 or not np.any(axis.hull):
         return
     scale = max(one.gain, float(fit.gains[0])) / float(
         fit.gains[0]
     )  # what makes the gain look small does it to both
+    # Damping and its standard deviation, scaled like the gain; both share the error of the scale.
     damping = fit.damping * scale
     std = fit.damping_std * scale + fit.damping * scale * one.std / one.gain
+    # Alternative fit: the damping of the model as it is, thrust and other forces free.
     left = regressed(
         axis.felt - axis.hull,
         np.concatenate([one.total[:, None], axis.rest[:, 3:]], axis=1),
         np.r_[False, axis.positive[3:]],
         axis.block,
     )
+    # Log-likelihood ratio of free over modelled damping.
     support = 0.5 * left.independent * np.log(left.squares / fit.squares)
     far = is_beyond(max(damping, 0.01), std, MENTIONED, SURE_OF_GAIN)
     if support > LEAST_SUPPORT and far and damping > max(SURE_OF_GAIN * std, LEAST_DAMPING):

@@ -39,11 +39,13 @@ def horizons_of(model: ShipModel, motion: Motion, span: float, step: float) -> t
     tuple of float
         Rounded, increasing. [s]
     """
+    # A multiple of the ship's middle time constant, or what bounds and length of the log allow.
     unit = froude_time(model.length)
     answer = np.clip(
         ANSWER * response_times(model, motion).middle, SHORTEST_ANSWER * unit, LONGEST_ANSWER * unit
     )
     longest = max(min(float(answer), MOST_OF_LOG * span), 6.0 * step)
+    # Round to a ladder of plain numbers in each decade, nearest on the logarithmic scale.
     power = 10.0 ** np.floor(np.log10(longest))
     rounded = float(power * _LADDER[np.abs(np.log(_LADDER * power / longest)).argmin()])
     return tuple(float(f"{rounded * share:.3g}") for share in (1.0 / 6.0, 0.5, 1.0))
@@ -68,11 +70,13 @@ def errors_of(record: Record, felt: Felt, model: ShipModel) -> dict[str, list[fl
         Horizons [s], and root mean squares of the errors after each, in position [m] and heading [deg].
     """
     span = float(record.time[-1] - record.time[0])
+    # Predictions need enough starts: halve the horizons until the log has them.
     horizons = horizons_of(model, felt.motion, span, record.step)
     rows = starts_of(record, felt, horizons[-1])
     while rows.size < FEWEST_STARTS and horizons[-1] > 6.0 * record.step:
         horizons = tuple(0.5 * horizon for horizon in horizons)
         rows = starts_of(record, felt, horizons[-1])
+    # The smoothed measurements serve as initial state and as truth.
     motion = felt.motion
     seen = Motion(*(felt.kernel.smooth(value) for value in motion))
     counts = [max(1, round(horizon / record.step)) for horizon in horizons]
@@ -105,6 +109,7 @@ def errors_over_none(
     dict of str to float
         ``position`` and ``heading``: the larger of the two of the longer horizons.
     """
+    # The same starts as the simulation's, so that the errors compare.
     rows = starts_of(record, felt, errors["horizon_s"][-1])
     motion = felt.motion
     seen = Motion(*(felt.kernel.smooth(value) for value in motion))
@@ -112,6 +117,8 @@ def errors_over_none(
         1:, None
     ]
     time = counts * record.step
+    # With constant velocities the ship sails along an arc: its chord is the distance times sinc of
+    # half the turn, in the direction at half the turn.
     (x, y, psi, u, v, r) = (value[rows] for value in seen)
     turned = (
         np.exp(1j * psi)
@@ -126,6 +133,7 @@ def errors_over_none(
         psi + r * time,
         *(value + 0.0 * time for value in (u, v, r)),
     )
+    # Ratio of root mean squares by horizon; the worst counts.
     off = missing(kept, seen, rows + counts)
     ratios = {}
     for channel, name in (("position", "position_error_m"), ("heading", "heading_error_deg")):
@@ -136,9 +144,12 @@ def errors_over_none(
 
 def starts_of(record: Record, felt: Felt, horizon: float) -> np.ndarray:
     """Rows from which predictions start, as many as touch no gap; else any from which one can be made."""
+    # Starts whose horizon reaches no row with unknown inputs, by cumulative counts.
     reach = round(horizon / record.step)
     rows = np.arange(0, record.time.size - reach)
     lost = np.concatenate([[0], np.cumsum(~record.known)])
     good = rows[(lost[rows + reach] == lost[rows]) & felt.usable[rows] & felt.usable[rows + reach]]
+    # Gaps in the motion matter less: they are accepted where there are too few starts.
     good = good if good.size >= FEWEST_STARTS else rows[lost[rows + reach] == lost[rows]]
+    # Evenly thinned, to limit the work.
     return good[:: max(1, good.size // MOST_STARTS)]

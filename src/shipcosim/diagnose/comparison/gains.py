@@ -114,6 +114,8 @@ class AxisGain:
         """Whether thrust ahead and astern surely have gains of their own, one of them known."""
         if self.ways is None or self.support_of_ways < self.fit.support + LEAST_SUPPORT:
             return False
+        # One way is known surely and both are positive; then the difference must exceed its
+        # standard error and the usual spread between thrusters.
         (ahead, std), (astern, other) = self.ways
         known = (
             max(ahead / max(std, 1e-9), astern / max(other, 1e-9)) > SURE_OF_GAIN
@@ -147,12 +149,15 @@ def gains_of(
 
 
 def _gain(axis: Axis, commanded: Commanded, ahead: Mapping[str, np.ndarray]) -> AxisGain:
+    # One gain for all thrusters, then one for each.
     total = axis.total(commanded)
     names = [name for name, load in commanded.thrusters.items() if np.any(load[axis.number])]
     fit = axis.compared(total[None])
     apart = axis.compared(np.stack([axis.smoothed(commanded.thrusters[name]) for name in names]))
     gain = float(fit.gains[0])
     std = float(fit.std[0])
+    # Direct and reverse regression bracket the gain: errors of thrust and damping bias one low, the
+    # other high. Take their geometric mean.
     if gain > 0.0:
         most, most_std = axis.most_gain(total)
         if np.isfinite(most):
@@ -162,6 +167,7 @@ def _gain(axis: Axis, commanded: Commanded, ahead: Mapping[str, np.ndarray]) -> 
             )  # evenly likely between the two
             std = float(middle * np.sqrt(half**2 + (std / gain) ** 2 + (most_std / most) ** 2))
             gain = middle
+    # Force left for the thrusters by the modelled hull and wind loads.
     other = axis.felt - axis.hull - axis.wind
     size = root_mean_square(total)
     correlation = float(np.corrcoef(other, total)[0, 1]) if total.std() > 0.0 else 0.0
@@ -178,9 +184,11 @@ def _by_way(
 ) -> tuple[tuple | None, float]:
     """Gains of thrust ahead and astern, and what they support that are not negative; None where the log lacks a way."""
     ways = axis.by_way(commanded, ahead)
+    # A way that is hardly used has no gain of its own.
     sizes = np.sqrt((ways**2).mean(1))
     if sizes.min() < LEAST_WAY * sizes.max():
         return None, 0.0
+    # Gains of any sign, but the support of gains that are not negative.
     apart = axis.compared(ways)
     both = zip(map(float, apart.gains), map(float, apart.std), strict=True)
     return tuple(both), axis.explained(ways).support
@@ -220,13 +228,17 @@ def common_ratio(gains: Sequence[AxisGain]) -> CommonRatio | None:
     known = [one for one in gains if one.is_known]
     if not known or not any(one.is_off for one in known):
         return None
+    # Weighted mean of the logarithms; each axis may differ from the others by COMMON_SPREAD besides
+    # its own error.
     logs = np.log([one.gain for one in known])
     stds = np.array([one.std / one.gain for one in known])
     weights = 1.0 / (stds**2 + COMMON_SPREAD**2)
     mean = float(weights @ logs / weights.sum())
+    # No common ratio where an axis lies surely elsewhere, or its thrusters or ways differ.
     apart = np.abs(logs - mean) > SURE_OF_GAIN * stds + 2.0 * COMMON_SPREAD
     if apart.any() or not all(one.is_common for one in known):
         return None
+    # Standard error of the mean, not less than the observed spread of the axes.
     spread = float(np.sqrt(weights @ (logs - mean) ** 2 / weights.sum()))
     std = max(1.0 / np.sqrt(weights.sum()), spread)
     return CommonRatio(

@@ -116,6 +116,7 @@ def changes_of(record: Record, model: ShipModel) -> list[tuple[LabelError, ...]]
     pairs = [
         pair for pair in combinations(names, 2) if model.make_of(pair[0]) == model.make_of(pair[1])
     ]
+    # Single errors, then all sets of several of them.
     singles = [LabelError(pair, pair[0] in model.azimuths) for pair in pairs] + [
         LabelError((name,)) for name in names
     ]
@@ -147,16 +148,19 @@ def reading(
     -------
     LabelHypothesis
     """
+    # Undo the assumed errors, then recompute the loads.
     units = record.units
     for change in changes:
         units = change.undo(units)
     commanded = commanded_by(*driven(units, record, felt, model))
     ahead = ahead_of(units)
+    # Thrust may act late: each delay has a cost, as a wrong sign can look like a delay.
     tries = []
     scale = froude_time(model.length)
     for lag in (0.0, *(k * scale for k in LAGS)):
         moved = late(commanded, lag / record.step)
         support = support_of(moved, ahead, axes)
+        # Support beyond that without a delay.
         gained = support - tries[0].support if tries else 0.0
         cost = LAG_COST + lag / scale if lag else 0.0
         tries.append(

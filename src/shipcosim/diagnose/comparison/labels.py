@@ -104,12 +104,15 @@ class _Weighed:
 
     def over(self, other: _Weighed) -> np.ndarray:
         """By how much it is better, (3,) array, the least first."""
+        # Differences by measure in ascending order.
         own = self.fit, self.foresight, self.likelihood
         return np.sort(np.subtract(own, (other.fit, other.foresight, other.likelihood)))
 
     def beats(self, other: _Weighed, least: float) -> bool:
         """Whether two measures prefer it by `least`, the third does not speak against it, nor all three together."""
         worst, middle, _ = over = self.over(other)
+        # Two of three tests must agree; the third is capped, so that one extreme value does not
+        # decide.
         return bool(
             middle > least
             and worst > -CONTRADICTED
@@ -123,6 +126,7 @@ class _Weighed:
 
     def is_as(self, other: _Weighed) -> bool:
         """Whether they do the same but for the number of changes."""
+        # Undo the cost of changes: compare what the measures themselves give.
         cost = CHANGE_COST * (len(self.reading.changes) - len(other.reading.changes))
         own = np.array([self.fit, self.foresight, self.likelihood]) + cost
         return bool(np.abs(own - (other.fit, other.foresight, other.likelihood)).max() < ALIKE)
@@ -147,9 +151,12 @@ def read_labels(record: Record, felt: Felt, axes: Sequence[Axis], model: ShipMod
     -------
     Labels
     """
+    # Logged labels that already explain each axis without delay need no alternatives.
     logged = reading((), record, felt, axes, model)
     if not logged.lag and all(_does_as_told(axis, logged.commanded) for axis in axes):
         return Labels(logged, logged)
+    # The fit is cheap: evaluate all interpretations, and weigh only the credible ones by the other
+    # measures.
     found = [
         logged,
         *(reading(one, record, felt, axes, model) for one in changes_of(record, model)),
@@ -157,8 +164,10 @@ def read_labels(record: Record, felt: Felt, axes: Sequence[Axis], model: ShipMod
     credible = [one for one in found[1:] if one.score > logged.score - CONTRADICTED]
     credible = sorted(credible, key=lambda one: -one.score)[:MOST_WEIGHED]
     weighed = _weighed([logged, *credible], record, felt, model)
+    # Two decisions: by the fit, checked by the others, and by agreement of two measures.
     labels = _by_fit(weighed, axes)
     agreed = _by_agreement(weighed)
+    # Both sure but different: nothing is decided.
     if labels.is_sure and agreed and agreed.is_sure and agreed.best is not labels.best:
         return Labels(logged, labels.best, (agreed.best,), is_judged=False)
     if agreed and (agreed.is_sure or not labels.is_wrong):
@@ -170,6 +179,7 @@ def _weighed(
     found: Sequence[LabelHypothesis], record: Record, felt: Felt, model: ShipModel
 ) -> list[_Weighed]:
     """Readings with what the three measures say, the logged one first."""
+    # Likelihood and foresight need the log in blocks, prepared once.
     unit = froude_time(model.length)
     smooth = smoothed(felt)
     log = blocks_of(felt, commanded_by(*driven(found[0].units, record, smooth, model)), model)
@@ -177,6 +187,7 @@ def _weighed(
     weighed = []
     for one, seen in zip(found, foresight, strict=True):
         commanded = commanded_by(*driven(one.units, record, smooth, model))
+        # All measures pay for changes; the likelihood has its own delay.
         cost = CHANGE_COST * len(one.changes)
         likelihood = max(_likelihoods(log, commanded, one, unit))
         drives = _drives(one.commanded, felt)
@@ -189,6 +200,7 @@ def _drives(commanded: Commanded, felt: Felt) -> float:
 
     Sway does not count: a rudder pushes against the drift of a turning ship.
     """
+    # Power: load times velocity, normalised, over usable rows.
     loads = sum(commanded.thrusters.values(), np.zeros_like(commanded.hull))[:, felt.usable]
     found = []
     for load, speed in ((loads[0], felt.motion.u), (loads[2], felt.motion.r)):
@@ -203,6 +215,7 @@ def _likelihoods(
 ) -> Iterator[float]:
     """Of a reading with several lags, less what those cost."""
     for lag in LIKELIHOOD_LAGS:
+        # A longer delay is less likely beforehand.
         moved = late(commanded, lag * unit / one.step) if lag else commanded
         yield likelihood_of(log, moved, one.ahead) - (LAG_COST + lag if lag else 0.0)
 
@@ -214,10 +227,14 @@ def _by_fit(weighed: Sequence[_Weighed], axes: Sequence[Axis]) -> Labels:
     logged = first.reading
     # By the labels as logged the thrusters would brake the craft: readings by which they do, too, are no rivals.
     brakes = first.drives < -BRAKES < BRAKES < best.drives
+    # Interpretations by which thrusters drive the craft remain as rivals.
     others = [one for one in ranked[1:] if not brakes or one.drives > 0.0]
     rivals = tuple(one.reading for one in others if one.fit > best.fit - RIVAL)
+    # Gain in fit, and whether the logged labels are plainly wrong by it.
     gained = best.fit - first.fit
     plain = _is_contradicted(best.reading, logged, axes) or gained > PLAINLY_WRONG
+    # How much the foresight must agree: more where the interpretation explains little, less where
+    # other evidence is strong.
     least = (
         SURELY_CAUSED
         if _explained(best.reading, logged, axes) <= TOLD
@@ -228,17 +245,21 @@ def _by_fit(weighed: Sequence[_Weighed], axes: Sequence[Axis]) -> Labels:
         else RIVAL
     )
     changes = CHANGE_COST * len(best.reading.changes)
+    # Changed labels need a clear gain in fit, no better logged rival, no braking, and foresight.
     is_wrong = (
         gained > (RIVAL if brakes else SURELY_WRONG)
         and logged not in rivals
         and not best.brakes_more_than(first)
         and best.foresight - first.foresight + changes > least
     )
+    # The likelihood may not clearly prefer another interpretation.
     likeliest = max(one.likelihood for one in (best, *others))
     is_wrong &= (
         best.likelihood + changes > first.likelihood - UNLIKELIER
         and best.likelihood > likeliest - UNLIKELIER
     )
+    # The log decides if labels are wrong, or if the logged ones beat every different
+    # interpretation.
     is_judged = is_wrong or all(first.beats(one, RIVAL) or one.is_as(first) for one in weighed[1:])
     return Labels(logged, best.reading, rivals, is_wrong, is_judged, gained)
 
@@ -247,9 +268,11 @@ def _by_agreement(weighed: Sequence[_Weighed]) -> Labels | None:
     """A reading that two measures prefer beyond doubt to the logged one, and to all others, if there is one."""
     first = weighed[0]
     for one in weighed[1:]:
+        # Interpretations with the same effect are no competitors.
         others = [other for other in weighed[1:] if other is not one]
         twins = [other for other in others if one.is_as(other)]
         rest = [other for other in others if other not in twins]
+        # Among equivalent ones, fewest changes are preferred; the rest remain rivals.
         if one.beats(first, AGREED) and all(one.beats(other, RIVAL) for other in rest):
             fewest = min(len(other.reading.changes) for other in (one, *twins))
             alike = [
@@ -265,6 +288,7 @@ def _is_contradicted(best: LabelHypothesis, logged: LabelHypothesis, axes: Seque
     """Whether on an axis where a reading differs from the logged one that has surely the wrong sign."""
     for axis in axes:
         if axis.is_driven(logged.commanded) and axis.is_changed(logged.commanded, best.commanded):
+            # One gain for the logged commands, of any sign.
             fit = axis.compared(axis.total(logged.commanded)[None])
             if (
                 fit.gains[0] < -OPPOSITE * fit.std[0]
@@ -288,6 +312,7 @@ def _does_as_told(axis: Axis, commanded: Commanded) -> bool:
     """Whether the thrusters together surely do on an axis what they are commanded, and none the opposite."""
     if not axis.is_driven(commanded):
         return True
+    # Gain of the sum and gains of each thruster.
     each = _each(axis, commanded)
     together = axis.compared(each.sum(0)[None])
     apart = axis.compared(each)

@@ -104,15 +104,19 @@ def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
     Blocks
     """
     length = model.length
+    # Loads from the smoothed motion, accelerations from block means: their noise is not correlated.
     motion = smoothed(felt).motion
     count = max(1, round(CAUSAL_STEP * froude_time(length) / felt.kernel.step))
+    # Average over blocks of a share of the ship's response time.
     speeds = blocks(np.stack([felt.motion.u, felt.motion.v, felt.motion.r]), count)
     usable = blocks(felt.usable.astype(float), count) > 1.0 - 1e-9
     rows = _with_past(usable[1:] & usable[:-1])
+    # Force that the motion needs between two blocks: M nu_dot + C_RB(nu) nu.
     rates = np.diff(speeds, axis=1) / (count * felt.kernel.step)
     force = model.mass_matrix @ rates + _between(blocks(moving_mass(motion, model), count))
     listed = rest_of(motion, commanded)
     sizes = _sizes(commanded, length)
+    # Only axes that thrusters drive, with rows enough for all coefficients and the autoregression.
     axes = {}
     for i in sizes:
         columns, positive = listed[i]
@@ -120,11 +124,13 @@ def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
         if rows.size > 4 * (rest.shape[1] + len(commanded.thrusters) + CAUSAL_ORDER):
             axes[i] = _Axis(force[i], rest, positive)
     empty = Blocks(axes, {}, sizes, rows, count)
+    # Fits without thrusters are the reference of the likelihood ratios.
     return replace(empty, alone={i: _fitted(empty, i, None, np.empty((0, 0))) for i in axes})
 
 
 def _sizes(commanded: Commanded, length: float) -> dict[int, float]:
     """What the thrusters do at most, root mean square, on axes where that is no small part of their force."""
+    # Loads without cancelling: thrusters that oppose each other drive the axis all the same.
     most = sum(
         (np.abs(load) for load in commanded.thrusters.values()), np.zeros_like(commanded.hull)
     )
@@ -133,15 +139,18 @@ def _sizes(commanded: Commanded, length: float) -> dict[int, float]:
         * np.array([1.0, 1.0, LEAST_LEVER * length])
         * np.sqrt(((most[0] + most[1]) ** 2).mean())
     )
+    # A yaw moment compares to the force by a share of the ship's length.
     found = np.sqrt((most**2).mean(1))
     return {i: float(found[i]) for i in range(3) if found[i] > max(least[i], 1e-9)}
 
 
 def _between(series: np.ndarray) -> np.ndarray:
+    # Midpoint rule: loads at the same times as differences of block means.
     return 0.5 * (series[..., 1:] + series[..., :-1])
 
 
 def _with_past(usable: np.ndarray) -> np.ndarray:
+    # Cumulative count of bad steps: equal at both ends where the past is complete.
     bad = np.cumsum(np.r_[0, ~usable])
     rows = np.arange(CAUSAL_ORDER, usable.size)
     return rows[bad[rows + 1] == bad[rows - CAUSAL_ORDER]]
@@ -166,27 +175,36 @@ def likelihood_of(log: Blocks, commanded: Commanded, ahead: dict[str, np.ndarray
     -------
     float
     """
+    # Log-normal prior of the common gain, normalised on a grid.
     gains = np.exp(_LOG_GAINS)
     total = -0.5 * (_LOG_GAINS / GAIN_WIDTH) ** 2
     total -= np.log(np.exp(total).sum())
+    # Gain of an axis given the common one: a normal distribution of its logarithm, by row of the
+    # grid.
     near = np.exp(-0.5 * ((_LOG_GAINS[:, None] - _LOG_GAINS[None]) / GAIN_OF_AXES) ** 2)
     near /= near.sum(1, keepdims=True)
     for i in log.axes:
+        # Profile likelihood of the axis' gain, taken as normal about its estimate.
         fit = _fitted(log, i, *_columns(log, i, commanded, ahead))
         std = np.hypot(fit.std, LEAST_GAIN_STD)
         own = fit.likelihood - log.alone[i].likelihood - 0.5 * ((gains - fit.gain) / std) ** 2
+        # Integrate the axis' own gain out; the maximum is taken off before exponentials.
         total += own.max() + np.log(near @ np.exp(own - own.max()) + 1e-300)
+    # Integrate the common gain out.
     return float(total.max() + np.log(np.exp(total - total.max()).sum()))
 
 
 def _columns(log, i, commanded, ahead):
     """The sum of the thrusters' loads, and by what they may differ from it, each with its standard deviation."""
+    # Thrusters that act on this axis; ways is half the difference of thrust ahead and astern.
     loads = {name: load[i] for name, load in commanded.thrusters.items() if np.any(load[i])}
     ways = sum(
         (load * (ahead[name] - 0.5) for name, load in loads.items()),
         np.zeros(commanded.hull.shape[1]),
     )
     columns = [log.between(one) for one in (*loads.values(), ways)]
+    # Deviations of thrusters and ways from the common gain have zero mean and a standard deviation
+    # of the prior.
     total = sum(columns[:-1], np.zeros_like(columns[-1]))
     return total, np.stack(columns, 1), np.r_[np.full(len(loads), THRUSTER_WIDTH), WAY_WIDTH]
 
@@ -199,6 +217,7 @@ def _fitted(
     widths: np.ndarray | None = None,
 ) -> _Fit:
     """The felt force on an axis explained, with errors that are autoregressive."""
+    # Prior of forces that no model contains, relative to what the thrusters can give.
     axis = log.axes[i]
     rows = log.rows
     order = CAUSAL_ORDER
@@ -206,12 +225,15 @@ def _fitted(
     prior = np.where(axis.positive, np.inf, prior)
     positive = axis.positive
     columns = axis.rest
+    # Start the autoregression from white errors, and from that without thrusters: the alternation
+    # may end in a local maximum.
     starts = [np.zeros(order)]
     if total is not None and widths is not None:
         columns = np.concatenate([total[:, None], axis.rest, apart], axis=1)
         prior = np.r_[np.inf, prior, widths]
         positive = np.r_[False, positive, np.zeros(widths.size, bool)]
         starts.append(log.alone[i].filter)
+    # Series and columns with their lags, for filtering by any autoregression.
     felt = np.stack([axis.felt[rows - k] for k in range(order + 1)])
     late = np.stack([columns[rows - k] for k in range(order + 1)])
     best = max(
@@ -220,6 +242,8 @@ def _fitted(
     likelihood, found, filter_, spread = best
     if total is None:
         return _Fit(likelihood, 0.0, 0.0, filter_)
+    # Variance of the gain from the information matrix of the whitened columns, coefficients at
+    # their bound left out.
     white = np.tensordot(np.r_[1.0, -filter_], late, 1)
     free = (found != 0.0) | ~positive
     information = white[:, free].T @ white[:, free] / spread**2 + np.diag(prior[free] ** -2.0)
@@ -231,14 +255,19 @@ def _refined(felt, late, positive, prior, filter_):
     """Coefficients and autoregression in turn; the best (log-likelihood, coefficients, autoregression, spread)."""
     best = (-np.inf, np.zeros(positive.size), filter_, 1.0)
     spread = float(np.std(np.r_[1.0, -filter_] @ felt))
+    # Cochrane-Orcutt: coefficients by generalized least squares, then the autoregression of the
+    # errors.
     for _ in range(_ROUNDS):
+        # Whiten series and columns by the filter 1 - a1 q^-1 - a2 q^-2 - ...
         ahead = np.r_[1.0, -filter_]
         series = ahead @ felt
         white = np.tensordot(ahead, late, 1)
+        # Ridge by the prior, columns scaled to unit length, coefficients within their signs.
         scale = np.sqrt((white**2).sum(0)) + 1e-300
         unit = white / scale
         pull = spread / (prior * scale)
         found = bounded(unit.T @ unit + np.diag(pull**2), unit.T @ series, positive) / scale
+        # Autoregression by least squares on past errors, slightly regularised.
         errors = felt - late @ found
         past = errors[1:].T
         products = past.T @ past
@@ -246,6 +275,7 @@ def _refined(felt, late, positive, prior, filter_):
             products + 1e-6 * np.trace(products) / len(products) * np.eye(len(products)) + 1e-300,
             past.T @ errors[0],
         )
+        # Standard deviation of the innovations, outliers clipped at a multiple of the robust one.
         left = errors[0] - past @ filter_
         spread = (
             float(
@@ -253,6 +283,7 @@ def _refined(felt, late, positive, prior, filter_):
             )
             + 1e-300
         )
+        # Gaussian log-likelihood with the prior of the coefficients; rounds need not improve it.
         likelihood = float(-left.size * np.log(spread) - 0.5 * ((found / prior) ** 2).sum())
         if likelihood > best[0]:
             best = likelihood, found, filter_, spread

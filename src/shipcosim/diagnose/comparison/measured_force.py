@@ -48,10 +48,14 @@ def felt_by(record: Record, length: float) -> Felt:
     -------
     Felt
     """
+    # Kernel in proportion to the ship's time scale, but of some rows at least.
     kernel = Kernel(max(KERNEL * froude_time(length), SHORTEST_KERNEL * record.step), record.step)
     motion, bad = unsmoothed(record, kernel)
     motion = type(motion)(*(averaged(series) for series in motion))  # as what drives her is
+    # Derivative of the smoothed velocities.
     rates = kernel.rate(np.stack([motion.u, motion.v, motion.r]))
+    # Without velocities: second derivative of positions in body axes, and the acceleration of the
+    # rotating frame.
     if not is_measured(record, 3) or not is_measured(record, 4):
         psi = kernel.smooth(motion.psi)
         r = kernel.smooth(motion.r)
@@ -60,6 +64,7 @@ def felt_by(record: Record, length: float) -> Felt:
             along + r * kernel.smooth(motion.v),
             across - r * kernel.smooth(motion.u),
         )
+    # Without yaw rate: second derivative of the heading.
     if not is_measured(record, 5):
         rates[2] = kernel.rate(motion.psi, 2)
     return Felt(motion, rates, kernel.clear_of(bad | ~record.known), kernel)

@@ -98,8 +98,10 @@ class MissingLoad:
     def _sense(self) -> str:
         sides = _SENSES[self.axis]
         if self.is_steady:
+            # Most of the difference has one sign: report its mean and side.
             side = sides[0] if self.steady > 0.0 else sides[1]
             return f"the model lacks a steady {self._shown(abs(self.steady))} {side}"
+        # Else compare size and correlation of modelled and needed load.
         against = f"{self._shown(self.given, self.needed)} rms"
         if self.correlation < -GOES_WITH:
             return f"the model gives the opposite of what the motion needs ({against})"
@@ -113,6 +115,7 @@ class MissingLoad:
 
     def _shown(self, *loads: float) -> str:
         """Loads one against the other, to two digits, with their unit."""
+        # Two significant digits, in kilo units where that is shorter.
         unit, factor = (
             (f"k{_UNITS[self.axis]}", 1e-3) if max(loads) >= 1000.0 else (_UNITS[self.axis], 1.0)
         )
@@ -151,12 +154,16 @@ def missing_loads(
 
 
 def _missing(axis: Axis, commanded: Commanded, noise: float, predicted: float) -> MissingLoad:
+    # Balance of forces: needed less thrust, water and wind by the model.
     thrust = axis.total(commanded)
     given = thrust + axis.hull + axis.wind
     off = axis.felt - given
+    # The largest single load: small differences of large loads are within usual model errors.
     parts = max(root_mean_square(one) for one in (thrust, axis.hull, axis.wind))
+    # Correlation about zero, as a mean force counts too.
     both = root_mean_square(axis.felt) * root_mean_square(given)
     correlation = float((axis.felt * given).mean() / both) if both > 0.0 else 0.0
+    # Relative standard error of a root mean square of n independent values: 1 / sqrt(2 n).
     blocks = max(off.size / axis.block, 1.0)
     missing = root_mean_square(off)
     return MissingLoad(
@@ -175,11 +182,15 @@ def _missing(axis: Axis, commanded: Commanded, noise: float, predicted: float) -
 
 def _noise(felt: Felt, model: ShipModel) -> np.ndarray:
     """What white noise of the velocities makes of the needed load, (3,) array: by their third differences."""
+    # White noise from third differences, by the median: their variance is 20 times that of the
+    # noise.
     kernel = felt.kernel
     third = np.asarray(
         np.diff(np.stack([felt.motion.u, felt.motion.v, felt.motion.r]), 3, axis=1), float
     )
     white = np.sqrt(np.median(third**2, axis=1) / 0.455 / 20.0)
+    # Derivative by a Gaussian kernel of n rows divides white noise by h sqrt(4 sqrt(pi) n^3);
+    # inertia turns it into a load.
     rows = kernel.width / kernel.step
     rates = white / kernel.step / np.sqrt(4.0 * np.sqrt(np.pi) * rows**3)
     return np.diag(model.mass_matrix) * rates

@@ -66,27 +66,35 @@ def regressed(
     -------
     Regression
     """
+    # Scale the columns to unit root mean square; one that is zero stays.
     scale = np.sqrt((columns**2).mean(0))
     scale = np.where(scale > 0.0, scale, 1.0)
     unit = columns / scale
+    # Iteratively reweighted least squares with Huber's weights.
     weights = np.ones(series.size)
     pull = np.zeros(scale.size)
     for _ in range(ROBUST_ROUNDS):
         heavy = unit * (weights**2)[:, None]
+        # Ridge by the prior, and coefficients within their signs.
         found = bounded(unit.T @ heavy + np.diag(pull**2), heavy.T @ series, positive)
         left = series - unit @ found
+        # Standard deviation of the residuals without their largest.
         size = np.sort(np.abs(left))[: int(SOUND * left.size)]
         spread = (
             np.sqrt((size**2).mean()) + 1e-300
         )  # not the median: a craft that lies idle would hide what she does
+        # Huber: full weight within a multiple of the spread, then inversely by size.
         weights = np.sqrt(np.minimum(1.0, HUBER * spread / np.maximum(np.abs(left), 1e-300)))
+        # Prior in units of the residual, whose variance grows by the rows per independent residual.
         if prior is not None:
             pull = np.sqrt(np.mean((weights * left) ** 2) * rows_per_independent(left, block)) / (
                 prior * scale
             )
+    # Standard errors must allow for correlated residuals; at a bound there is none.
     covariance = _by_blocks(
         unit, left * weights**2, weights, pull, (found != 0.0) | ~positive, block
     )
+    # Twice Huber's loss, from weight and residual: w r^2 (2 - w) with w the squared weight here.
     squares = float((weights**2 * left**2 * (2.0 - weights**2)).mean())
     return Regression(
         found / scale,
@@ -112,6 +120,8 @@ def bounded(products: np.ndarray, with_series: np.ndarray, positive: np.ndarray)
     -------
     (p,) array
     """
+    # Normal equations as a least-squares problem: factor the matrix by its eigenvalues, tiny ones
+    # raised so that dependent columns do no harm.
     size, turn = np.linalg.eigh(products)
     root = np.sqrt(np.maximum(size, 1e-12 * size.max() + 1e-300))
     upper = root[:, None] * turn.T
@@ -121,14 +131,17 @@ def bounded(products: np.ndarray, with_series: np.ndarray, positive: np.ndarray)
 
 def _by_blocks(unit, errors, weights, pull, free, block):
     """Covariance of the coefficients that are not at their bound, from sums over blocks of rows."""
+    # Scores X' r summed by block: blocks are taken as independent, rows within one are not.
     count = max(-(-errors.size // block), 2)
     number = np.minimum(np.arange(errors.size) // block, count - 1)
     sums = np.zeros((count, unit.shape[1]))
     np.add.at(sums, number, unit * errors[:, None])
+    # Curvature of the robust loss with the prior, for the coefficients that are free.
     inside = np.flatnonzero(free)
     normal = (unit[:, inside] * weights[:, None] ** 2).T @ unit[:, inside]
     normal += np.diag(pull[inside] ** 2)
     inverse = np.linalg.pinv(normal, rcond=1e-10, hermitian=True)
+    # Sandwich estimator, with the small-sample factor b / (b - 1).
     bread = inverse @ (sums[:, inside].T @ sums[:, inside]) @ inverse * count / (count - 1.0)
     found = np.zeros((free.size, free.size))
     found[np.ix_(inside, inside)] = bread
@@ -138,9 +151,11 @@ def _by_blocks(unit, errors, weights, pull, free, block):
 def rows_per_independent(left: np.ndarray, block: int) -> float:
     """Integral of the autocorrelation of residuals. [rows]"""
     most = min(4 * block, left.size // 2)
+    # Autocorrelation by the spectrum (Wiener-Khinchin), padded so that it does not wrap round.
     centred = left - left.mean()
     spectrum = np.abs(np.fft.rfft(centred, 2 * left.size)) ** 2
     correlation = np.fft.irfft(spectrum)[:most]
     correlation = correlation / max(correlation[0], 1e-300)
+    # Sum it to its first zero crossing; beyond it is mostly noise.
     negative = np.flatnonzero(correlation < 0.0)
     return float(1.0 + 2.0 * correlation[1 : negative[0] if negative.size else most].sum())

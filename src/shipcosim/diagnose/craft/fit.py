@@ -35,6 +35,7 @@ class Normal:
     def solved(self, free: Sequence[int]) -> np.ndarray:
         """Coordinates without each part, and of all rows, (parts + 1, p); numbers that are not free are the file's."""
         free = list(free)
+        # Numbers that are not free keep their start values and enter the right-hand side.
         start = np.array([one.start for one in self.numbers])
         fixed = np.ones(start.size, bool)
         fixed[free] = False
@@ -70,6 +71,7 @@ def normal_about(
         size = np.abs(left) / np.sqrt(variance)[:, None]
         weight = np.minimum(1.0, HUBER / np.maximum(size, 1e-12)) / (variance * apart)[:, None]
         own = set(log.parts)
+        # Normal equations without each part in turn, for the jackknife and for held-out errors.
         for part in range(count + 1):
             rows = log.trained_without(part) if part in own else log.felt.usable
             heavy = (slopes * weight)[:, :, rows]
@@ -80,6 +82,8 @@ def normal_about(
 
 def _noise(logs: Sequence[CraftLog], left: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """Variance of what is left on each axis, and rows from one independent residual to the next; (3,) arrays."""
+    # Residuals of all logs together, the largest 5 % left out; 1.3 makes up for the part of the
+    # variance they carry.
     joined = np.concatenate(
         [one[:, log.felt.usable] for log, one in zip(logs, left, strict=True)], axis=1
     )
@@ -96,6 +100,7 @@ def fitted(
     near: np.ndarray | None = None,
 ) -> Normal:
     """Normal equations about the coordinates that fit all rows, found from the file's or from some near them on."""
+    # Gauss-Newton from the file's numbers, with limited steps of numbers that enter as logarithms.
     about = np.array([one.start for one in numbers]) if near is None else near
     is_bent = [one.is_logarithmic for one in numbers]
     normal = normal_about(logs, numbers, about)

@@ -31,6 +31,7 @@ class _HeldOut:
 
     def gain(self, one: int, other: int) -> tuple[float, float]:
         """Natural logarithm by which the error of one craft is above another's, and its standard error."""
+        # Jackknife: the error without each part, of both crafts; the variance of their difference.
         without = _logs(self.squares, self.counts)
         each = without[one] - without[other]
         parts = each.size - 1
@@ -40,6 +41,7 @@ class _HeldOut:
 
 def _logs(squares: np.ndarray, counts: np.ndarray) -> np.ndarray:
     """Logarithm of the error, mean over position and heading and horizons: without each part, and of all parts."""
+    # Total less each part, and the total.
     sums = squares * counts
     total = sums.sum(-1, keepdims=True)
     without = np.concatenate([total - sums, total], axis=-1)
@@ -54,6 +56,8 @@ def learn(logs: Sequence[CraftLog]) -> LearnedCraft | None:
     """
     model = logs[0].model
     typical = _typical(logs)
+    # Forward selection: add the number that lowers the held-out error most, until none does so
+    # surely.
     numbers = numbers_of(model, typical)
     free = [i for i, one in enumerate(numbers) if one.is_of_file]
     near = None
@@ -66,6 +70,7 @@ def learn(logs: Sequence[CraftLog]) -> LearnedCraft | None:
         if best is None or len(free) >= MOST_NUMBERS:
             break
         free = best
+    # Backward elimination of numbers that do not help.
     free = _without_idle(logs, normal, free)
     normal = fitted(logs, numbers, free, near)
     return None if _drives(logs, normal, free) else _stated(logs, normal, free)
@@ -97,6 +102,7 @@ def _errors(
     """Errors by part with the values without each, (k, parts + 1, p) array."""
     squares, counts = [], []
     for log in logs:
+        # Each prediction uses the numbers fitted without its own part (cross-validation).
         part = log.part_of_start
         off = log.missed(numbers, np.moveaxis(values[:, part], -1, 0))[:, :, -2:]
         position = (off[:, :2] ** 2).sum(1)
@@ -111,6 +117,7 @@ def _errors(
 
 def _best(found: _HeldOut, tries, normal: Normal, logs) -> list[int] | None:
     """The set with one more number that surely lowers the error most; None where none does."""
+    # Largest gain first; it must exceed its standard error, and the result must be a possible ship.
     gains = [found.gain(0, k) for k in range(1, len(tries))]
     order = sorted(range(len(gains)), key=lambda k: -gains[k][0])
     for k in order:
@@ -124,6 +131,7 @@ def _best(found: _HeldOut, tries, normal: Normal, logs) -> list[int] | None:
 
 def _drives(logs: Sequence[CraftLog], normal: Normal, free: Sequence[int]) -> bool:
     """Whether these numbers are no ship's: the water would drive her, or her mass matrix is not positive."""
+    # A positive definite mass matrix, and a hull that takes energy rather than gives it.
     values = normal.values(normal.solved(free)[-1])
     model = with_numbers(logs[0].model, normal.numbers, values)
     mass = model.mass_matrix
@@ -136,6 +144,7 @@ def _driving_share(logs: Sequence[CraftLog], model: ShipModel) -> float:
     """Energy that the water gives a ship over what it takes, at the speeds of logs and at twice as much."""
     given = 0.0
     taken = 1e-12
+    # Power of the hull loads along the logged motion, and at twice its speed.
     for log in logs:
         for factor in (1.0, 2.0):
             u, v, r = (factor * one[log.felt.usable] for one in log.seen[3:])
@@ -148,6 +157,7 @@ def _driving_share(logs: Sequence[CraftLog], model: ShipModel) -> float:
 
 def _without_idle(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> list[int]:
     """A set without numbers that gain nothing on parts that were held out: they are the file's."""
+    # Drop the number whose absence costs least while that lowers the error.
     while len(free) > 1:
         tries = [free, *([i for i in free if i != one] for one in free)]
         found = _held_out(logs, normal, tries)
@@ -162,6 +172,7 @@ def _without_idle(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> 
 def _stated(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> LearnedCraft:
     """What was learned, with what each number and all of them gain on parts that were held out."""
     numbers = [normal.numbers[i] for i in free]
+    # The learned set, the set without each number, and the file's ship.
     tries = [free, *([i for i in free if i != one] for one in free), []]
     values = normal.values(np.stack([normal.solved(one) for one in tries]))
     each = values[0]
@@ -171,6 +182,7 @@ def _stated(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> Learne
     rival = fitted(logs, current, range(len(current)))
     in_current = rival.values(rival.solved(range(len(current)))[None])
     alike = _errors(logs, current, in_current)
+    # Jackknife standard deviation of each number.
     parts = len(each) - 1
     spread = np.sqrt((parts - 1) / parts * ((each[:-1] - each[:-1].mean(0)) ** 2).sum(0))
     gains = [float(np.exp(found.gain(k, 0)[0])) for k in range(1, len(tries) - 1)]
@@ -190,10 +202,12 @@ def _stated(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> Learne
 
 def _of_all(found: _HeldOut, rival: _HeldOut, logs: Sequence[CraftLog]) -> HeldOutErrors:
     """Errors on held-out parts: of the learned craft, the first; of the given ship, the last; and in a current."""
+    # Bootstrap over the parts: multinomial counts are draws with repetition.
     weights = found.counts
     draws = np.random.default_rng(1).multinomial(
         weights.size, np.full(weights.size, 1.0 / weights.size), size=DRAWS
     )
+    # Position and heading at the longest horizon: errors, and ratios of errors over the draws.
     squares = np.concatenate([found.squares[[-1, 0]], rival.squares])
     sums = squares[:, [1, 3]] * weights
     errors = np.sqrt(sums.sum(-1) / weights.sum())

@@ -136,6 +136,7 @@ class LearnedCraft:
 
     def on(self, model: ShipModel) -> ShipModel:
         """The ship with these numbers, known as well as their standard deviations say."""
+        # The uncertainty of learning adds to the tolerances that the numbers have already.
         known = {
             path: float(np.hypot(model.tolerances.get(path, 0.0), std))
             for path, std in self.std.items()
@@ -188,6 +189,8 @@ def learned_craft(
         return {path: float(ship.get(path)) for path in paths}
 
     after = numbers_at(values)
+    # Delta method: move each learned number by its standard deviation, and add the squares of what
+    # that moves.
     squares = dict.fromkeys(paths, 0.0)
     for i, one in enumerate(numbers):
         moved = numbers_at([*values[:i], one.value + one.std, *values[i + 1 :]])

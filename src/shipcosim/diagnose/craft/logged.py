@@ -63,6 +63,7 @@ class CraftLog:
 
     def left(self, model: ShipModel) -> np.ndarray:
         """Acceleration that a ship does not explain, smoothed, (..., 3, n) array."""
+        # Modelled accelerations, smoothed with the measured ones' kernel.
         rates = motion_rates(self.felt.motion, self.inputs, model)
         told = np.stack(np.broadcast_arrays(rates.u, rates.v, rates.r), axis=-2)
         return self.felt.rates - self.felt.kernel.smooth(told)
@@ -71,6 +72,7 @@ class CraftLog:
         self, numbers: Sequence[CraftNumber], at: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         """Unexplained acceleration at some coordinates of the numbers, (3, n), and what one of each explains, (p, 3, n)."""
+        # Forward differences in every coordinate, all ships evaluated at once.
         tries = at + np.concatenate([np.zeros((1, at.size)), _DIFFERENCE * np.eye(at.size)])
         values = [one.value(column)[:, None] for one, column in zip(numbers, tries.T, strict=True)]
         found = self.left(with_numbers(self.model, numbers, values))
@@ -92,10 +94,12 @@ class CraftLog:
         """
         model = with_numbers(self.model, numbers, values)
         rows = self.rows
+        # Predictions of all crafts from the same smoothed states.
         start = true_motion(Motion(*(value[rows] for value in self.seen)), self.model)
         start = Motion(*(value + np.zeros((values.shape[1], 1)) for value in start))
         found = readings(predicted(start, rows, self.record, model, self.counts), model)
         ends = (rows + np.array(self.counts)[:, None])[:, None]
+        # Error of heading wrapped to half a turn, positions north and east.
         turned = np.angle(np.exp(1j * (found.psi - self.seen.psi[ends])))
         off = np.stack([found.x - self.seen.x[ends], found.y - self.seen.y[ends], turned])
         return np.moveaxis(off, 2, 0)
@@ -106,6 +110,7 @@ class CraftLog:
         motion = np.stack([self.felt.motion.u, self.felt.motion.v, self.felt.motion.r])[:, usable]
         told = commanded_by(self.record, self.felt, self.model)
         total = sum(told.thrusters.values(), np.zeros((3, usable.size)))[:, usable]
+        # The larger of commanded and needed load: thrusters may be idle or too weak.
         needed = np.diag(self.model.mass_matrix)[:, None] * self.felt.rates[:, usable]
         loads = np.sqrt((np.maximum(np.abs(total), np.abs(needed)) ** 2).mean(1))
         found = {"motion": np.sqrt((motion**2).mean(1)), "loads": loads}
@@ -134,6 +139,7 @@ def craft_log(
     whole : bool
         All of it is one part, as where there are other logs to learn from.
     """
+    # Parts long enough for predictions within each; too few parts cannot be held out.
     felt = felt_by(record, model.length)
     seen = Motion(*(felt.kernel.smooth(value) for value in felt.motion))
     counts = [max(1, round(horizon / record.step)) for horizon in horizons]
@@ -150,6 +156,7 @@ def craft_log(
     rows = rows[:: max(1, -(-rows.size // MOST_STARTS))]
     if np.unique(parts[rows]).size < count:
         return None
+    # Inputs without delay and wind over ground, one more row than steps.
     logged, neutral = replayable(record, model, seen)
     inputs = logged.inputs(neutral)
     units = {name: (_one_more(one), _one_more(two)) for name, (one, two) in inputs.units.items()}

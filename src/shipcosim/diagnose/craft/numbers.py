@@ -86,6 +86,7 @@ class CraftNumber:
         if not self.is_factor:
             return model.with_values({self.paths[0]: value})
         values = {}
+        # A factor on thrust acts on what a loss leaves.
         for path in self.paths:
             old = model.get(path)
             values[path] = 1.0 - value * (1.0 - old) if path.endswith("_loss") else value * old
@@ -114,6 +115,7 @@ def numbers_of(model: ShipModel, typical: dict[str, np.ndarray]) -> list[CraftNu
     -------
     list of CraftNumber
     """
+    # Numbers of the file first: thrust, inertia, damping, and the hull's derivatives as groups.
     thrust = thrust_of(model)
     found = [thrust] if thrust else []
     vessel = model.vessel
@@ -135,6 +137,7 @@ def numbers_of(model: ShipModel, typical: dict[str, np.ndarray]) -> list[CraftNu
         paths = tuple(path for path in paths if model.get(path))
         if paths:
             found.append(_factor(f"derivatives of {axis} (MMG)", axis, paths))
+    # Coefficients that couple the axes, of either sign.
     found += [
         _coefficient(f"{axis} by {_product(name)}", axis, name, 0, model, typical)
         for axis in AXES
@@ -190,6 +193,7 @@ def _coefficient(
     text: str, axis: str, name: str, sign: int, model: ShipModel, typical: dict[str, np.ndarray]
 ) -> CraftNumber:
     """A coefficient of the hull, by her file or of a size that would matter."""
+    # Size at which the coefficient's load equals a typical commanded load at typical speeds.
     speeds = dict(zip("uvr", typical["motion"], strict=True))
     basis = np.prod([speeds[one] for one in name.partition("_")[2].removeprefix("mod")])
     size = float(typical["loads"][AXES.index(axis)] / max(basis, 1e-12))

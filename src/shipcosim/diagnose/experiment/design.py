@@ -85,6 +85,7 @@ def design_experiment(
     )
     with threadpool_limits(1):
         apart = separations(problem, fits, manoeuvres)
+    # Expected log-evidence for each manoeuvre and pair; then how many pairs it separates.
     pairs = list(combinations(range(len(fits)), 2))
     told = np.array(
         [[apart[min(a, b), max(a, b)][i] for a, b in pairs] for i in range(len(manoeuvres))]
@@ -93,6 +94,7 @@ def design_experiment(
     least = np.nan_to_num(told, nan=-np.inf).min(1, initial=np.inf)
     if not count.max(initial=0):
         return None
+    # Among manoeuvres that separate most pairs, take a short one with most evidence per minute.
     minutes = np.array([one.minutes for one in manoeuvres])
     able = np.flatnonzero(count == count.max())
     short = able[minutes[able] <= _ABOUT * minutes[able].min()]
@@ -141,6 +143,7 @@ def separations(
         By places of two fits, lower first: the expected difference by manoeuvre, the smaller of both being true;
         NaN where the ship does not get through. [nats]
     """
+    # Each fit's ship sails every manoeuvre in turn as the truth.
     models = [_fitted_ship(fit) for fit in fits]
     motions, records, through = _simulated(problem, models, manoeuvres)
     noise = sized(problem.noise, step_for(problem.model) / problem.record.step)
@@ -148,15 +151,18 @@ def separations(
     ends = [rows_of(one, records[0].step) for one in manoeuvres]
     found = {pair: np.full(len(manoeuvres), np.inf) for pair in combinations(range(len(fits)), 2)}
     for a, (motion, record) in enumerate(zip(motions, records, strict=True)):
+        # The instruments show the true motion without noise, as expected values are wanted.
         measured = np.moveaxis(rows_first(readings(motion, models[a])), 0, -2)
         record = replace(record, measured=measured)
         right = linearise(motion, record, models[a], [])
         tolerated = linearise(motion, record, _in_true_wind(problem.model), known)
+        # Innovations of each other fit on this truth, filtered with its columns.
         for b in range(len(fits)):
             if b != a:
                 there = _beside(fits[b], models[b], motion, record, right, tolerated, known)
                 white = innovations(there, noise, record).white
                 pair = min(a, b), max(a, b)
+                # The evidence that it loses; the smaller of both being true counts.
                 gains = [_missed(white[:end, i], fits[b].covariance) for i, end in enumerate(ends)]
                 found[pair] = np.minimum(found[pair], np.where(through[a], gains, np.nan))
     return found
@@ -169,6 +175,7 @@ def _in_true_wind(model: ShipModel) -> ShipModel:
 
 def _fitted_ship(fit: Fit) -> ShipModel:
     """The ship of a fit: its causes, and all known numbers at their most likely."""
+    # Shift all numbers of the fit by its posterior mean.
     values = {}
     for column, share in zip(fit.columns, fit.left, strict=True):
         for path, size in column.changes.items():
@@ -200,6 +207,7 @@ def _beside(fit, model, motion, record, right, tolerated, known):
     """The problem of a fit on a motion by another truth: what it misses more than the truth, and all its columns."""
     shared = [_key(column) for column in known]
     own = [column for column in fit.columns if _key(column) not in shared]
+    # Difference of what both models miss: only what the wrong model adds.
     mine = linearise(motion, record, model, own)
     mine.driven[..., 0] -= right.driven[..., 0]
     mine.seen[..., 0] -= right.seen[..., 0]
@@ -210,6 +218,7 @@ def _beside(fit, model, motion, record, right, tolerated, known):
 
 def _missed(white, covariance):
     """Log-evidence that a fit loses on expected innovations, after its columns have explained what they can. [nats]"""
+    # Residual sum of squares after the columns take up what the posterior covariance allows.
     rows = white.reshape(-1, white.shape[-1])
     products = rows.T @ rows
     L = np.linalg.cholesky(covariance + 1e-12 * np.eye(len(covariance)))
@@ -220,6 +229,7 @@ def _missed(white, covariance):
 
 def _simulated(problem, models, manoeuvres):
     """Motions and records of every manoeuvre by every ship, and whether she gets through; lists by ship."""
+    # Start where the log ends, in its mean wind.
     x, y, psi = (float(value[-1]) for value in problem.motion[:3])
     start = float(problem.record.time[-1]), x, y, psi
     wind = true_wind(problem.record, problem.motion, problem.model)
@@ -228,6 +238,7 @@ def _simulated(problem, models, manoeuvres):
         step_for(problem.model),
         cannot_turn(problem.record, problem.model),
     )
+    # Plan the tracks, then simulate all ships on all manoeuvres under DP control at once.
     track, record, held = planned(manoeuvres, dp, start, wind)
     motions = []
     records = []
@@ -259,6 +270,7 @@ def _simulated(problem, models, manoeuvres):
 
 def _side_by_side(models, time, many):
     """One ship model with the numbers of several as arrays, each repeated: to simulate ships side by side."""
+    # Numbers that differ between the models become arrays over the ships.
     models = [with_steady_current(model, time) for model in models]
     values = {}
     for name, part in models[0].parts.items():
@@ -276,6 +288,7 @@ def keeps_track(
     """Whether the ship keeps near her track, and in the area where she drifts or is pushed. (c,)"""
     length = dp.model.length
     found = []
+    # Distance off the track and from the start, in ship lengths.
     off = np.hypot(motion.x - track.x, motion.y - track.y) / length
     far = np.hypot(motion.x - track.x[:, :1], motion.y - track.y[:, :1]) / length
     for i, one in enumerate(manoeuvres):

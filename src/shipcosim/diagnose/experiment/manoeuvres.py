@@ -90,6 +90,7 @@ def library(model: ShipModel, fixed: Collection[str] = ()) -> list[Manoeuvre]:
     -------
     list of Manoeuvre
     """
+    # Scale from the reference ship: lengths with her length, times with its root (Froude).
     share = model.length / _LENGTH
     T = 60.0 * np.sqrt(share)
     side = 30.0 * share
@@ -170,6 +171,7 @@ def _sweeps(model, T, azimuths, force):
     pushes = []
     start = 0.5 * T
     for name in azimuths:
+        # The neighbour whose inflow this thruster's slipstream disturbs.
         here = model.parts[name]
         near = next(
             (o for o in azimuths if _is_at(model.parts[o], here.neighbour_x, here.neighbour_y)),
@@ -228,6 +230,7 @@ def planned(
     """
     rows = max(rows_of(one, dp.h) for one in manoeuvres)
     time = dp.h * np.arange(rows)
+    # Tracks of all manoeuvres on the same times, with mean wind throughout.
     track = Motion(
         *(np.stack(s) for s in zip(*(_track(one, time, start) for one in manoeuvres), strict=True))
     )
@@ -263,6 +266,7 @@ def _track(manoeuvre, time, start):
     at = 0.0
     place = np.zeros(3)
     found = np.zeros((3, time.size))
+    # Quintic from rest to rest, 10 s^3 - 15 s^4 + 6 s^5, added leg by leg.
     for duration, *where in manoeuvre.legs:
         share = np.clip((time - at) / duration, 0.0, 1.0)
         found += (
@@ -270,6 +274,7 @@ def _track(manoeuvre, time, start):
         )
         at = at + duration
         place = np.array(where)
+    # From the start's axes to north and east, and velocities in body axes by differences.
     _, north, east, heading = start
     c = np.cos(heading)
     s = np.sin(heading)
@@ -309,6 +314,8 @@ def _thrusters(manoeuvre, time, track, start, wind, dp):
     drift = motion_rates(track, Inputs(start[0] + time, still, *air), dp.model)
     wanted = [np.gradient(value, time) for value in (track.u, track.v, track.r)]
     load = dp.mass[:, None] * (np.stack(wanted) - np.stack([drift.u, drift.v, drift.r]))
+    # Share the load among the thrusters stretch by stretch; pushed thrusters are left out and their
+    # load subtracted.
     opposed = _opposed_forces(dp)
     wishes = {name: np.zeros((2, time.size)) for name in model.thrusters}
     for rows, left in _stretches(alone, time.size):
@@ -352,6 +359,7 @@ def _opposed_forces(dp):
     able = [name for name in model.azimuths if name not in dp.fixed]
     if len(able) < 2:
         return found
+    # Wish to pull inwards, less the part that leaves a net load: projection on the null space of B.
     places = np.array([[model.parts[name].x, model.parts[name].y] for name in able])
     inwards = places.mean(0) - places
     inwards /= np.maximum(np.linalg.norm(inwards, axis=1), 1e-9)[:, None]
@@ -368,17 +376,20 @@ def _setting(name, wish, pushes, time, dp):
     turns = name in dp.model.azimuths and name not in dp.fixed
     force = wish[0]
     azimuth = np.full(time.size, dp.model.fixed.get(name, 0.0))
+    # Direction and size of the force; pushes take precedence.
     if turns:
         force = np.hypot(*wish)
         azimuth = np.arctan2(wish[1], wish[0])
     for inside, push, direction in pushes:
         force = np.where(inside, push, force)
         azimuth = np.where(inside, direction, azimuth) if turns else azimuth
+    # Hold the direction through zero force by interpolation.
     azimuth = (
         np.interp(time, time[force != 0.0], np.unwrap(azimuth[force != 0.0]))
         if np.any(force)
         else azimuth
     )
+    # Shaft speed for the force within 80 % of the limit, smoothed as thrusters respond.
     most = 0.8 * dp.model.parts[name].rpm_max / 60.0
     speed = np.clip(dp.speed(name, force), -most, most)
     return tuple(gaussian_filter(series, _STEADY, ends="held") for series in (speed, azimuth))
@@ -401,12 +412,14 @@ def true_wind(record: Record, motion: Motion, model: ShipModel) -> tuple[float, 
         north = -speed * np.cos(direction)
         east = -speed * np.sin(direction)
     else:
+        # Relative to true wind: add the ship's velocity, then turn to north and east.
         u = motion.u - speed * np.cos(direction)
         v = motion.v - speed * np.sin(direction)
         c = np.cos(motion.psi)
         s = np.sin(motion.psi)
         north = c * u - s * v
         east = s * u + c * v
+    # Mean of the components, as directions wrap.
     north = float(np.mean(north))
     east = float(np.mean(east))
     return float(np.hypot(north, east)), float(np.arctan2(-east, -north))

@@ -51,8 +51,10 @@ class Excitation:
 
         As the inverse of a variance, in units of the cause's typical size.
         """
+        # Only what the columns tell counts, so the log's own residual is set to zero.
         blank = self.products.copy()
         blank[0, :] = blank[:, 0] = 0.0
+        # Known numbers are free within tolerances; causes are switched on one at a time.
         known = np.array([column.prior for column in self.columns])
         for _, places in self.groups:
             known[places] = 0.0
@@ -64,6 +66,8 @@ class Excitation:
             prior[
                 [i for i, c in enumerate(self.columns) if i not in places and c.gives_way(taken)]
             ] = 0.0
+            # Posterior variance with a unit prior: its inverse less 1 is the information of the
+            # log.
             covariance = evidence(blank, prior)[2][np.ix_(places, places)]
             yield hypothesis, places, 1.0 / np.diag(covariance) - 1.0
 
@@ -71,6 +75,7 @@ class Excitation:
 def excitation_of(log: JudgedLog) -> Excitation:
     """What a log tells of each cause that can be sought in it."""
     problem = log.problem
+    # Known numbers and first columns of all causes, about the ship without one.
     known = without_causes(log.fits).columns
     columns = [*known, *regressors_of(problem.hypotheses)]
     groups = [(one, places) for one, _, places in placed(problem.hypotheses, len(known))]
@@ -135,6 +140,8 @@ def not_testable(excitation: Excitation) -> tuple[str, ...]:
     """
     gains: dict[str, float] = {}
     for hypothesis, _, informations in excitation.informations():
+        # Expected gain of a typical size: half its information less the evidence's penalty for the
+        # parameter.
         information = 0.5 * float(np.max(informations))
         gain = information - 0.5 * float(np.log1p(2.0 * information))
         gains[hypothesis.cause] = max(gains.get(hypothesis.cause, -np.inf), gain)
@@ -163,6 +170,8 @@ def visible_sizes(excitation: Excitation) -> tuple[VisibleSize, ...]:
         for place, information in zip(places, informations, strict=True):
             spread = 1.0 / np.sqrt(max(float(information), 1e-12))
             cost = hypothesis.definition.cost
+            # Evidence that is needed, solved for the estimate: z^2 / (2 s^2 (1 + s^2)) = wanted
+            # with s the standard deviation.
             wanted = excitation.least + cost + 0.5 * np.log1p(information)
             of_evidence = spread * np.sqrt(2.0 * wanted * (1.0 + spread**2))
             least = max(of_evidence, hypothesis.definition.least, DEVIATIONS * spread)

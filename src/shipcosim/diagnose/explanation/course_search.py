@@ -125,10 +125,13 @@ def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
     ExplainedLog
         As given, or with the course and of the rows in which the cause acts.
     """
+    # Nothing is sought where the log cannot tell causes or a label is still open.
     found = given.identification
     if found.comparison.obstacles or any(fault.alternatives for fault in found.faults):
         return given
+    # Log-evidence of steady causes, less the cost of another form: the score to beat.
     steady = given.fits[0].score - _cost(given)
+    # The same search with other noise or form, as the result must not hang on these.
     sought = ((one, _clear_tries(one)) for one in (given, *_otherwise(given, plain)))
     enough = [
         (one, tries)
@@ -171,11 +174,13 @@ def _rivals(
     weights = {best.of.hypothesis.label: 1.0}
     known = {best.of.hypothesis.label: best.of.hypothesis}
     near = [(one, float(np.exp(one.score - best.score))) for one in tries]
+    # Weights by log-evidence; the best alternatives from other noise or form count in full.
     for one, weight in [*((one, 1.0) for one in others), *near]:
         hypothesis = one.of.hypothesis
         if weight > np.exp(-APART) and hypothesis.label not in weights:
             weights[hypothesis.label] = weight
             known[hypothesis.label] = hypothesis
+    # Posterior probabilities with equal odds beforehand.
     total = sum(weights.values())
     chance, *rest = (min(weight / total, 0.99) for weight in weights.values())
     _, *hypotheses = known.values()
@@ -205,8 +210,10 @@ def _otherwise(given: ExplainedLog, plain: Identification) -> Iterator[Explained
     found = given.identification
     if found.faults != plain.faults:  # labels were put right since
         return
+    # The plain form, where another one was learnt.
     if found.problem.model.form_scale:
         yield replace(given, identification=plain, fits=(fitted(plain.problem),))
+    # Tuned noise may have grown to cover the cause: bound the random walk by that of healthy ships.
     walk = np.minimum(plain.problem.noise.walk, CALM_WALK * np.array([1.0, 1.0, WALK_IN_YAW]))
     if np.any(walk < 0.9 * np.asarray(plain.problem.noise.walk)):
         noise = replace(plain.problem.noise, walk=walk)
@@ -232,6 +239,7 @@ def _bases(explained: ExplainedLog) -> list[Fit]:
 def _tries(problem: IdentificationProblem, base: Fit, linear: InParts) -> list[_Try]:
     """The likeliest courses of the likeliest causes beside a fit, each by the evidence of its own columns."""
     known = {hypothesis.label for hypothesis in base.hypotheses}
+    # A cause whose vector turns already varies over the log.
     wanted = [
         one
         for one in problem.hypotheses
@@ -239,16 +247,20 @@ def _tries(problem: IdentificationProblem, base: Fit, linear: InParts) -> list[_
     ]
     if not wanted:
         return []
+    # Coarse search: all courses by sums over blocks of the log; the likeliest causes go on.
     blocks = _blocks(problem, base, linear, wanted)
     first = sorted(_first_sight(blocks, wanted), key=lambda one: -one.score)
     labels = list(dict.fromkeys(one.hypothesis.label for one in first))[: 2 * LIKELIEST_COURSES]
     chosen = [one for one in first if one.hypothesis.label in labels]
     time = problem.record.time
+    # Filter the columns of the chosen courses row by row, all in one pass.
     for one in chosen:
         linear = beside(linear, _shaped(problem.base_of(one.group), one.course.at(time)))
     products = inner_products(linear, problem.noise, problem.record).products
     found: dict[str, _Try] = {}
     place = len(base.columns)
+    # Evidence of each course, with what the search over its times costs; the best course of each
+    # cause.
     for one in chosen:
         own = range(place, place + len(one.group))
         place += len(one.group)
@@ -283,10 +295,13 @@ def _fitted(problem: IdentificationProblem, one: _Try, linear: InParts) -> _Fitt
     base = one.base
     count = len(base.columns)
     own = own_columns(problem, (one.hypothesis,))
+    # Columns about the ship without the cause, where its share is 0.
     shares = one.course.at(problem.record.time)
     plain = beside(linear, linearised_by_parts(base.about, base.record, base.model, own))
     prior = np.array([column.prior for column in (*base.columns, *own)])
     values = bounded((one.hypothesis,), one.values)
+    # Gauss-Newton: columns about the present size too, as causes need not be linear; both are mixed
+    # by the course.
     for _ in range(ROUNDS_OF_COURSE):
         model = base.model.with_values(values)
         there = linearised_by_parts(base.about, base.record, model, own)
@@ -294,11 +309,13 @@ def _fitted(problem: IdentificationProblem, one: _Try, linear: InParts) -> _Fitt
         filtered = inner_products(mixed, problem.noise, problem.record)
         if not np.isfinite(filtered.products).all():
             return None
+        # The base stays at its own point of linearisation, the cause at its present values.
         centre = np.concatenate(
             [base.centre, [_theta_of(column, model, problem) for column in own]]
         )
         score, theta, covariance = evidence(filtered.products, prior, centre)
         values = bounded((one.hypothesis,), values | _values(problem, own, theta[count:]))
+    # Log-evidence with the cost of the search over times.
     total = score + float(filtered.free) + one.occam
     hypotheses = (*base.hypotheses, one.hypothesis)
     values = base.values | values
@@ -329,8 +346,11 @@ def _mixed(plain: InParts, there: InParts, shares: np.ndarray, count: int) -> In
         mixed = {}
         for name in ("driven", "seen"):
             a, b = getattr(without, name), getattr(within, name)
+            # Innovations of a linear mixture: between the ship without the cause and the ship with
+            # it.
             by = share[: len(a), None, None]
             log = a[..., :1] + by * (b[..., :1] - a[..., :1])
+            # Derivative with respect to the size: the share times the slope at that share.
             own = by * (a[..., 1 + count :] + by * (b[..., 1:] - a[..., 1 + count :]))
             mixed[name] = np.concatenate([log, a[..., 1 : 1 + count], own], axis=-1)
         for name in ("transition", "output"):
@@ -386,16 +406,21 @@ class _Blocks:
     @cached_property
     def known(self) -> tuple[np.ndarray, np.ndarray]:
         """Posterior covariance of the fit's own columns, and how the log pulls at them."""
+        # Posterior covariance of the base's columns without the cause, S (I + S G S)^-1 S in scaled
+        # form.
         count = len(self.base.columns)
         known = slice(1, count + 1)
         prior = np.array([column.prior for column in self.base.columns])
         scale = prior[:, None] * prior
         total = self.parts.sum(0)
+        # The gradient is taken about θ = 0 rather than the point of linearisation.
         inverse = np.linalg.inv(np.eye(count) + scale * total[known, known]) * scale
         return inverse, total[known, 0] + total[known, known] @ self.base.centre
 
     def gains(self, own: slice, shares: np.ndarray) -> np.ndarray:
         """Gain of a cause's columns with courses, (c,) array; `shares` of its size in each block, (c, b). [nats]"""
+        # Products of the cause's columns times the course: linear in the share with others,
+        # quadratic with themselves.
         known = slice(1, len(self.base.columns) + 1)
         inverse, log = self.known
         across = np.tensordot(shares, self.parts[:, known, own], 1)
@@ -405,6 +430,8 @@ class _Blocks:
         explained = np.swapaxes(across, 1, 2) @ inverse
         within = within - explained @ across
         pull = pull - explained @ log
+        # Laplace evidence of a unit normal prior: half the explained sum of squares less half the
+        # log-determinant.
         inner = np.eye(within.shape[-1]) + within
         mean = np.linalg.solve(inner, pull[..., None])[..., 0]
         return 0.5 * (pull * mean).sum(1) - 0.5 * np.linalg.slogdet(inner)[1]
@@ -412,6 +439,7 @@ class _Blocks:
 
 def _blocks(problem, base, linear, wanted) -> _Blocks:
     time = problem.record.time
+    # Blocks of COURSE_BLOCK each, within limits, so that the number of courses stays small.
     count = int(np.clip((time[-1] - time[0]) / COURSE_BLOCK, 8, MOST_COURSE_BLOCKS))
     linear = beside(linear, problem.base_of(regressors_of(wanted)))
     parts = inner_products(linear, problem.noise, problem.record, count).blocks
@@ -424,6 +452,7 @@ def _blocks(problem, base, linear, wanted) -> _Blocks:
 
 def _first_sight(blocks: _Blocks, wanted) -> list[_Try]:
     """The best course of each kind for each cause."""
+    # The share of each course in the middle of each block.
     courses = list(_courses(blocks.edges))
     shares = np.stack([course.at(blocks.middle) for course in courses])
     of_kind = {kind: [i for i, one in enumerate(courses) if one.kind == kind] for kind in KINDS}
@@ -431,10 +460,13 @@ def _first_sight(blocks: _Blocks, wanted) -> list[_Try]:
     for hypothesis in wanted:
         best: dict[str, _Try] = {}
         groups = screening_regressors(hypothesis)
+        # Screen every regressor group with every course at once.
         for group, own in zip(groups, blocks.places[hypothesis.label], strict=True):
             gains = blocks.gains(own, shares)
             for kind, places in of_kind.items():
                 top = places[int(gains[places].argmax())]
+                # Evidence averaged over the kind's times, as each is equally likely: relative to
+                # the best it is a cost.
                 occam = float(np.log(np.exp(gains[places] - gains[top]).mean()))
                 gain = float(gains[top]) + occam
                 one = _Try(blocks.base, hypothesis, group, courses[top], gain, occam, {})
@@ -463,6 +495,7 @@ def _courses(edges: np.ndarray) -> Iterator[Course]:
 def _with_further_spells(blocks: _Blocks, one: _Try) -> _Try:
     """A spell, or a step, with others beside it, each of which must gain what the search for it costs and more."""
     groups = screening_regressors(one.hypothesis)
+    # Sums by block let further spells be tried without filtering again.
     own = blocks.places[one.hypothesis.label][groups.index(one.group)]
     spells = [course for course in _courses(blocks.edges) if course.kind != RAMP]
     each = np.stack([course.at(blocks.middle) for course in spells])
@@ -472,6 +505,7 @@ def _with_further_spells(blocks: _Blocks, one: _Try) -> _Try:
     occam = one.occam
     share = course.at(blocks.middle)
     gain = blocks.gains(own, share[None])[0]
+    # Greedy search: the best further spell or hole is kept while it gains enough.
     while True:
         # Spells that neither overlap with those that are there nor touch them, or holes in one of them.
         apart = each @ np.convolve(share, np.ones(3), "same") == 0.0
@@ -481,10 +515,12 @@ def _with_further_spells(blocks: _Blocks, one: _Try) -> _Try:
         if not len(tried):
             break
         gains = blocks.gains(own, tried)
+        # Each spell was chosen among many: the logarithm of their number is paid.
         paid = float(np.log(len(tried)))
         if gains.max() - paid < gain + ENOUGH:
             break
         share, gain, occam = tried[gains.argmax()], gains.max(), occam - paid
+    # Edges of the spells are where the share rises and falls.
     rises = np.diff(np.concatenate([[0.0], share, [0.0]]))
     starts, ends = (blocks.edges[rises == sign] for sign in (1.0, -1.0))
     found = tuple((float(a), float(b)) for a, b in zip(starts, ends, strict=True))
@@ -498,9 +534,11 @@ def _estimates(hypothesis, columns, theta, covariance) -> dict[str, ParameterEst
     """The parameters of a cause at some θ of its columns."""
     found = {}
     for of in hypothesis.parameters:
+        # Columns that change this number, by their sizes.
         which = [i for i, column in enumerate(columns) if of.path in column.changes]
         sizes = np.array([columns[i].changes[of.path] for i in which])
         value = of.neutral + float(sizes @ theta[which])
+        # Standard deviation of a linear combination of the columns.
         std = float(np.sqrt(sizes @ covariance[np.ix_(which, which)] @ sizes))
         found[of.name] = ParameterEstimate(value * of.factor, abs(std * of.factor), of.unit)
     return found
@@ -512,11 +550,13 @@ def _is_clear(one: _Fitted) -> bool:
     What is wrong beside a gap pushes the ship where nobody measured her.
     """
     record = one.of.base.record
+    # Most rows while the cause is present must have been measured.
     present = one.of.course.at(record.time) > 0.0
     if np.isfinite(record.measured[present, :3]).all(-1).mean() < MEASURED_WHILE_PRESENT:
         return False
     parameters = one.of.hypothesis.parameters
     own = slice(-len(parameters), None)
+    # Size in typical units, against the mean standard deviation; it must lie inside all bounds.
     size = float(np.linalg.norm(one.theta[own]))
     spread = float(np.sqrt(np.diag(one.covariance)[own].mean()))
     within = all(
@@ -545,6 +585,7 @@ def _sizes_over_time(problem, one: _Fitted) -> tuple[SizeOverTime, ...]:
     time = problem.record.time
     hypothesis = one.of.hypothesis
     base = one.of.base
+    # Equal parts, each with its own copy of the cause's columns.
     edges = np.linspace(time[0], time[-1] + problem.record.step, SIZES_OVER_TIME + 1)
     spells = list(zip(map(float, edges[:-1]), map(float, edges[1:]), strict=True))
     group = one.columns
@@ -552,10 +593,12 @@ def _sizes_over_time(problem, one: _Fitted) -> tuple[SizeOverTime, ...]:
     linear = base.linear
     for spell in spells:
         linear = beside(linear, _shaped(plain, Course(SPELL, (spell,)).at(time)))
+    # One joint fit of all parts beside the base, so that their sizes are estimated together.
     products = inner_products(linear, problem.noise, problem.record).products
     count = len(base.columns)
     own = range(count, count + len(group) * len(spells))
     _, theta, covariance = _weighed(products, base, own)
+    # Collect the estimates of each parameter over the parts.
     each: dict[str, list[ParameterEstimate]] = {}
     for k in range(len(spells)):
         part = slice(k * len(group), (k + 1) * len(group))
@@ -578,6 +621,8 @@ def _of_its_rows(explained: ExplainedLog, best: _Try, course: CourseFound) -> Ex
     """The log where the cause acts longest, fitted with it and with the steady ones, and without."""
     found = explained.identification
     time = found.repaired["time"].values
+    # The longest spell is a log of a steady cause: solve it as an identification problem of its
+    # own.
     longest = max(best.course.spells, key=lambda spell: spell[1] - spell[0])
     part = found.repaired.isel(time=slice(*np.searchsorted(time, longest)))
     problem = None
@@ -588,6 +633,7 @@ def _of_its_rows(explained: ExplainedLog, best: _Try, course: CourseFound) -> Ex
         # Predictions are of the ship without the cause.
         nothing = without_causes(explained.fits)
         return replace(explained, fits=(nothing,), is_healthy=False, course=course)
+    # The same hypotheses in the problem of these rows.
     hypotheses = tuple(
         own
         for one in (best.hypothesis, *best.base.hypotheses)

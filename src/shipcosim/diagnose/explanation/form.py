@@ -48,10 +48,14 @@ def learnt(problem: IdentificationProblem) -> IdentificationProblem:
     """
     if problem.model.form_scale or problem.model.directions:
         return problem
+    # Choose the scale of largest evidence (empirical Bayes), at a cost for leaving the model's
+    # form.
     scores = scores_by_scale(problem, fitted(problem))
     scale = max(scores, key=lambda scale: scores[scale] - FORM_COST * (scale > 0.0))
     if not scale:
         return problem
+    # A cause may mimic the form: compare again with the likeliest cause fitted in full, and noise
+    # tuned for both.
     formed = of_scale(problem, scale)
     is_likelier = beside_likeliest(formed).score - FORM_COST > beside_likeliest(problem).score
     return formed if is_likelier else problem
@@ -66,9 +70,11 @@ def with_settled_form(explained: ExplainedLog) -> ExplainedLog:
     best = explained.fits[0]
     if not found.problem.model.form_scale:
         return explained
+    # Fit the causes of the best set on a ship of the model's form.
     plain = of_scale(found.problem, 0.0, best.hypotheses, best.values)
     if fitted(plain, best.hypotheses, best.values).score + FORM_COST < best.score:
         return explained
+    # A full search with the plain form; keep the learnt form only where it gains its cost.
     fits = tuple(explain(plain))
     if fits[0].score + FORM_COST < best.score:
         return explained
@@ -92,6 +98,7 @@ def scores_by_scale(problem: IdentificationProblem, fit: Fit) -> dict[float, flo
         Of scale 0 and `FORM_SCALES`. [nats, up to a constant of the log]
     """
     wanted = [s for s in problem.hypotheses if s not in fit.hypotheses]
+    # Columns of the form's numbers, linearised once for all scales.
     sizes = {
         path: size for path, size in problem.model.form_sizes.items() if path not in fit.values
     }
@@ -100,6 +107,8 @@ def scores_by_scale(problem: IdentificationProblem, fit: Fit) -> dict[float, flo
     linear = beside(beside(fit.linear, form), problem.base_of(regressors_of(wanted)))
     products = inner_products(linear, problem.noise, problem.record).products
     found = {}
+    # The scale only sets the prior of these columns: each is one more evidence from the same
+    # products.
     for scale in (0.0, *FORM_SCALES):
         columns = [
             *fit.columns,
@@ -108,6 +117,7 @@ def scores_by_scale(problem: IdentificationProblem, fit: Fit) -> dict[float, flo
         centre = np.concatenate([fit.centre, np.zeros(len(sizes))])
         prior = np.zeros(len(products) - 1)
         prior[: len(columns)] = [column.prior for column in columns]
+        # Log-evidence without a cause, plus the gain of the likeliest one.
         alone = evidence(
             products, prior, np.concatenate([centre, np.zeros(prior.size - centre.size)])
         )[0]
@@ -123,6 +133,7 @@ def of_scale(
     values: Mapping[str, float] | None = None,
 ) -> IdentificationProblem:
     """The problem of a ship whose form may differ by some scale, its noise tuned anew beside some causes."""
+    # The allowed error of the form changes what noise is left: tune it again.
     formed = prepared(replace(problem, model=replace(problem.model, form_scale=scale)), rounds=1)
     fit = fitted(formed, hypotheses, values) if hypotheses else beside_likeliest(formed)
     return prepared(replace(formed, noise=tuned_noise(formed, fit)), rounds=1)

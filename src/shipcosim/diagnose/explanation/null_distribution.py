@@ -82,10 +82,12 @@ def healthy_products(
     tuple of list of Regressor, (count, 1 + p, 1 + p) array
         The known numbers; the log, these, and the screening regressors of each wanted hypothesis in turn.
     """
+    # Simulate all ships at once, then filter them in batches to bound memory.
     records = healthy_records(problem, motion, count, np.random.default_rng(seed))
     problem = replace(problem, hypotheses=tuple(wanted), known_of=problem.hypotheses)
 
     def products_of(first):
+        # Each healthy log is linearised about its own smoothed motion.
         record = _some(records, slice(first, first + batch))
         here = prepared(
             replace(problem, record=record, motion=first_motion(record, problem.model)), rounds=1
@@ -126,6 +128,7 @@ def healthy_records(
     Record
         With the ships on the first axis.
     """
+    # Healthy ships differ within tolerances, and are driven by the log's random accelerations.
     model = drawn_within_tolerances(problem.model, (count,), rng)
     record = problem.record
     noise = problem.noise
@@ -133,6 +136,7 @@ def healthy_records(
         rng.standard_normal((record.time.size, 3, count))
         * (np.asarray(noise.jolt) * np.sqrt(record.step))[:, None]
     )
+    # A DP controller keeps each ship on the logged track.
     ships, units = kept_on_track(
         model, count, motion, record, DpController(problem.model, record.step), jolts=jolts
     )
@@ -143,12 +147,14 @@ def drawn_within_tolerances(
     model: ShipModel, shape: tuple[int, ...], rng: np.random.Generator
 ) -> ShipModel:
     """Ships within what is known of a ship model, whose numbers are arrays of a shape."""
+    # Listed uncertainties, less those that a reference covers by its directions.
     own = {path: size for path, size in model.uncertainties.items() if path not in model.referenced}
     directions = [
         *model.directions,
         *({path: size} for path, size in own.items() if not model.is_of_day(path)),
     ]
     values = {}
+    # One standard normal draw for each direction, which may move several numbers at once.
     for direction in directions:
         share = rng.standard_normal(shape)
         for path, size in direction.items():
@@ -160,16 +166,19 @@ def _logged(motion, units, model, problem, rng):
     """The log of the ships' motion, with the noise of the log: white, of waves, and slow in position and heading."""
     record = problem.record
     (count, n) = motion.x.shape
+    # What ideal instruments show of each ship, then the noise of the log.
     measured = np.stack(
         [value.T for value in readings(motion, problem.model)], axis=-1
     )  # (n, m, 6)
     measured += rng.standard_normal(measured.shape) * np.asarray(problem.noise.white)
     measured += _shown_waves(waves_of(problem.noise, record.step, (n, count), rng), motion.psi.T)
+    # Slow errors of position and heading: stationary first-order Gauss-Markov process.
     keep = np.exp(-record.step / SLOW_TIME)
     slow = SLOW_STD * rng.standard_normal((count, 3))
     for k in range(n):
         measured[k, :, :3] += slow
         slow = keep * slow + np.sqrt(1.0 - keep**2) * SLOW_STD * rng.standard_normal((count, 3))
+    # The same gaps as in the log.
     measured = np.where(np.isfinite(record.measured)[:, None, :], measured, np.nan)
     return Record(
         record.time, np.moveaxis(measured, 1, 0), units, record.wind, record.known, rate=record.rate
@@ -178,6 +187,7 @@ def _logged(motion, units, model, problem, rng):
 
 def _shown_waves(waves, psi):
     """Waves' place and velocity in the ship's axes as the channels show them, all (n, m, 6)."""
+    # Turn the place from the ship's axes to north and east.
     x, y, *others = np.moveaxis(waves, -1, 0)
     return np.stack(
         [np.cos(psi) * x - np.sin(psi) * y, np.sin(psi) * x + np.cos(psi) * y, *others], axis=-1

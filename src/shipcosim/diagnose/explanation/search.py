@@ -81,18 +81,23 @@ def explain(
     list of Fit
         All sets that were fitted, best first; the one without a cause among them.
     """
+    # Start without causes, then extend the best sets by one cause at a time (beam search).
     nothing = fitted(problem)
     fits = {frozenset(): nothing}
     front = [nothing]
     for stage in range(most):
         best = max(fit.score for fit in fits.values())
         wanted = {}
+        # Screen all causes beside each set in the front; fit those whose first gain is near the
+        # best or large enough.
         for fit, gains in zip(front, each(lambda fit: screened(problem, fit), front), strict=True):
             most_gain = gains[0][0]
             least = max(
                 most_gain - max(near, 0.85 * most_gain), -2.0 if stage == 0 else enough - 2.0
             )
             first = likely if stage == 0 else likely // 2
+            # A number far outside its tolerance suggests a cause that the linear screening
+            # underrates.
             strained = _strained(fit)
             for place, (gain, hypothesis, values) in enumerate(gains):
                 if (place >= first or gain < least) and not strained & hypothesis.paths:
@@ -105,12 +110,14 @@ def explain(
             zip(wanted, each(lambda one: fitted(problem, *one), wanted.values()), strict=True)
         )
         fits |= tried
+        # The two best new sets go on, if they gain enough over all found before.
         ranked = sorted(tried.values(), key=lambda fit: -fit.score)
         front = [
             fit for fit in ranked[:2] if fit.score > max(ranked[0].score - near, best + enough)
         ]
         if not front:
             break
+    # A larger set may have been reached by a detour: drop or simplify its causes.
     _simplify(problem, fits, fitted)
     return sorted(fits.values(), key=lambda fit: -fit.score)
 
@@ -119,6 +126,7 @@ def _strained(fit: Fit) -> set[str]:
     """Numbers that a fit has far from what is known of them: what they do may be bent there, as a lag's."""
     off = defaultdict(float)
     known = defaultdict(float)
+    # Sum the shifts of all columns that move a number, and the variance of their tolerances.
     for column, theta in zip(fit.columns, fit.theta, strict=True):
         for path, size in column.changes.items():
             off[path] += theta * size
@@ -147,6 +155,7 @@ def _simplify(
 ) -> None:
     """Fit the best set again without each of its causes, and with simpler ones instead, from the values that it has."""
     while True:
+        # Fit simpler sets from the best set's values until none improves any more.
         best = max(fits.values(), key=lambda fit: fit.score)
         new = False
         sets = _simpler(problem, best.hypotheses)
@@ -174,6 +183,7 @@ def _values(hypotheses, fit):
 def _simpler(problem, hypotheses):
     """Sets without one of the causes, and with the special case of one instead."""
     found = []
+    # Leave each cause out, or replace it by the special case that it contains.
     for left in hypotheses:
         rest = tuple(hypothesis for hypothesis in hypotheses if hypothesis is not left)
         special = [
@@ -190,6 +200,8 @@ def _value(parameter, hypothesis, fit):
     """What a fit says of a number: its own value, or the mean of those of the more general cause."""
     if parameter.path in fit.values:
         return fit.values[parameter.path]
+    # A general cause has several copies of the parameter, as start and end; their mean is the start
+    # value.
     general = next(s for s in fit.hypotheses if s.definition.special == hypothesis.cause)
     place = hypothesis.parameters.index(parameter)
     return float(

@@ -144,6 +144,7 @@ def evidence_of(log: JudgedLog) -> Evidence:
     problem = log.problem
     fit = log.fit
     nothing = without_causes(log.fits)
+    # Before: known numbers at their shipped values. After: with the causes fitted.
     white = {"before": whiteness(problem, nothing, as_it_is=True)}
     if fit.hypotheses:
         white["after"] = whiteness(problem, fit)
@@ -194,10 +195,12 @@ def whiteness(problem: IdentificationProblem, fit: Fit, as_it_is: bool = False) 
     (LAGS, 6) array
         From a lag of one row on; NaN for a channel that was not measured.
     """
+    # Innovations once the fit's effect is taken out; gaps stay missing.
     theta = 0.0 * fit.left if as_it_is else fit.left
     white = innovations(explained(fit.linear, theta), problem.noise, problem.record).white[..., 0]
     white = np.where(np.isfinite(problem.record.measured), white, np.nan)
     found = np.full((LAGS, white.shape[1]), np.nan)
+    # Normalised autocorrelation by channel, with enough values for all lags.
     for channel, values in enumerate(white.T):
         if np.isfinite(values).sum() > 10 * LAGS:
             values = values - np.nanmean(values)
@@ -218,16 +221,20 @@ def load_form(log: JudgedLog) -> LoadForm | None:
     if model.directions:
         return None
     sizes = model.form_sizes if model.form_scale else {}
+    # Posterior of each number, in units of its column.
     std = np.sqrt(np.diag(fit.covariance))
     found = []
     squares = {}
     for column, share, deviation in zip(fit.columns, fit.theta, std, strict=True):
+        # Only columns of one lasting number: no causes, no quantities of the day.
         path, size = next(iter(column.changes.items()))
         if len(column.changes) > 1 or path in fit.values or ShipModel.is_of_day(path):
             continue
         is_form = path in sizes and column.prior == 1.0
         if is_form:
+            # Mean square of the difference of a number of the form, uncertainty included.
             squares[path] = size**2 * (share**2 + deviation**2)
+        # Report numbers that the log moves clearly, by their posterior or far beyond tolerance.
         least = 1.0 if is_form else STRAINED * column.prior
         if abs(share) > max(least, MOVED * deviation):
             number = _form_number(model, path, size * share, size * deviation)

@@ -51,17 +51,20 @@ def unmodelled_gains(problem: IdentificationProblem, fit: Fit) -> dict[str, floa
     dict of str to float
         By kind. [nats]
     """
+    # Number of columns of each kind: forces by their basis functions, channels by their shapes.
     kinds = {
         kind: [basis.shape[-1] for basis in group]
         for kind, group in _bases(problem, fit, slice(0, 1)).items()
     }
     kinds |= {"in a channel": [_SHAPES] * 6}
+    # Columns for all kinds at once, so that one pass of the filter suffices.
     shown = np.stack(readings(fit.motion, fit.model), axis=-1)
     linear = with_columns(
         fit.linear, sum(map(sum, kinds.values())), lambda rows: _columns(problem, fit, shown, rows)
     )
     products = inner_products(linear, problem.noise, problem.record).products
     base = len(fit.columns)
+    # The fit's columns keep their priors; unmodelled ones are switched on in turn.
     prior = np.concatenate(
         [[column.prior for column in fit.columns], np.zeros(linear.columns - base)]
     )
@@ -70,6 +73,8 @@ def unmodelled_gains(problem: IdentificationProblem, fit: Fit) -> dict[str, floa
     nothing = evidence(products, prior, centre)[0]
     found = {}
     place = base
+    # Best of each kind, less the logarithm of how many were tried and less what a reference
+    # expects.
     for kind, group in kinds.items():
         scores = []
         for size in group:
@@ -96,6 +101,7 @@ def _differs_by_part(fit):
 
     Each part pulls at the estimate; what it would pull by chance is known, and the least likely pull counts.
     """
+    # Residual products by block: the pull of a part is the gradient of its log-likelihood.
     blocks = fit.products.blocks
     place = len(fit.columns)
     unlikely = []
@@ -104,10 +110,13 @@ def _differs_by_part(fit):
         own = range(place, place + len(hypothesis.parameters))
         size = np.linalg.norm([fit.theta[i] for i in own])
         for i in own:
+            # By chance the pull has the variance of the part's information, more where sizes may
+            # differ by some share.
             known = blocks[:, 1 + i, 1 + i]
             pull = blocks[:, 1 + i, 0] - blocks[:, 1 + i, 1:] @ fit.left
             chance = known * (1.0 + (SIZE_FROM_PART_TO_PART * size) ** 2 * known) + 1e-9
             unlikely.append(log_survival((pull**2 / chance).sum(), len(blocks)))
+    # The least likely of several p-values: times their number (Bonferroni).
     return _most_evidence(min(unlikely, default=0.0) + np.log(max(len(unlikely), 1)))
 
 
@@ -118,12 +127,14 @@ def _beyond_tolerances(fit):
     the prior; the sum of its squares is taken as a scaled chi-square of the same mean and variance.
     """
     known = len(fit.columns) - sum(len(hypothesis.parameters) for hypothesis in fit.hypotheses)
+    # Share of the prior variance that the log has removed, in each principal direction.
     prior = np.array([column.prior for column in fit.columns[:known]])
     told = np.clip(
         1.0 - np.linalg.eigvalsh(fit.covariance[:known, :known] / prior[:, None] / prior),
         1e-9,
         None,
     )
+    # Match mean and variance of the weighted sum by a scaled chi-square (Satterthwaite).
     mean = told.sum()
     half_variance = (told**2).sum()
     squares = ((fit.theta[:known] / prior) ** 2).sum()
@@ -141,10 +152,13 @@ def _bases(problem, fit, rows):
     every = problem.record.time
     time = every[rows]
     psi = fit.motion.psi[rows]
+    # Slow forces: piecewise linear functions of time.
     slow = piecewise_linear_basis(np.linspace(0.0, 1.0, every.size)[rows], BASIS_FUNCTIONS).T
+    # Forces by heading: first and second harmonics, and cubes.
     c = np.cos(psi)
     s = np.sin(psi)
     heading = np.stack([c, s, np.cos(2 * psi), np.sin(2 * psi), c**3, s**3], axis=-1)
+    # Sinusoids of any phase, periods evenly spaced on a logarithmic scale.
     periods = np.geomspace(SHORTEST_PERIOD, every[-1] - every[0], PERIODS)
     waves = [
         np.stack([np.sin(2 * np.pi * time / p), np.cos(2 * np.pi * time / p)], axis=-1)
@@ -172,14 +186,17 @@ def _channels(problem, shown, rows):
     `shown` is what the instruments show at all rows, (n, 6).
     """
     every = problem.record.time
+    # Time as a share of the log.
     share = (every[rows] - every[0]) / (every[-1] - every[0])
     found = np.zeros((share.size, 6, 6, _SHAPES))
+    # Position and heading: slow sines and cosines. Velocities: constant, drift, scale.
     for i, size in enumerate(CHANNEL_SIZES):
         moved = shown[rows, i] - shown[:, i].mean()
         shapes = [np.sin(np.pi * share), np.cos(np.pi * share), np.cos(2 * np.pi * share)]
         if i > 2:
             shapes = [np.ones_like(share), share - 0.5, 0.1 * moved / size]
         found[:, i, i] = size * np.stack(shapes, axis=-1)
+    # A channel error shows only where the channel was measured.
     return (
         found.reshape(share.size, 6, 6 * _SHAPES)
         * np.isfinite(problem.record.measured[rows])[..., None]
@@ -190,14 +207,17 @@ def _columns(problem, fit, shown, rows):
     """A column for each acceleration and for each error of a channel, `driven` and `seen` of some rows."""
     h = problem.record.step
     n = problem.record.time.size
+    # Typical size of an unmodelled force as acceleration, in yaw by the gyradius.
     size = FORCE_SIZE * np.array(
         [1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.parts["hull"].length]
     )
+    # One more row, for the mean of each step's ends.
     groups = _bases(problem, fit, slice(rows.start, min(rows.stop + 1, n))).values()
     accelerations = np.concatenate([basis for group in groups for basis in group], axis=-1)
     channels = _channels(problem, shown, rows)
     steps = len(accelerations) - 1
     forces = accelerations.shape[-1]
     driven = np.zeros((steps, 6, forces + channels.shape[-1]))
+    # Change of velocity over the step; the sign is that of δ' = A δ + b - B θ.
     driven[:, 3:6, :forces] = -h * size[:, None] * 0.5 * (accelerations[:-1] + accelerations[1:])
     return driven, np.concatenate([np.zeros((len(channels), 6, forces)), channels], axis=-1)

@@ -101,11 +101,13 @@ class JudgedLog:
 def judged(explained: ExplainedLog) -> JudgedLog:
     """The verdict on an explained log, by what its causes gain beyond what they gain on healthy logs like it."""
     problem = explained.identification.problem
+    # Logs that cannot tell causes get no verdict.
     fits = explained.fits
     if explained.identification.comparison.obstacles:
         return JudgedLog(explained, Judgement("unknown", without_causes(fits), (), (), ()), {}, {})
     if explained.course is not None:
         return _judged_course(explained, explained.course)
+    # Gain that causes have on healthy logs of such ships, more where the wind is unknown.
     without_wind = problem.record.wind is None
     usual = usual_gain(problem.model) + (NULL_GAIN_WITHOUT_WIND if without_wind else 0.0)
     found = judge_against_healthy(
@@ -122,6 +124,7 @@ def _judged_course(explained: ExplainedLog, course: CourseFound) -> JudgedLog:
     """The verdict on a cause with a course, which was weighed against all steady ones; beside it steady ones may be."""
     problem = explained.identification.problem
     fit = explained.fits[0]
+    # Steady causes that were fitted beside the one with a course.
     beside = [one for one in fit.hypotheses if one.label != course.finding.label]
     own = (Candidate(course.finding.cause, course.finding.component, course.finding.probability),)
     candidates = own + course.rivals
@@ -130,6 +133,7 @@ def _judged_course(explained: ExplainedLog, course: CourseFound) -> JudgedLog:
     others = {kind: gain for kind, gain in course.unmodelled.items() if kind != _BY_PART}
     if problem.record.wind is None:
         others = {kind: gain for kind, gain in others.items() if kind not in FORCES}
+    # Gain of all causes together, against which unmodelled errors are judged.
     of_causes = course.gain + course.steady[0].score - without_causes(course.steady).score
     if _stands_out(others, of_causes):
         judgement = Judgement("unknown", fit, (), _beside_unknown(candidates), ())
@@ -189,6 +193,8 @@ def judge_against_healthy(
     if not is_unknown and any(
         gained(hypothesis, fit, fits) < FAR_ABOVE_NULL for hypothesis in fit.hypotheses
     ):
+        # The null gain is the largest of the simulated ones, or mean plus three standard
+        # deviations.
         null = {
             label: null.get(label, 0.0)
             + (
@@ -244,16 +250,19 @@ def judge(
     Judgement
     """
     nothing = without_causes(fits)
+    # Only sets whose causes are each large and certain enough compete.
     fair = [fit for fit in fits if not fit.hypotheses or admissible(fit, fits, null or {})]
     best = _best_steady(sorted(fair, key=lambda fit: -_with_odds(fit)), unmodelled)
     candidates = _of_all(fair)
     gain = best.score - nothing.score
+    # Unknown where too many causes are needed, or an unmodelled error remains beside the best set.
     if len(best.hypotheses) > MOST_CAUSES or all(
         _stands_out(unmodelled(fit), gain) for fit in (best, *_with_a_small_cause(best, fits))
     ):
         return Judgement("unknown", best, (), _beside_unknown(candidates), ())
     if not best.hypotheses:
         return Judgement("consistent", best, (), candidates, ())
+    # Sets that the evidence cannot separate, without those that only add causes to the best one.
     rivals = [
         fit
         for fit in fair
@@ -265,6 +274,7 @@ def judge(
             (_finding(s, best, candidates) for s in best.hypotheses), key=lambda f: -f.probability
         )
     )
+    # With rivals only causes common to all of them are named.
     if rivals:
         named = {label for fit in (best, *rivals) for label in labels(fit)}
         same = tuple(c for c in candidates if c.label in named)
@@ -276,6 +286,7 @@ def judge(
 
 def _of_all(fits):
     """Causes with their probabilities by all sets that were fitted, none of them preferred."""
+    # Probabilities over all sets; the empty one is preferred by what a cause has to gain.
     scores = [_with_odds(fit) if fit.hypotheses else fit.score + ENOUGH for fit in fits]
     return _candidates(dict(zip(fits, _weights(scores), strict=True)))
 
@@ -303,6 +314,7 @@ def _stands_out(gains, of_causes):
 
 def _best_steady(ranked, unmodelled):
     """The best set, or one a little below it where the size of its causes differs from part to part of the log."""
+    # Change to the next set while the present one's size varies over the log and the loss is small.
     best = ranked[0]
     for other in ranked[1:]:
         if (
@@ -334,6 +346,7 @@ def admissible(fit: Fit, fits: Sequence[Fit], null: dict[str, float]) -> bool:
 def _is_sized(hypothesis, fit):
     """Whether a cause is large enough to matter, clearly off neutral, and not at a bound."""
     parameters = hypothesis.parameters
+    # Size against mean standard deviation, both in typical units.
     size = _size(hypothesis, fit)
     std = np.hypot.reduce([fit.std[k.path] / k.typical for k in parameters]) / np.sqrt(
         len(parameters)
@@ -349,6 +362,7 @@ def _exceeds_special(hypothesis, fit, fits):
 
     A steady current beside a model of another form seems to turn a little.
     """
+    # The general cause must differ enough between its ends or parts from the special one.
     fitted = (one for other in fits for one in other.hypotheses)
     special = next((one for one in fitted if _is_special(one, hypothesis)), None)
     if special is None:
@@ -365,6 +379,8 @@ def _is_special(one, general):
 
 def _in_shape(hypothesis, fit):
     """Whether what tells a cause's shape lies within its tolerances, taken together."""
+    # Sum of squares of the shape's numbers in tolerances: chi-square with as many degrees of
+    # freedom.
     shape = set(hypothesis.definition.shape)
     squares = sum(
         t**2
@@ -386,6 +402,7 @@ def _with_a_small_cause(best, fits):
 
     It may explain an unmodelled error.
     """
+    # One more cause that gains much but is too small to be named.
     for fit in sorted(fits, key=lambda fit: -fit.score):
         more = [hypothesis for hypothesis in fit.hypotheses if hypothesis not in best.hypotheses]
         left = [hypothesis for hypothesis in best.hypotheses if hypothesis not in fit.hypotheses]
@@ -404,12 +421,14 @@ def _with_a_small_cause(best, fits):
 
 def gained(hypothesis: Hypothesis, fit: Fit, fits: Sequence[Fit]) -> float:
     """What a cause gains in a set, against the set without it. [nats]"""
+    # Best score of the same set without this cause.
     rest = names(s for s in fit.hypotheses if s is not hypothesis)
     without = [other.score for other in fits if names(other.hypotheses) == rest]
     return fit.score - max(without, default=-np.inf)
 
 
 def _weights(scores):
+    # Softmax of the log-odds, without overflow.
     scores = np.array(scores)
     weights = np.exp(np.clip(scores - scores.max(), -700.0, 0.0))
     return weights / weights.sum()
@@ -417,6 +436,7 @@ def _weights(scores):
 
 def _candidates(chances):
     """Each cause with the probability of all sets that it is in, most likely first."""
+    # Marginal probability: sum over the sets that contain the cause.
     found = {}
     for fit, chance in chances.items():
         for hypothesis in fit.hypotheses:

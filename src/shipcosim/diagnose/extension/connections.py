@@ -31,6 +31,7 @@ def put_on_connections(
     rule : OnConnections
     """
     system = draft.structure.checked()
+    # Lost thrust: scale the connections of the component's loads to the ship.
     if rule.of == "loads":
         kept = 1.0 + rule.sign * converted(estimate, "1").value
         wanted = [
@@ -39,6 +40,8 @@ def put_on_connections(
         new = [(c, kept * c.factor, kept * c.offset) for c in wanted]
         told = f"factor {kept:.3f} on the connections of its loads"
     else:
+        # Error of an order: shift what the connection gives to the thruster's input, in the unit of
+        # the input.
         off = rule.sign * converted(estimate, DRIVES[rule.of]).value
         one = third_party_fmu_of(system, component, draft.ship)
         links = {link.variable: link for link in one.links if link.quantity == rule.of}
@@ -47,6 +50,7 @@ def put_on_connections(
         ]
         new = [(c, c.factor, c.offset + links[c.target[1]].factor * off) for c in wanted]
         told = f"offset of {off:.4g} {DRIVES[rule.of]} on the connection of its {rule.of}"
+    # A connection inside a nested system cannot be replaced from here.
     pairs = set(draft.structure.connections)
     if not new or any(_ends(c) not in pairs for c, *_ in new):
         draft.remark(
@@ -72,6 +76,7 @@ def _rejoin(
 ) -> None:
     """Connect the same ends with another factor and offset, conversion of units included."""
     source, target = _ends(connection)
+    # The file's factor and offset come after the conversion of units: divide it out.
     per, zero = conversion(_unit(system, connection.source), _unit(system, connection.target))
     structure.disconnect(source, target)
     structure.connect(source, target, factor=factor / per, offset=offset - factor / per * zero)
@@ -110,6 +115,7 @@ def connect_neighbours(
     wired = set(draft.structure.connections)
     feeds = {target for _, target in wired}
     units = list(units)
+    # Sort the other thrusters: the one wired to this unit first, then by distance.
     place = {unit: (_number(values[f"{unit}.x"]), _number(values[f"{unit}.y"])) for unit in units}
     for unit in units:
         here = place[unit]
@@ -121,6 +127,7 @@ def connect_neighbours(
         if not others:
             draft.remark(finding, f"'{unit}' has no neighbour")
             continue
+        # Only inputs that nothing feeds yet are connected.
         for into, output in rule.neighbour_inputs.items():
             if f"{unit}.{into}" not in feeds:
                 draft.structure.connect(f"{others[0]}.{output}", f"{unit}.{into}")
@@ -139,6 +146,8 @@ def rewire(draft: ExtensionDraft, name: str) -> None:
     """Connect a thruster's loads to the ship, and its inputs to the system's, as their names say."""
     structure = draft.structure
     loads = {f"{name}.tau_{axis}" for axis in AXES}
+    # All loads of the thruster on the ship: each axis is connected again to the slot that most of
+    # them use.
     wrong = [
         pair
         for pair in structure.connections
@@ -151,6 +160,7 @@ def rewire(draft: ExtensionDraft, name: str) -> None:
         structure.connect(
             f"{name}.tau_{axis}", f"{draft.ship}.tau_{axis}_{max(slots, key=slots.count)}"
         )
+    # Inputs of the same kind from the system, but named after another thruster.
     for source, target in structure.connections:
         kind = target.removeprefix(f"{name}.").removesuffix("_in")
         if target == f"{name}.{kind}_in" and source.endswith(f"_{kind}") and "." not in source:

@@ -150,6 +150,7 @@ class ExtensionDraft:
             source for source, _ in self.structure.connections
         }
         variables = self.structure.components[self.ship].variables
+        # The first of the ship's load inputs whose three axes are all unused.
         for number in range(1, 100):
             inputs = [f"tau_{axis}_{number}" for axis in AXES]
             if not all(name in variables for name in inputs):

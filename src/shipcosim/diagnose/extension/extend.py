@@ -93,6 +93,7 @@ def extend(
     draft = ExtensionDraft(structure, _ship(structure), log_attributes or {})
     catalogue = catalogue or read_catalogue()
     findings = [finding for finding in findings if finding.kind == "physics"]
+    # All edits of the structure together: it is checked only after the last.
     with structure.changes():
         if craft is not None:
             _put_craft(draft, craft)
@@ -148,6 +149,7 @@ def _ship(structure: SystemStructure) -> str:
 
 def _carry(draft: ExtensionDraft, finding: Finding, catalogue: Mapping[str, Cause]) -> None:
     """Put one finding into the system."""
+    # Faults that are wrong connections of the system are corrected by connecting anew.
     fault = read_faults().get(finding.cause)
     if fault is not None and fault.rewires:
         rewire(draft, str(finding.component))
@@ -156,6 +158,7 @@ def _carry(draft: ExtensionDraft, finding: Finding, catalogue: Mapping[str, Caus
         draft.remark(finding, "it is not in the catalogue")
         return
     cause = catalogue[finding.cause]
+    # Numbers that a rule inserts as a component are taken out; the rest become parameters.
     numbers = _numbers(draft, finding, cause)
     with_onset = False
     for rule in _rules(cause, numbers):
@@ -174,6 +177,7 @@ def _carry(draft: ExtensionDraft, finding: Finding, catalogue: Mapping[str, Caus
             numbers.clear()
     for number, estimate in numbers.items():
         _put_parameter(draft, finding, number, estimate, cause)
+    # Only inserted components can begin at the onset; a parameter holds for the whole run.
     if finding.onset is not None and not with_onset:
         draft.remark(
             finding,
@@ -196,6 +200,7 @@ def _numbers(draft: ExtensionDraft, finding: Finding, cause: Cause) -> dict[str,
     """Numbers of the ship that a finding has estimates for."""
     found = {}
     for name, estimate in finding.parameters.items():
+        # Some causes state what is lost; the parameter is what remains.
         parameter = cause.parameters.get(name)
         if parameter is not None and parameter.complement:
             estimate = replace(estimate, estimate=1.0 - estimate.estimate)

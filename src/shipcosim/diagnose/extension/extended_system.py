@@ -122,6 +122,7 @@ def extended_by(
 
 def with_extension(given: ExtendedSystem, extend_it: Callable[[], Extension]) -> ExtendedSystem:
     """A system with an extension, once that is made; with a remark where it cannot be."""
+    # The written system is read again, so that only one that can be simulated is reported.
     try:
         extension = extend_it()
         system = read_system(str(extension.ssp))

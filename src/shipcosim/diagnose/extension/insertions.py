@@ -47,6 +47,7 @@ def add_force(
     }
     for parameter, estimate in (zeros | dict(estimates)).items():
         draft.put_parameter(finding, name, parameter, estimate)
+    # Parameters without an estimate get the assumed values of the ship model's water.
     water = water_of(float(draft.structure.parameters[f"{draft.ship}.length"] or 0.0))
     numbers = {
         parameter: number.rpartition(".")[2] for number, parameter in rule.parameters.items()
@@ -128,6 +129,7 @@ def add_current(
     if source is None:
         source = _environment(draft)
     span = draft.log.get("span")
+    # From the onset on the current grows for an assumed time; else it varies over the log.
     if start is None and finding.onset is not None:
         span = finding.onset, finding.onset + RAMP
     if span is None:
@@ -185,6 +187,7 @@ def _steady(
         for axis, given in (("north", north), ("east", east)):
             _start(draft, finding, draft.ship, f"current_{axis}", given, "m/s")
         return
+    # Speed and direction with standard deviations by the delta method.
     speed = hypot(north.value, east.value)
     along = hypot(north.value * north.std, east.value * east.std) / (speed or 1.0)
     across = hypot(east.value * north.std, north.value * east.std) / (speed * speed or 1.0)
@@ -206,6 +209,8 @@ def _start(
     system = draft.structure.checked()
     target = (component, name)
     feeding = next((c for c in system.connections if c.target == target), None)
+    # The system's own input takes the value where it feeds this one by a linear connection;
+    # otherwise nothing feeds it from here on.
     if (
         feeding is None
         or feeding.source[0] is not None
@@ -215,6 +220,7 @@ def _start(
         draft.release(f"{component}.{name}")
         draft.put(finding, f"{component}.{name}", given, unit)
         return
+    # Invert the connection's factor and offset.
     signal = system.inputs[feeding.source[1]]
     value = (given.value - feeding.offset) / feeding.factor
     draft.put(finding, signal.name, Estimated(value, given.std / abs(feeding.factor)), signal.unit)

@@ -26,20 +26,27 @@ def evidence(
     tuple of float, (p,) array, (p, p) array
         Log-evidence, mean and covariance of θ.
     """
+    # Only columns with a prior variance take part.
     on = np.flatnonzero(prior > 0.0)
     G = products[1:, 1:]
     g = products[1:, 0]
     shift = 0.0
+    # The prior is about 0: refer the innovations to θ = 0 where they were linearised elsewhere.
     if centre is not None and np.any(centre):
         shift = centre @ g + 0.5 * centre @ G @ centre  # y + G centre instead of y
         g = g + G @ centre
+    # Scale by the prior's standard deviations S: S G S + I has no eigenvalue below 1, so its
+    # Cholesky factor exists even for columns that are linearly dependent.
     scale = prior[on]
     inner = np.eye(on.size) + scale[:, None] * G[np.ix_(on, on)] * scale
     L = np.linalg.cholesky(inner)
     half = np.linalg.solve(L, scale * g[on])
     Li = np.linalg.inv(L) * scale
+    # Posterior of a linear Gaussian model: covariance S (S G S + I)^-1 S, mean covariance times g.
     mean = np.zeros(prior.size)
     covariance = np.zeros((prior.size, prior.size))
     mean[on] = Li.T @ half
     covariance[np.ix_(on, on)] = Li.T @ Li
+    # Log Bayes factor over θ = 0: half the explained sum of squares less half the log-determinant,
+    # which penalises needless parameters.
     return float(0.5 * half @ half - np.log(np.diag(L)).sum() - shift), mean, covariance

@@ -76,14 +76,19 @@ class IdentificationProblem:
 
     def known(self, hypotheses: Sequence[Hypothesis]) -> list[Regressor]:
         """Columns of the numbers that are known within a tolerance, except those that these hypotheses change."""
+        # Numbers that these causes estimate themselves, or that stand for something they replace.
         taken = paths_of(hypotheses)
         taken |= {path for hypothesis in hypotheses for path in hypothesis.definition.replaces}
         everyone = self.known_of or self.hypotheses
+        # Companions belong to the columns of their own hypothesis.
         taken |= {path for hypothesis in everyone for path in hypothesis.definition.companions}
+        # Directions of a reference's covariance stay whatever the causes; single numbers of it do
+        # not count a second time.
         found = [Regressor(direction, beside=True) for direction in self.model.directions]
         taken |= self.model.referenced
         sizes = self.model.uncertainties
         found += [Regressor({path: size}) for path, size in sizes.items() if path not in taken]
+        # Parameters of linear causes with a tolerance that no listed uncertainty covers already.
         for hypothesis in everyone:
             for parameter in hypothesis.parameters if hypothesis.definition.law == "linear" else ():
                 listed = all(path in sizes for path in parameter.paths)
@@ -148,11 +153,14 @@ class Fit:
 
 def prepared(problem: IdentificationProblem, rounds: int = 3) -> IdentificationProblem:
     """The problem with its base: every column of the basis, about the motion smoothed without a cause."""
+    # Linearise and smooth in turn, as an iterated extended Kalman smoother does, until the motion
+    # suits both model and measurements.
     motion = problem.motion
     for _ in range(rounds):
         alone = linearised_by_parts(motion, problem.record, problem.model, [])
         products = inner_products(alone, problem.noise, problem.record).products
         motion = _smoothed(alone, products[..., 0, 0], problem, motion)
+    # The columns are expensive: they are linearised only about the last motion.
     base = linearised_by_parts(motion, problem.record, problem.model, problem.basis)
     return replace(problem, motion=motion, base=base)
 
@@ -166,9 +174,11 @@ def _smoothed(
     as the innovations' mean square is. Otherwise a boat whose propeller has lost a third of its thrust is smoothed far
     off her track, and nothing is found about that.
     """
+    # Mean square of the whitened innovations: 1 where model and noise agree.
     misfit = squares / np.isfinite(problem.record.measured).sum((-2, -1))
     jolt = np.maximum(misfit, 1.0)[..., None] * np.asarray(problem.noise.jolt)
     noise = replace(problem.noise, jolt=jolt, walk=np.broadcast_to(problem.noise.walk, jolt.shape))
+    # Iterated smoothing may diverge with a wrong model: then the motion before is kept.
     found = smoothed(linear, noise, problem.record, motion)[0]
     # Whether a smoothed motion is a number throughout, and no velocity of it far beyond that of the one before.
     fastest = [np.abs(velocity).max() for velocity in found[3:]]
@@ -214,27 +224,35 @@ def fitted(
 
 def _fitted(problem, hypotheses, values, rounds):
     """A fit, made anew."""
+    # Start from finite values within their bounds.
     finite = {
         path: v if np.isfinite(v) else problem.model.get(path) for path, v in (values or {}).items()
     }
     values = bounded(hypotheses, finite)
+    # Companions and nonlinear numbers keep the ship's values until the first estimate.
     about = {}
     motion = problem.motion
     last = None
     columns = problem.known(hypotheses) + own_columns(problem, hypotheses)
+    # Gauss-Newton: linearise about the last estimate, solve for the posterior, and go on from its
+    # mean.
     for _ in range(rounds):
         about_it = linearised(problem, columns, values | about, motion)
         prior = np.array([column.prior for column in columns])
+        # A ship model that diverges cannot be filtered; the last good fit stands.
         if not np.isfinite(about_it.products.products).all():
             return last or _impossible(problem, hypotheses, values, columns, about_it)
         score, theta, covariance = evidence(about_it.products.products, prior, about_it.centre)
+        # Evidence over θ = 0 plus the log-likelihood at θ = 0 is the log-evidence itself.
         score += float(about_it.products.free)
         if not (np.isfinite(score) and np.isfinite(theta).all()):
             return last or _impossible(problem, hypotheses, values, columns, about_it)
+        # Smooth the motion with the posterior, and linearise there next.
         fit = about_it.with_posterior(problem, hypotheses, values, score, theta, covariance)
         motion = fit.motion
         values = next_values(fit)
         about = tolerated(fit)
+        # Converged when neither the parameters nor the log-evidence still move.
         if (
             largest_move(fit, values, fit.model.get) < 0.02
             and last
@@ -247,6 +265,7 @@ def _fitted(problem, hypotheses, values, rounds):
 
 def _impossible(problem, hypotheses, values, columns, about_it) -> Fit:
     """The fit of a ship whose loads are no numbers along the log: infinitely unlikely."""
+    # Without information from the log the posterior is the prior.
     covariance = np.diag([column.prior**2 for column in columns])
     rest = (columns, about_it.products, about_it.centre, covariance, about_it.centre)
     spread = deviations(hypotheses, covariance)
@@ -266,6 +285,7 @@ def own_columns(
     problem: IdentificationProblem, hypotheses: Sequence[Hypothesis]
 ) -> list[Regressor]:
     """Columns of hypotheses, what is only known within a tolerance about them first."""
+    # Companions go first; the parameters' columns must be the last ones.
     about = [path for hypothesis in hypotheses for path in hypothesis.definition.companions]
     found = [Regressor({path: problem.model.tolerances[path]}) for path in about]
     # The regressor of a parameter of a hypothesis.
@@ -309,6 +329,7 @@ class Linearised:
         covariance: np.ndarray,
     ) -> Fit:
         """The fit with a posterior of the columns; its motion is smoothed with that."""
+        # Innovations left by the posterior mean, by the inner products: (1, -θ) P (1, -θ)'.
         left = theta - self.centre
         shares = np.concatenate([[1.0], -left])
         squares = shares @ self.products.products @ shares
@@ -342,6 +363,7 @@ def linearised(
 def deviations(hypotheses: Sequence[Hypothesis], covariance: np.ndarray) -> dict[str, float]:
     """Standard deviation of each parameter of some hypotheses, whose columns are the last."""
     parameters = parameters_of(hypotheses)
+    # The parameters' columns are the last of the covariance.
     found = np.sqrt(np.diag(covariance))[len(covariance) - len(parameters) :]
     return {
         one.path: float(deviation * one.typical)
@@ -353,6 +375,7 @@ def next_values(fit: Fit) -> dict[str, float]:
     """Values of the numbers at the posterior's mean, within their bounds."""
     parameters = parameters_of(fit.hypotheses)
     found = dict(fit.values)
+    # θ counts from neutral in typical sizes.
     for parameter, theta in zip(
         parameters, fit.theta[fit.theta.size - len(parameters) :], strict=True
     ):
@@ -377,10 +400,13 @@ def bounded(hypotheses: Sequence[Hypothesis], values: Mapping[str, float]) -> di
 
 def tolerated(fit: Fit) -> dict[str, float]:
     """What is only known within a tolerance, and does not act along a line through neutral, at the posterior's mean."""
+    # Only numbers that the columns represent badly far from the point of linearisation are moved
+    # there.
     wanted = NONLINEAR | {
         path for hypothesis in fit.hypotheses for path in hypothesis.definition.companions
     }
     found = {}
+    # Clipped, as a linearisation several tolerances away says nothing.
     for column, theta, centre in zip(fit.columns, fit.theta, fit.centre, strict=True):
         for path, size in column.changes.items() if wanted & set(column.changes) else ():
             found[path] = fit.model.get(path) + size * float(np.clip(theta, -_FAR, _FAR) - centre)

@@ -130,6 +130,7 @@ def smoothed(
     tuple of Motion, (..., n, 12) array
         (..., n) arrays; unexplained acceleration, slow errors and waves.
     """
+    # Forward pass without keeping covariances: only the state at the start of each part is stored.
     passing = _Filter(in_parts(linear).chosen([]), noise, record)
     begun = []
     slices = list(passing.linear.slices())
@@ -137,6 +138,8 @@ def smoothed(
         begun.append(passing.state)
         if rows is not slices[-1]:
             passing.over(rows)
+    # Backward pass over the parts: each is filtered again with covariances, then smoothed by the
+    # adjoint variable that comes from the part behind it.
     found = []
     pull = None
     for rows, state in zip(reversed(slices), reversed(begun), strict=True):
@@ -149,6 +152,7 @@ def smoothed(
                 one.A, passing.steady, one.H, one.white[..., 0].copy(), *of_filter, pull
             )
         )
+    # Smoothed deviations are added to the motion that was linearised about.
     states = np.moveaxis(passing.by_log(np.concatenate(found[::-1])), 0, -2)
     return Motion(*(value + states[..., i] for i, value in enumerate(motion))), states[..., 6:]
 
@@ -194,11 +198,14 @@ class _Filter:
         begun = self._begun(linear) if self.state is None else self.state
         A, B, H, Z = (_by_log(values, self.lead, 2) for values in linear[:4])
         C, x = (value.copy() for value in begun)
+        # An output that is missing has infinite variance, so it gets no weight.
         white = np.asarray(noise.white).reshape(1, -1, 6)
         R = np.where(_by_log(linear.whole, self.lead, 1), white**2, np.inf)
         R = np.require(np.broadcast_to(R, (len(R), len(C), 6)), requirements=["C", "W"])
         known = np.asarray(record.known)[rows]
         is_last = record.is_last[rows]
+        # Gains and covariances do not depend on the columns: computed once, they filter the log and
+        # all regressors.
         weights = kalman.weights(
             A, self.steady, H, R, self.process, C, known, _lost(), is_last, self.uncertain, keep
         )
@@ -238,6 +245,7 @@ def log_likelihoods(linear: Linear, noises: Noise, record: Record) -> np.ndarray
     (m,) array
     """
     of_noise = _steady(noises, record.step), _process(noises, record.step), _uncertain(noises)
+    # Logs last, contiguous in memory: the compiled filter works on all noises side by side.
     W, Q, P = (np.ascontiguousarray(np.moveaxis(values, 0, -1)) for values in of_noise)
     R = np.ascontiguousarray(noises.white.T) ** 2
     b, z = (np.ascontiguousarray(values[..., 0]) for values in (linear.driven, linear.seen))
@@ -249,6 +257,7 @@ def log_likelihoods(linear: Linear, noises: Noise, record: Record) -> np.ndarray
 
 def _by_log(values: np.ndarray, lead: tuple[int, ...], tail: int) -> np.ndarray:
     """(n, ..., *tail) array, whose middle axes broadcast to those of the logs, as (n, m or 1, *tail) array."""
+    # Logs that share values keep one copy; others are broadcast to all logs.
     shape = values.shape[values.ndim - tail :]
     own = values.shape[1 : values.ndim - tail]
     if own != lead and np.prod(own) > 1:
@@ -275,8 +284,11 @@ def oscillation(
         Transition from place and velocity to place, then to velocity; what a step adds to the variance of the place, to
         the covariance of both, to the variance of the velocity.
     """
+    # Exact transition of a damped oscillator over the step.
     a, b, c, d = wave_transition(h, np.asarray(noise.wave_frequency)[..., None], WAVE_DAMPING)
     place, speed = _waves(noise)
+    # The process is stationary: what a step adds is the stationary covariance less its part carried
+    # over, Q = P - Φ P Φ'.
     added = (
         place - a * a * place - b * b * speed,
         -a * c * place - b * d * speed,
@@ -288,6 +300,8 @@ def oscillation(
 def _steady(noise: Noise, h: float) -> np.ndarray:
     """What of a transition is the same at all rows: slow errors fade, waves swing; (..., 18, 18)."""
     a, b, c, d = oscillation(noise, h)[0]
+    # First-order Gauss-Markov processes for slow errors, exp(-h / T), and the oscillator of the
+    # waves.
     W = np.zeros((*a.shape[:-1], STATES, STATES))
     W[..., _SLOW, _SLOW] = np.exp(-h / SLOW_TIME)
     W[..., _PLACE, _PLACE], W[..., _PLACE, _SPEED] = a, b
@@ -297,14 +311,19 @@ def _steady(noise: Noise, h: float) -> np.ndarray:
 
 def _process(noise: Noise, h: float) -> np.ndarray:
     """Covariance of what happens over a step."""
+    # White noise integrated over the step: variance grows with h.
     jolt = np.asarray(noise.jolt) ** 2 * h
     walk = np.asarray(noise.walk) ** 2 * h
+    # Position integrates the velocity: h^3 / 3 of the acceleration's intensity, with a little to
+    # keep the matrix regular.
     place = jolt * h * h / 3.0 + 1e-10
+    # Stationary Gauss-Markov process: what a step adds keeps the variance at its stationary value.
     slow = np.broadcast_to(SLOW_STD**2 * (1.0 - np.exp(-2.0 * h / SLOW_TIME)), jolt.shape)
     still = np.zeros(jolt.shape)
     Q = np.concatenate([place, jolt, walk, slow, still, still], axis=-1)[..., None] * np.eye(STATES)
     _, (Q[..., _PLACE, _PLACE], both, Q[..., _SPEED, _SPEED]) = oscillation(noise, h)
     Q[..., _PLACE, _SPEED] = Q[..., _SPEED, _PLACE] = both
+    # Correlation of position and velocity, h^2 / 2 of the intensity.
     Q[..., 2, 5] = Q[..., 5, 2] = (
         0.5 * h * jolt[..., 2]
     )  # along surge and sway it would turn with the ship
@@ -319,9 +338,12 @@ def _waves(noise: Noise) -> tuple[np.ndarray, np.ndarray]:
 
 def _uncertain(noise: Noise) -> np.ndarray:
     """Covariance at the first row."""
+    # The unexplained force starts as uncertain as its random walk becomes in 600 s.
     walk = np.asarray(noise.walk) ** 2 * 600.0
     white = np.broadcast_to(np.asarray(noise.white) ** 2, (*walk.shape[:-1], 6))
     waves = (np.broadcast_to(values, walk.shape) for values in _waves(noise))
+    # The measurements fix the motion: it starts with 100 times their variance. Slow errors and
+    # waves start from their stationary variance.
     first = np.concatenate(
         [100.0 * white, walk, np.broadcast_to(SLOW_STD**2, walk.shape), *waves], axis=-1
     )
@@ -371,14 +393,17 @@ def gram(found: Iterable[tuple[int, Innovations]], rows: int, parts: int = 8) ->
     -------
     Gram
     """
+    # Blocks by equal shares of the rows, wherever the parts of the filter begin.
     edges = np.linspace(0, rows, parts + 1).astype(int)
     blocks = [np.zeros(())] * parts
     log_determinant = np.zeros(())
     for first, stretch in found:
         log_determinant = log_determinant + stretch.log_determinant.sum(0)
+        # Rows of this part that fall into each block.
         places = np.clip(edges - first, 0, len(stretch.white))
         for i, (a, b) in enumerate(zip(places[:-1], places[1:], strict=True)):
             if b > a:
+                # Sum of products over rows and channels: Y' Y of the whitened columns.
                 white = np.moveaxis(stretch.white[a:b], 0, -3)
                 flat = white.reshape(*white.shape[:-3], -1, white.shape[-1])
                 blocks[i] = blocks[i] + np.swapaxes(flat, -1, -2) @ flat

@@ -103,10 +103,12 @@ def advanced(
     -------
     Motion
     """
+    # A small ship is faster than the log's step: the step is divided.
     parts = record.substeps(model)
     for i in range(parts):
         inputs = [record.inputs(model, (i + share) / parts, steps) for share in (0.0, 0.5, 1.0)]
         motion = runge_kutta(motion, record.step / parts, inputs, model)
+        # Bounded velocities keep a diverging model finite.
         fast = {
             name: np.clip(getattr(motion, name), -most, most) for name, most in _FASTEST.items()
         }
@@ -169,11 +171,13 @@ def linearise(
     -------
     Linear
     """
+    # Rows of this part, and steps from each row but the log's last.
     lead = record.measured.shape[:-2]
     p = len(regressors)
     last = record.time.size - 1
     rows = slice(0, last + 1) if rows is None else rows
     steps = slice(rows.start, min(rows.stop, last))
+    # The model's next row against the motion's own: its defect drives the deviations.
     start = _at(motion, steps)
     after = _at(motion, slice(steps.start + 1, steps.stop + 1))
     base = advanced(start, record, model, steps)
@@ -181,13 +185,16 @@ def linearise(
     driven = np.empty((steps.stop - steps.start, *lead, 6, 1 + p))
     out = np.zeros((rows.stop - rows.start, *lead, 6, 1 + p))
     driven[..., 0] = rows_first(base) - rows_first(after)
+    # Measured less shown; missing measurements count 0 and are marked.
     missed = np.moveaxis(record.measured[..., rows, :], -2, 0) - rows_first(seen)
     whole = np.isfinite(missed)
     out[..., 0] = np.where(whole, missed, 0.0)
+    # Transition and slopes are taken at the middle of each step, which is of second order.
     middle = Motion(*(0.5 * (a + b) for a, b in zip(start, after, strict=True)))
     inputs = record.inputs(model, 0.5, steps)
     like = model, loads(middle, inputs, model)
     transition = _transition(middle, inputs, like, record)
+    # Central differences about the ship: twice the share of the regressor's size apart.
     shares = np.array([_step_share(regressor, model) for regressor in regressors]).reshape(p)
     slopes = np.zeros((p, 3, *lead, len(driven)))
     for j, changes in enumerate(regressor.changes for regressor in regressors):
@@ -197,6 +204,8 @@ def linearise(
             )
             for share in (shares[j], -shares[j])
         ]
+        # Numbers of the ship, and delays of inputs, change accelerations; those of instruments only
+        # change what is shown.
         if any(not path.startswith("instruments.") or path.endswith("_lag") for path in changes):
             for slope, apart in zip(
                 slopes[j], _slopes(pair, middle, (record, steps), inputs, like), strict=True
@@ -205,9 +214,12 @@ def linearise(
         else:
             up, down = (readings(_at(motion, rows), ship) for ship in pair)
             out[..., 1 + j] = rows_first(_apart(up, down)) / (2.0 * shares[j])
+    # A constant acceleration over the step moves the state as the unexplained acceleration does:
+    # reuse those columns of the transition. The sign is that of δ' = A δ + b - B θ.
     driven[..., 1:] = (
         transition[..., :6, 6:9] @ np.moveaxis(slopes, (-1, 1, 0), (0, -2, -1)) / (2.0 * shares)
     )
+    # Where inputs are unknown the equations say nothing of the step.
     driven[~record.known[steps]] = 0.0
     out *= whole[..., None]
     return Linear(transition, driven, _output(_at(motion, rows), seen, model), out, whole)
@@ -220,9 +232,11 @@ def _at(motion: Motion, rows: slice) -> Motion:
 
 def _slopes(pair, middle, where, inputs, like):
     """Accelerations of the first ship of a pair minus those of the second; one with another lag has other inputs."""
+    # Difference of loads where both ships have the same inputs; other terms cancel.
     up, down = pair
     if up.parts["instruments"] is down.parts["instruments"]:
         return rate_difference(down, up, middle, inputs, like)
+    # Another delay shifts the inputs, so both accelerations are evaluated in full.
     record, steps = where
     late = (motion_rates(middle, record.inputs(ship, 0.5, steps), ship) for ship in (down, up))
     return _apart(*late)[3:]
@@ -235,6 +249,8 @@ def _step_share(regressor: Regressor, model: ShipModel) -> float:
         if regressor.vector
         else 0.0
     )
+    # Without a vector, or with one of zero length, the normal share; else a share of the vector's
+    # length.
     if not length:
         return _SHARE
     size = max(abs(size) for size in regressor.changes.values())
@@ -263,6 +279,7 @@ def _transition(
 
     For a small ship that of a part of the step, doubled until it is whole.
     """
+    # Jacobian of the accelerations by forward differences; they do not depend on x and y.
     model, _ = like
     here = rows_first(motion_rates(middle, inputs, model, like=like))
     J = np.zeros((*here.shape[:-1], 6, 6))
@@ -271,12 +288,16 @@ def _transition(
         J[..., Motion._fields.index(name)] = (
             rows_first(motion_rates(moved, inputs, model)) - here
         ) / small
+    # Taylor series of the matrix exponential to second order, over one substep.
     parts = record.substeps(model)
     h = record.step / parts
     moves = np.eye(6) + h * J + 0.5 * h * h * (J @ J)
+    # Effect of a constant input over the substep, by the trapezoidal rule.
     pushed = 0.5 * h * (moves + np.eye(6))
+    # Doubling: two substeps in a row make one of twice the length.
     for _ in range(round(np.log2(parts))):
         moves, pushed = moves @ moves, pushed + moves @ pushed
+    # Unexplained acceleration enters the velocities and keeps its value.
     A = np.zeros((*here.shape[:-1], MOVED, MOVED))
     A[..., :6, :6], A[..., :6, 6:9] = moves, pushed[..., 3:]
     A[..., range(6, 9), range(6, 9)] = 1.0
@@ -284,6 +305,7 @@ def _transition(
 
 
 def _output(motion: Motion, seen: Motion, model: ShipModel) -> np.ndarray:
+    # Measurements follow position directly, heading and velocities by forward differences.
     rows = rows_first(seen)
     H = np.zeros((*rows.shape, STATES))
     H[..., 0, 0] = H[..., 1, 1] = 1.0
@@ -291,7 +313,10 @@ def _output(motion: Motion, seen: Motion, model: ShipModel) -> np.ndarray:
         i = Motion._fields.index(name)
         other = readings(motion._replace(**{name: getattr(motion, name) + small}), model)
         H[..., i] = (rows_first(other) - rows) / small
+    # Slow errors add to measured position and heading.
     H[..., range(3), range(9, 12)] = 1.0
+    # Wave motion is in ship's axes: turned into north and east for position, added to heading and
+    # velocities.
     c = np.cos(rows[..., 2])
     s = np.sin(rows[..., 2])
     H[..., 0, 12], H[..., 0, 13], H[..., 1, 12], H[..., 1, 13] = c, -s, s, c

@@ -47,11 +47,16 @@ def first_noise(record: Record, length: float) -> Noise:
     -------
     Noise
     """
+    # Third differences remove the motion; they have 20 times the variance of white noise (1 + 9 + 9
+    # + 1). The median is robust: that of a squared normal variable is 0.455 of its variance.
     third = np.diff(record.measured, 3, axis=-2)
     silent = ~np.any(np.isfinite(third), axis=-2, keepdims=True)
     white = np.sqrt(np.nanmedian(np.where(silent, 0.0, third**2), axis=-2) / 0.455 / 20.0)
+    # A floor, as a rounded or constant channel would appear free of noise; a channel without
+    # measurements gets 1.
     least = np.array([0.02, 0.02, 5e-4, 3e-3, 3e-3, 1e-4])
     white = np.where(silent[..., 0, :], 1.0, np.maximum(white, least))
+    # Start values of accelerations; those in yaw by a lever of a quarter of the length.
     turning = 4.0 / length  # 1/m, from accelerations to those in yaw
     jolt = np.array([1e-3, 1e-3, 1e-3 * turning])
     walk = np.array([1e-5, 1e-5, 1e-5 * turning])
@@ -90,6 +95,8 @@ def tuned(
     """
     left = explained(linear, theta).whole()
     noise = _begun(noise, left, record)
+    # Newton's method in the logarithms of the levels, one diagonal Hessian entry each: all steps up
+    # and down are evaluated in one call.
     for _ in range(rounds):
         steps = np.zeros((2 * len(_GROUPS) + 1, len(_GROUPS)))
         for i in range(len(_GROUPS)):
@@ -97,11 +104,16 @@ def tuned(
         score = log_likelihoods(left, _scaled(noise, steps), record)
         up = score[1::2]
         down = score[2::2]
+        # Slope and curvature by central differences.
         slope = (up - down) / (2 * _STRIDE)
         bend = (up + down - 2 * score[0]) / _STRIDE**2
+        # Newton step where the likelihood is concave, else the longest step uphill.
         move = np.where(bend < -1e-3, -slope / np.minimum(bend, -1e-3), np.sign(slope) * _LONGEST)
         move = np.clip(move, -_LONGEST, _LONGEST)
+        # Line search: the whole step, shares of it, or none.
         tries = _scaled(noise, _SHARES[:, None] * move)
+        # Limits keep waves in their band, and force and channel noise from absorbing what causes
+        # should explain.
         frequency = np.clip(tries.wave_frequency, *_FREQUENCIES[[0, -1]])
         tries = replace(
             tries,
@@ -119,6 +131,8 @@ def tuned(
 
 def _begun(noise: Noise, left: Linear, record: Record) -> Noise:
     """The noise with the frequency of waves, and their share in the noise of the velocities, that suit a log best."""
+    # Newton's method only finds a local maximum, so it starts from the best point of a grid over
+    # wave frequency and levels.
     rows = [(frequency, *levels) for frequency in _FREQUENCIES for levels in _LEVELS]
     frequency, white, wave = np.array(rows).T
     many = _scaled(noise, np.zeros((len(rows), len(_GROUPS))))
@@ -153,15 +167,19 @@ def waves_of(
         [m, m, rad, m/s, m/s, rad/s]
     """
     n, m = shape
+    # Conditional draw from the step's covariance: velocity given place, by the regression
+    # coefficient along, then the rest (Cholesky factor of two).
     (a, b, c, d), (place, both, speed) = oscillation(noise, h)
     along = np.divide(both, place, out=np.zeros(3), where=place > 0.0)
     kicks = (
         rng.standard_normal((2, n, m, 3))
         * np.sqrt(np.stack([place, speed - along * both]))[:, None, None]
     )
+    # Start from the stationary distribution.
     velocity = rng.standard_normal((m, 3)) * noise.wave
     where = rng.standard_normal((m, 3)) * noise.wave / noise.wave_frequency
     found = np.empty((n, m, 6))
+    # Transition of the oscillator with its correlated increments.
     for k in range(n):
         found[k] = np.concatenate([where, velocity], axis=-1)
         first, second = kicks[:, k]
@@ -175,10 +193,12 @@ def waves_of(
 def _scaled(noise: Noise, steps: np.ndarray) -> Noise:
     """Noise for each row of steps, which are in natural logarithms of the groups."""
     names = [part.name for part in fields(Noise)]
+    # One copy of every entry for each row of steps.
     parts = {
         name: np.repeat(np.asarray(getattr(noise, name))[None], len(steps), axis=0)
         for name in names
     }
+    # Groups of array entries, and the frequency, which has no entries.
     for i, (name, entries) in enumerate(_GROUPS):
         if entries:
             parts[name][:, list(entries)] *= np.exp(steps[:, i])[:, None]

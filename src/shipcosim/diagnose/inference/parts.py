@@ -45,6 +45,7 @@ class InParts:
 
     def slices(self) -> Iterator[slice]:
         """Rows of each part, in order."""
+        # As many rows as memory allows for this number of columns.
         size = min(max(_ENTRIES // (1 + self.columns), _LEAST), PART)
         for first in range(0, self.rows, size):
             yield slice(first, min(first + size, self.rows))
@@ -108,6 +109,7 @@ def linearised_by_parts(
     -------
     InParts
     """
+    # A long log is linearised again at every pass, a short one only at the first.
     rows = record.time.size
     columns = len(regressors)
     done = []
@@ -151,6 +153,7 @@ def beside(linear: Linear | InParts, extra: Linear | InParts) -> InParts:
 
 def explained(linear: Linear | InParts, theta: np.ndarray) -> InParts:
     """The problem with only its first column, from which the effect of θ is taken out."""
+    # Residual problem y - G θ: first column less the weighted others.
     weights = np.concatenate([[1.0], -np.asarray(theta)])[:, None]
     whole = in_parts(linear)
 

@@ -56,12 +56,15 @@ def replayable(record: Record, model: ShipModel, seen: Motion) -> tuple[Record, 
     tuple of Record and ShipModel
         Times are those of the navigation's channels.
     """
+    # Inputs with their delays removed; the last row is repeated, as inputs belong to steps.
     inputs = record.inputs(model)
     units = {name: tuple(map(_one_more, pair)) for name, pair in inputs.units.items()}
     wind = None
     if record.wind is not None:
         wind = _one_more(inputs.wind_speed), _one_more(inputs.wind_from)
+        # Replays sail another track than the log: relative wind must become wind over ground.
         wind = wind if model.wind_is_true else _true_wind(*wind, true_motion(seen, model))
+    # Delays are in the inputs now, so the model must not apply them again.
     model = replace(model.with_values(dict.fromkeys(LAGS, 0.0)), wind_is_true=wind is not None)
     return replace(record, units=units, wind=wind), model
 
@@ -72,8 +75,11 @@ def _one_more(series):
 
 def _true_wind(speed, direction, motion):
     """Speed and direction over ground of the wind that meets the moving ship so."""
+    # Wind vector over ground: the ship's velocity less the relative wind, which is named by where
+    # it comes from.
     along = motion.u - speed * np.cos(direction)
     across = motion.v - speed * np.sin(direction)
+    # Turn it into north and east; the direction is again where it comes from.
     north, east = to_ned(motion.psi, along, across)
     return np.hypot(north, east), np.unwrap(np.arctan2(-east, -north))
 
@@ -93,10 +99,13 @@ def earth_fixed(linear: Linear, motion: Motion, model: ShipModel) -> Linear:
     -------
     Linear
     """
+    # The unexplained force keeps its direction over ground, so it turns in body axes against the
+    # heading.
     turn = np.diff(motion.psi)
     back = np.zeros((turn.size, 3, 3))
     back[:, 0, 0] = back[:, 1, 1] = np.cos(turn)
     back[:, 0, 1], back[:, 1, 0], back[:, 2, 2] = np.sin(turn), -np.sin(turn), 1.0
+    # The filter's state is an acceleration: to force, turn, and back.
     mass = model.mass_matrix
     transition = linear.transition.copy()
     transition[:, _FORCE, _FORCE] = np.linalg.inv(mass) @ back @ mass
@@ -105,9 +114,12 @@ def earth_fixed(linear: Linear, motion: Motion, model: ShipModel) -> Linear:
 
 def restarted(linear: Linear, motion: Motion, record: Record, model: ShipModel) -> Linear:
     """The problem of a ship model that differs little from the one that was linearised, about the same motion."""
+    # Transition and output are kept; only the defect of the model and the residuals are evaluated
+    # anew.
     ahead = advanced(Motion(*(value[:-1] for value in motion)), record, model)
     driven = np.zeros((*linear.driven.shape[:-1], 1))
     driven[:, :6, 0] = rows_first(ahead) - rows_first(Motion(*(value[1:] for value in motion)))
+    # Steps with unknown inputs drive nothing.
     driven *= record.known[:-1, None, None]
     seen = np.where(linear.whole, record.measured - rows_first(readings(motion, model)), 0.0)
     return linear._replace(driven=driven, seen=seen[..., None])
@@ -133,6 +145,7 @@ def reference(
     Motion
         (n,) arrays.
     """
+    # Large process noise: the smoothed motion follows the measurements rather than the model.
     jolt = REFERENCE_JOLTS * noise.jolt
     weak = replace(noise, jolt=jolt, walk=jolt / REFERENCE_JOLTS)
     return readings(smoothed(linear, weak, record, motion)[0], model)
@@ -173,7 +186,9 @@ def observed(
     Known
         Of (k, n, ...) arrays.
     """
+    # Filtered deviations of all observers in one pass.
     found = np.moveaxis(innovations(stacked(problems), noise, record).filtered, 0, 1)
+    # Add them to the motions they deviate from; unexplained acceleration times mass is force.
     about = np.stack([np.stack(motion, axis=-1) for motion in motions])
     force = np.stack(
         [one[:, _FORCE] @ model.mass_matrix.T for one, model in zip(found, models, strict=True)]
@@ -217,11 +232,13 @@ def predicted(
     Motion
         Of (len(horizons), ..., s) arrays.
     """
+    # Inputs at the ends and the middle of each Runge-Kutta step.
     parts = record.substeps(model)
     inputs = [record.inputs(model, 0.5 * i / parts) for i in range(2 * parts + 1)]
     load = _held(motion, force, earth, fades)
     h = record.step / parts
     kept = []
+    # All predictions go on together, one row after the other; only the wanted horizons are stored.
     for k in range(horizons[-1]):
         for i in range(parts):
             during = [_at(one, rows + k) for one in inputs[2 * i : 2 * i + 3]]
@@ -236,6 +253,7 @@ def _held(motion, force, earth, fades):
     """Function from a time to the function from a heading to the load that is held."""
     if force is None:
         return lambda time: lambda psi: (0.0, 0.0, 0.0)
+    # Held in the earth's frame, the load turns in body axes by the change of heading.
     axes = np.moveaxis(force, -1, 0)
     start = motion.psi
 
@@ -278,6 +296,8 @@ def missing(found: Motion, seen: Motion, rows: np.ndarray) -> dict[str, np.ndarr
     dict of str to array
         ``position`` [m], ``heading`` [deg], ``surge``, ``sway`` [m/s], ``yaw_rate`` [deg/s].
     """
+    # Prediction less what the instruments showed; the heading's difference is wrapped to a half
+    # turn.
     off = Motion(*(value - series[rows] for value, series in zip(found, seen, strict=True)))
     return {
         "position": np.hypot(off.x, off.y),

@@ -40,10 +40,12 @@ def identification_problem(
     -------
     IdentificationProblem
     """
+    # The ship as this log needs it, with third-party thrusters replaced by their surrogates.
     ship = as_logged(ship, repaired)
     record = record_of(repaired, ship)
     motion = first_motion(record, ship)
     ship = with_surrogates(ship, record, motion)
+    # Hypotheses that the channels of the log cannot show are left out.
     everyone = hypotheses_of(causes, ship)
     hidden = unidentifiable(everyone, record, repaired, ship.third_party)
     if record.wind is None:
@@ -60,6 +62,8 @@ def identification_problem(
         }
         ship = replace(ship, tolerances=ship.tolerances | unknown_wind)
     wanted = tuple(hypothesis for hypothesis in everyone if hypothesis not in hidden)
+    # Noise and linear problem depend on each other: prepare with first noise, tune it, prepare
+    # again.
     start = first_noise(record, ship.length) if noise is None else noise
     problem = prepared(IdentificationProblem(record, ship, wanted, start, motion))
     return problem if noise is not None else prepared(replace(problem, noise=tuned_noise(problem)))
@@ -93,6 +97,7 @@ def unidentifiable(
     third_party : collection of str
         Thrusters that the log is sure to have, whatever drives them.
     """
+    # A thruster without logged speed has no input to test.
     silent = [
         name for name in record.units if f"{name}_rpm" not in repaired and name not in third_party
     ]
@@ -105,6 +110,7 @@ def unidentifiable(
 
 def tuned_noise(problem: IdentificationProblem, fit: Fit | None = None) -> Noise:
     """Noise of maximum likelihood beside a fit, or beside the cause that explains most at first sight."""
+    # Bounds on random walk and channel noise stop the noise from explaining what a cause should.
     fit = fit or beside_likeliest(problem)
     most = MOST_WALK * np.array([1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.length])
     most *= 1.0 if problem.record.wind is not None else GUST_FACTOR
@@ -117,5 +123,6 @@ def tuned_noise(problem: IdentificationProblem, fit: Fit | None = None) -> Noise
 def beside_likeliest(problem: IdentificationProblem) -> Fit:
     """The fit with the cause that explains most at first sight, if it does so beyond chance."""
     fit = fitted(problem)
+    # Noise tuned without it would absorb the effect of a large cause.
     gain, hypothesis, values = screened(problem, fit)[0]
     return fitted(problem, (hypothesis,), values) if gain > TUNED_BESIDE else fit

@@ -31,6 +31,7 @@ def placed(
 def screening_regressors(hypothesis: Hypothesis) -> list[list[Regressor]]:
     """Groups of regressors by which a hypothesis is first sought: one, or one for each direction of a vector."""
     parameters = hypothesis.parameters
+    # All parameters of a linear law enter at once.
     if hypothesis.definition.law == "linear":
         return [
             [
@@ -38,10 +39,12 @@ def screening_regressors(hypothesis: Hypothesis) -> list[list[Regressor]]:
                 for parameter in parameters
             ]
         ]
+    # A vector that turns is linear in its start and its growth.
     if hypothesis.definition.law == "turning":
         return [
             [Regressor({path: parameters[0].typical}) for path in hypothesis.definition.sought_by]
         ]
+    # A constant vector: size and direction are not linear, so directions are tried one by one.
     pair = (parameters[0].path, parameters[1].path)
     size = parameters[0].typical
     angles = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS

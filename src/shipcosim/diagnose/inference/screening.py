@@ -34,6 +34,7 @@ def screened(problem: IdentificationProblem, fit: Fit) -> list[Gain]:
     list of (float, Hypothesis, dict of str to float)
         Gain, hypothesis, first values of the numbers that it changes; best first.
     """
+    # Only hypotheses that are not fitted already, about the ship without a cause.
     wanted = [s for s in problem.hypotheses if s not in fit.hypotheses]
     linear = beside(fit.linear, problem.base_of(regressors_of(wanted)))
     products = inner_products(linear, problem.noise, problem.record).products
@@ -65,23 +66,28 @@ def gains(
     list of (float, Hypothesis, dict of str to float)
         As `screened`.
     """
+    # First the fit's own columns with their priors; candidates are off (prior 0).
     base = len(columns)
     prior = np.concatenate(
         [[column.prior for column in columns], np.zeros(len(products) - 1 - base)]
     )
     centre = np.concatenate([centre, np.zeros(prior.size - base)])
+    # Evidence of the fit by itself: gains count from here.
     nothing = evidence(products, prior, centre)[0]
     place = base
     found = []
     for hypothesis in wanted:
+        # Each group switches its own columns on, with unit prior.
         tries = []
         for group in screening_regressors(hypothesis):
             here = prior.copy()
             here[place : place + len(group)] = 1.0
+            # Known numbers that the hypothesis estimates itself are switched off.
             taken = {path for column in group for path in column.changes} | set(
                 hypothesis.definition.replaces
             )
             here[[i for i, column in enumerate(columns) if column.gives_way(taken)]] = 0.0
+            # Log Bayes factor and posterior mean, which gives first values for a full fit.
             score, theta, _ = evidence(products, here, np.where(here > 0.0, centre, 0.0))
             values = {}
             for column, share in zip(group, theta[place : place + len(group)], strict=True):
@@ -98,9 +104,12 @@ def _together(
     tries: list[tuple[float, dict[str, float]]], hypothesis: Hypothesis
 ) -> tuple[float, dict[str, float]]:
     """Evidence of a hypothesis averaged over its directions, and the values of the best."""
+    # Directions are equally likely beforehand: average the likelihoods (log of the mean of
+    # exponentials).
     scores = np.array([score for score, _ in tries])
     best = int(scores.argmax())
     values = tries[best][1]
+    # Start and growth become the vector at both ends of the log.
     if hypothesis.definition.law == "turning":
         first, grown = np.array([values[path] for path in hypothesis.definition.sought_by]).reshape(
             2, 2

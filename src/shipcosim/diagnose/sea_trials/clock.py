@@ -32,25 +32,32 @@ def own_clock(time: np.ndarray, measured: np.ndarray, length: float) -> tuple[np
     u = measured[:, 3]
     v = measured[:, 4]
     step = np.diff(time)
+    # Speed along the course; without it the clock cannot be checked.
     speed = np.hypot(u, v)
     if not np.isfinite(speed).all():
         return time, 1.0
+    # Direction of the course between neighbouring rows, by the mean of unit vectors.
     course = psi + np.arctan2(v, u)
     north = np.cos(course) + np.cos(np.roll(course, -1))
     east = np.sin(course) + np.sin(np.roll(course, -1))
     size = np.maximum(np.hypot(north, east), 1e-9)
+    # Way by positions, projected on it; way by speed, by the trapezoidal rule.
     way = (np.diff(measured[:, 0]) * (north / size)[:-1]) + (
         np.diff(measured[:, 1]) * (east / size)[:-1]
     )
     sailed = 0.5 * step * (speed[1:] + speed[:-1])
+    # Average both over a window in proportion to the ship's time scale, as positions are noisy.
     rows = max(round(thresholds.CLOCK_WINDOW * np.sqrt(length) / np.median(step)), 1)
     way = moving_average(way, rows)
     sailed = moving_average(sailed, rows)
     moving = sailed > thresholds.UNDER_WAY * np.sqrt(9.81 * length) * np.median(step)
     if not moving.any():
         return time, 1.0
+    # True over logged seconds where the ship makes way. Its median is the scale of the speed log,
+    # unless heading over yaw rate shows that the clock runs wrong.
     rate = np.where(moving, way / np.maximum(sailed, 1e-9), np.nan)
     scale = float(np.nanmedian(rate)) / _clock_by_heading(rate, measured, step, length, rows)
+    # Integrate the rate to times.
     rate = np.clip(np.where(moving, rate / scale, 1.0), 0.2, 5.0)
     return np.concatenate(([0.0], np.cumsum(rate * step))), scale
 
@@ -63,6 +70,7 @@ def _clock_by_heading(rate, measured, step, length, rows):
     psi, u, v, r = measured[:, 2:].T
     if not np.isfinite(r).all():
         return 1.0
+    # The same ratio from heading and yaw rate, over rows in which the ship turns quickly.
     turned = moving_average(np.diff(psi), rows)
     told = moving_average(0.5 * step * (r[1:] + r[:-1]), rows)
     quick = np.abs(r[1:]) * length > thresholds.TURNS * np.hypot(u, v)[1:]

@@ -121,6 +121,8 @@ def trial_evidence(
     -------
     TrialEvidence
     """
+    # Central differences for the causes, forward ones for numbers that are only allowed for; all
+    # ships in one simulation.
     causes = [
         (parameter, _PART * parameter.typical) for one in hypotheses for parameter in one.parameters
     ]
@@ -134,11 +136,13 @@ def trial_evidence(
     )
     beside = found[1 + 2 * len(causes) :] - found[0]
     length = model.length
+    # Covariance of features by how well trials repeat, independent between trials.
     noise = blocks([covariance_of(trial, length) for trial in trials])
     measured = np.concatenate([features_of(trial, trial.measured) for trial in trials])
     first = TrialEvidence(
         tuple(trials), model, orders, tuple(hypotheses), measured, found[0], slopes, beside, noise
     )
+    # How well they repeat is unknown: take the scale of largest evidence with up to two causes.
     scaled = [replace(first, noise=scale**2 * noise, scale=scale) for scale in thresholds.SCALES]
     return max(scaled, key=lambda one: max(value for value, _ in _linear(one, 2)))
 
@@ -151,6 +155,7 @@ def known_numbers(model: ShipModel) -> list[tuple[str, float]]:
     list of (str, float)
         Number of the ship and standard deviation; compass and antenna, `MOUNTING`, last.
     """
+    # Tolerances of hull and thrusters, without the wind's, as trials are sailed calm.
     places = (model.vessel, *model.thrusters)
     found = [
         (path, size) for path, size in model.tolerances.items() if path.rpartition(".")[0] in places
@@ -160,6 +165,7 @@ def known_numbers(model: ShipModel) -> list[tuple[str, float]]:
         for path, size in found
         if isinstance(model.get(path), float) and "wind" not in path
     ]
+    # Current and mounting errors have standard deviations of their own.
     found += [
         ("water.current_north", thresholds.CURRENT),
         ("water.current_east", thresholds.CURRENT),
@@ -233,6 +239,7 @@ def changes_of(found: SetOfCauses) -> dict[str, float]:
 def allowed_for(found: TrialEvidence, one: SetOfCauses) -> dict[str, float]:
     """What compass and antenna are most likely off, beside a fitted set: numbers of the ship and what is added."""
     here = predicted(found.trials, found.model, [changes_of(one)], orders=found.orders)[0]
+    # Posterior mean of known numbers given the residual: their share of the total covariance.
     shares = found.known @ np.linalg.solve(found.covariance, found.measured - here)
     return {
         path: float(share) * size
@@ -252,6 +259,7 @@ def _changes(hypotheses, values):
 
 def _linear(found: TrialEvidence, most: int) -> Iterator[tuple[float, tuple[int, ...]]]:
     """Log-evidence of sets of hypotheses in the linear approximation, with their places."""
+    # Whitened products once; every set only selects from them.
     products, free = _products(found.covariance, found.measured - found.predicted, found.slopes)
     own = _columns(found.hypotheses)
     yield free, ()
@@ -271,6 +279,7 @@ def _columns(hypotheses):
 
 def _products(covariance, rest, slopes):
     """Inner products of residual and slopes, whitened; and the log-density of the residual alone."""
+    # Whiten by the Cholesky factor of the covariance.
     L = np.linalg.cholesky(covariance)
     white = np.linalg.solve(L, np.column_stack((rest, slopes.T)) if len(slopes) else rest[:, None])
     products = white.T @ white
@@ -294,6 +303,8 @@ def ranked(found: TrialEvidence) -> list[SetOfCauses]:
     list of SetOfCauses
         The empty set among them, and every part of a set.
     """
+    # Rank all sets linearly, keep the best of each size, and every set with one cause less, for
+    # comparisons.
     everyone = sorted(_linear(found, thresholds.MOST_CAUSES), reverse=True)
     chosen = {()}
     for count in range(1, thresholds.MOST_CAUSES + 1):
@@ -310,12 +321,14 @@ def ranked(found: TrialEvidence) -> list[SetOfCauses]:
 
 def _fitted(found, sets):
     """Sets fitted by linearising about what was found, a few times, all sets in one simulation."""
+    # First solve with the slopes about the ship as modelled.
     own = dict(zip((h.label for h in found.hypotheses), _columns(found.hypotheses), strict=True))
     slopes = [found.slopes[[i for one in causes for i in own[one.label]]] for causes in sets]
     fits = [
         _solved(found, causes, s, found.predicted, np.zeros(len(s)))
         for causes, s in zip(sets, slopes, strict=True)
     ]
+    # Gauss-Newton: simulate each set where it is and solve again.
     for _ in range(thresholds.ROUNDS):
         about = slopes_of(found.trials, found.model, fits, orders=found.orders)
         fits = [
@@ -329,6 +342,7 @@ def _solved(found, causes, slopes, here, centre):
     """Posterior and evidence of a set, linearised about a centre."""
     products, free = _products(found.covariance, found.measured - here, slopes)
     gain, mean, covariance = evidence(products, np.ones(len(centre)), centre)
+    # Steps of the estimate are limited, as slopes hold near the centre only.
     limit = 1.5 + np.abs(centre)
     return SetOfCauses(
         causes, np.clip(mean, -limit, limit), np.sqrt(np.diag(covariance)), free + gain

@@ -74,11 +74,14 @@ def features_of(trial: SeaTrial, motion: np.ndarray) -> np.ndarray:
 def _circle(trial, motion, speed):
     psi, u, v, r = motion[:, 2:].T
     side = trial.side
+    # Heading turned so far, never decreasing; the steady circle is what follows half a circle.
     turned = np.maximum.accumulate(side * (psi - psi[0]))
     steady = turned > np.radians(thresholds.HALF_A_CIRCLE)
     steady[-1] = True
+    # Steady rate of turn and drift angle, positive whatever the side.
     rate = max(side * float(np.mean(r[steady])), 1e-4)
     drift = -side * float(np.mean(np.arctan2(v, u)[steady]))
+    # Times, speeds and distances at given changes of heading, by interpolation over the heading.
     rising = turned + 1e-9 * np.arange(turned.size)
     times = np.interp(np.radians(thresholds.HEADINGS), rising, trial.time)
     speeds = np.interp(np.radians(thresholds.HEADINGS_OF_SPEED), rising, speed)
@@ -97,6 +100,7 @@ def _ways(motion, trial, turned):
     (north, east) = motion[:, :2].T
     time = trial.time
     u, v = motion[0, 3:5]
+    # Direction of the first course through the water: velocity over ground less the drift.
     towards = np.array(
         [
             np.cos(motion[0, 2]) * u - np.sin(motion[0, 2]) * v,
@@ -105,6 +109,7 @@ def _ways(motion, trial, turned):
     )
     drift = _drift(motion, trial, turned)
     c, s = (towards - drift) / np.hypot(*(towards - drift))
+    # Track relative to the drifting water.
     north = north - north[0] - drift[0] * time
     east = east - east[0] - drift[1] * time
     ahead = c * north + s * east
@@ -121,6 +126,7 @@ def _drift(motion, trial, turned):
 
     Nothing where the ship did not turn round in steady state. [m/s]
     """
+    # The drift only shows once the steady circle covers enough of the heading.
     half = np.radians(thresholds.HALF_A_CIRCLE)
     if (
         np.ptp(trial.measured[:, 2]) < half + np.radians(thresholds.DRIFT_TOLD)
@@ -134,6 +140,8 @@ def _drift(motion, trial, turned):
     one = np.ones_like(psi)
     c = np.cos(psi)
     s = np.sin(psi)
+    # Least squares: a circle whose centre drifts, x = x0 + a cos psi - b sin psi + U t, y = y0 + a
+    # sin psi + b cos psi + V t.
     rows = np.block(
         [
             [np.stack((one, none, c, -s, since, none), 1)],
@@ -147,6 +155,7 @@ def _drift(motion, trial, turned):
 
 def _zig_zag(trial, psi, r, speed):
     """Means over the swings of the largest rate and of the change of heading; the mean speed."""
+    # Swings lie between changes of the helm's sign; short ones are left out.
     side = np.sign(_helm(trial))
     changes = np.flatnonzero(np.diff(side) != 0) + 1
     changes = changes[changes > 0]
@@ -178,6 +187,7 @@ def _pull_out(trial, motion):
 
 def _spiral(trial, motion):
     """Speed at the first helm and rates at all four, each as the mean over the last third of its time."""
+    # Four equal parts; the last third of each is taken as steady.
     ends = np.linspace(0, len(motion), 5).astype(int)
     parts = [slice(b - (b - a) // 3, b) for a, b in pairwise(ends)]
     first = np.mean(trial.measured[parts[0], 5])
@@ -216,6 +226,7 @@ _OTHERS = {
 
 def _helm(trial):
     """What steers in a zig-zag: the order whose sign changes, held where it passes through zero."""
+    # Without a direction that changes, the difference of the first and last thruster's speed.
     angle = max((pair[1] for pair in trial.units.values()), key=np.ptp)
     if np.ptp(angle) < 0.02:
         pairs = list(trial.units.values())
@@ -250,6 +261,8 @@ def covariance_of(trial: SeaTrial, length: float) -> np.ndarray:
         return np.array([[t.STRAIGHT_SPEED**2]])
     if trial.kind in _SPREADS:
         return np.diag(np.square(_SPREADS[trial.kind]))
+    # Independent errors of each feature, then errors that features share: a late start, a common
+    # error of speed, and one of rate.
     own = [t.SPEED, t.RATE, t.DRIFT, *t.TIMES, *[t.SPEEDS] * len(t.HEADINGS_OF_SPEED), *t.WAYS]
     names = FEATURES[trial.kind]
     features = features_of(trial, trial.measured)

@@ -182,12 +182,14 @@ def as_trials(
     """
     length = model.length
     h = thresholds.STEP * np.sqrt(model.length)
+    # Each approach begins at its own steady speed straight ahead.
     approaches = sorted({one.approach for one in planned})
     orders = [
         {name: _orders(model, shafts, power, 0.0, 0.0)[name] for name in model.thrusters}
         for power in approaches
     ]
     speeds = dict(zip(approaches, settled(orders, model, changes, h), strict=True))
+    # Every manoeuvre to both sides, on opposite courses; all runs in one simulation.
     runs = [(one, side) for one in planned for side in (1, -1)]
     pilots = [_Pilot(one, side, speeds[one.approach], length, shafts, model) for one, side in runs]
     rows = [int(one.way * length / speeds[one.approach] / h) + 2 for one, _ in runs]
@@ -205,6 +207,7 @@ def as_trials(
             )
             for k in (2 * i, 2 * i + 1)
         ]
+        # Keep manoeuvres that the ship gets through to both sides.
         if all(trial is not None for trial in pair):
             found.append((one, pair))
     return found
@@ -212,9 +215,11 @@ def as_trials(
 
 def _seen(one, side, motion, units, h):
     """The part of a run that features are taken from, or nothing."""
+    # Legs by their share of the way; the first ones may not belong to the features.
     ways = np.cumsum([0.0, *(leg.way for leg in one.legs)]) / one.way
     first = int(ways[-1 - one.seen] * (len(motion) - 1))
     last = len(motion)
+    # A circle ends after the wanted number of turns; one that is not reached does not count.
     if one.kind == "turning circle":
         turned = side * (motion[:, 2] - motion[0, 2])
         if turned.max() < np.radians(thresholds.CIRCLES):
@@ -262,11 +267,13 @@ class _Pilot:
         leg = self.planned.legs[
             min(int(np.searchsorted(self.ends, time, "right")), len(self.ends) - 1)
         ]
+        # Course keeping by proportional and derivative action, within the largest helm.
         helm = self.side * leg.helm
         if leg.held:
             error, rate = _KEEPS_HEADING
             helm = error * (self.first - psi) - rate * r * self.length / self.speed
             helm = float(np.clip(helm, -_MOST_HELM, _MOST_HELM))
+        # Zig-zag: reverse the helm when the heading has changed by the check angle.
         if leg.check:
             if self.helm_to * (psi - self.first) > leg.check:
                 self.helm_to = -self.helm_to

@@ -39,6 +39,7 @@ def sailed(
     list of (p, n, 6) arrays
         By trial: position, heading, surge, sway, yaw rate at its times; of a straight run at as many as it needs.
     """
+    # Ships along the first axis, trials along the second: one simulation for all.
     ships = _side_by_side(model, changes)
     lengths, driven = zip(*(_driven(trial, model) for trial in trials), strict=True)
     most = max(lengths)
@@ -46,6 +47,7 @@ def sailed(
         name: tuple(_padded([d[name][i] for d in driven], most) for i in (0, 1))
         for name in model.thrusters
     }
+    # Trials begin as measured, but without sway.
     seen = Motion(*np.array([trial.measured[0] for trial in trials]).T)
     state = true_motion(seen, ships)._replace(v=0.0 * seen.v)
     h = float(trials[0].time[1])
@@ -198,11 +200,13 @@ def _followed(actual, units, k, ships, h):
     found = {}
     for name, (speed, direction) in units.items():
         unit = ships.parts[name]
+        # Orders act after the delay, within the limit of speed.
         lag = ships.parts["instruments"].order_lag
         wanted = _late(speed, k, lag / h)
         angle = _late(direction, k, lag / h)
         if hasattr(unit, "rpm_max"):
             wanted = np.clip(wanted, -unit.rpm_max / 60.0, unit.rpm_max / 60.0)
+        # Shaft speed follows with a first-order lag; azimuths turn at their rate.
         n = wanted + (actual[name][0] - wanted) * np.exp(-h / thresholds.RPM_LAG)
         if isinstance(unit, AzimuthParameters) and name not in ships.fixed:
             angle = turned(actual[name][1], angle, unit.azimuth_rate * h)
@@ -212,6 +216,7 @@ def _followed(actual, units, k, ships, h):
 
 def _late(series, k, rows):
     """A series (n, trials) some rows before row k, linear between rows; by ship where the lag is an array."""
+    # Row and share of a row to interpolate at.
     at = np.clip(k - np.asarray(rows, float), 0.0, len(series) - 1.0)
     low = np.minimum(at.astype(int), len(series) - 2)
     share = at - low

@@ -102,22 +102,27 @@ def separations(found: TrialEvidence, sets: Sequence[SetOfCauses]) -> list[Separ
     list of Separation
         Best first: by the log-evidence of the closest pair.
     """
+    # Sail each manoeuvre with the best set's ship, then simulate all sets on the same orders.
     sets = list(sets)[:MOST_SETS]
     model = found.model
     planned = as_trials(catalogue(model), model, _shafts(found.trials, model), changes_of(sets[0]))
     trials = [trial for _, pair in planned for trial in pair]
     there = slopes_of(trials, model, sets, orders=True)
+    # Numbers that stay uncertain: known ones, and causes that the trials said nothing of.
     numbers = known_numbers(model)
     untold = _untold(found, sets)
     sizes = [{path: size} for path, size in numbers] + [
         dict.fromkeys(p.paths, p.typical) for _, p in untold
     ]
     first = changes_of(sets[0])
+    # Slopes of the new features by them, by forward differences about the best set.
     moved = [
         first | {path: first.get(path, 0.0) + _PART * size for path, size in one.items()}
         for one in sizes
     ]
     beside = (predicted(trials, model, moved, orders=True) - there[0][0]) / _PART
+    # What the trials said constrains sets and numbers: predict the new features from that
+    # posterior.
     known = replace(found, known=np.vstack((found.known, *(found.slopes[i] for i, _ in untold))))
     spread = found.scale**2 * blocks([covariance_of(trial, model.length) for trial in trials])
     of_day = np.array([ShipModel.is_of_day(path) for one in sizes for path in list(one)[:1]])
@@ -133,6 +138,7 @@ def separations(found: TrialEvidence, sets: Sequence[SetOfCauses]) -> list[Separ
         names = [(trial.kind, trial.side, name) for trial in pair for name in FEATURES[trial.kind]]
         part = slice(at, at + len(names))
         at += len(names)
+        # Expected lead for each pair of sets, on the features of this manoeuvre.
         pairs = {
             (a, b): _apart(priors[a], priors[b], part, names)
             for a, b in combinations(range(len(sets)), 2)
@@ -154,6 +160,7 @@ def _untold(found, sets):
     """Parameters of causes in no set that the trials said next to nothing of: allowed for at their typical size."""
     held = {cause.label for one in sets for cause in one.hypotheses}
     pairs = [(cause, parameter) for cause in found.hypotheses for parameter in cause.parameters]
+    # Information on each parameter: the sum of squares of its whitened slopes.
     white = np.linalg.solve(np.linalg.cholesky(found.covariance), found.slopes.T)
     said = np.sum(white**2, axis=0)
     return [
@@ -179,10 +186,13 @@ def _shafts(trials: Sequence[SeaTrial], model: ShipModel) -> dict[str, float]:
 def _prediction(found, at_trials, here, known, of_day, spread):
     """Features of new trials by a set, and their covariance: by the posterior of the trials that were sailed."""
     features, slopes = at_trials
+    # Posterior covariance of parameters and numbers with unit prior: (I + A R^-1 A')^-1.
     columns = np.vstack((slopes, found.known))
     weighted = columns @ np.linalg.inv(found.noise)
     P = np.linalg.inv(np.eye(len(columns)) + weighted @ columns.T)
     mean = (P @ weighted @ (found.measured - features))[len(slopes) :]
+    # Current, compass and antenna are of another day: they keep their prior, the rest the
+    # posterior.
     lasting = np.concatenate((np.ones(len(slopes), bool), ~of_day))
     new = np.vstack((here[1], known))[lasting]
     C = spread + new.T @ P[np.ix_(lasting, lasting)] @ new + known[of_day].T @ known[of_day]
@@ -195,9 +205,12 @@ def _apart(one, other, part, names):
     (b, C_b) = other
     d = (b - a)[part]
     found = []
+    # Expected log-evidence between two predictions: half the Mahalanobis distance; the smaller of
+    # both being true.
     for C in (C_a[part, part], C_b[part, part]):
         found.append((0.5 * float(d @ np.linalg.solve(C, d)), np.sqrt(np.diag(C))))
     nats, sigma = min(found, key=lambda pair: pair[0])
+    # The feature with the largest difference in standard deviations.
     best = int(np.argmax(abs(d) / sigma))
     kind, side, name = names[best]
     unit, factor = ("deg", np.degrees(1.0)) if name in ANGLES else ("%", 100.0)
@@ -228,6 +241,7 @@ def designed(
     tuple of ExperimentDesign
         Empty where no manoeuvre separates any pair.
     """
+    # Greedy cover: take the manoeuvre that separates most of the remaining pairs.
     left = set(found[0].nats) if found else set()
     chosen = []
 

@@ -148,6 +148,7 @@ class SeaTrialStudy:
     @property
     def findings(self) -> list[Finding]:
         """The causes that are named, as those of a diagnosis; their probability is the best set's among its rivals."""
+        # Probability of the best set among its rivals, by their evidence.
         share = 1.0 / sum(
             np.exp(one.evidence - self.best.evidence) for one in (self.best, *self.rivals)
         )
@@ -275,6 +276,7 @@ def study(
     if read.ship.third_party:
         found = f"{', '.join(read.ship.third_party)}: third-party FMUs, which are only known where a log has been."
         raise error_at(system.file, found, "Sea trials are sailed with thrusters of ours.")
+    # Gaps must not fall within a trial.
     lost = [segment for fault in read.faults if fault.cause == "gap" for segment in fault.segments]
     record = record_of(read.repaired, read.ship)
     record = as_ordered(record, read.repaired, read.ship) if orders else record
@@ -343,6 +345,7 @@ def studied(
     -------
     SeaTrialStudy
     """
+    # Cross-validation by side: fit one side's circles with the straight runs, judge on all others.
     sides = {
         name: [t for t in trials if t.kind == "turning circle" and t.side == side]
         for name, side in (("port", -1), ("starboard", 1))
@@ -356,6 +359,7 @@ def studied(
             ]
             straight = [trial for trial in trials if trial.kind == "straight run"]
             held_out[name] = _judged([*straight, *own], others, model, hypotheses, orders)
+    # The result itself is fitted on all trials.
     progress("fitted on all manoeuvres")
     whole = trial_evidence(trials, model, hypotheses, orders=orders)
     ranking = ranked(whole)
@@ -385,6 +389,7 @@ def _judged(train, others, model, hypotheses, orders):
 def best_of(ranking: Iterable[SetOfCauses]) -> SetOfCauses:
     """The set that is named: each of its causes adds enough, to any set of fewer and to what it explains without it."""
     ranking = list(ranking)
+    # A set is named if each of its causes adds enough to the set without it.
     by_label = {frozenset(c.label for c in one.hypotheses): one for one in ranking}
     for one in sorted((one for one in ranking if one.plausible), key=_worth, reverse=True):
         names = frozenset(c.label for c in one.hypotheses)
@@ -433,6 +438,7 @@ def errors(
         ``"turning circle: speed"`` and the like.
     """
     measured = [features_of(trial, trial.measured) for trial in trials]
+    # Simulate all trials with the changes and compare features: logarithms as relative errors.
     sailed = predicted(trials, model, [changes], orders=orders)[0]
     found = {}
     at = 0

@@ -78,6 +78,7 @@ def sea_trials_of(
     list of SeaTrial
         Each on its own clock, in steps for the simulation.
     """
+    # Rows with measurements, known inputs, and no lost segment.
     measured, whole = _bridged(record.measured)
     length = model.length
     helm = steering(record, model)
@@ -85,12 +86,15 @@ def sea_trials_of(
     whole &= record.known | (np.arange(whole.size) == whole.size - 1)
     for first, last in lost:
         whole &= (record.time < first - record.step) | (record.time > last + record.step)
+    # Circles and zig-zags first, straight runs between them.
     found = [*_circles(helm, measured), *_zig_zags(helm, measured, length)]
     busy = _merged([rows for _, rows in found])
     found += _straight_runs(helm, record, measured, length, busy)
+    # Only whole manoeuvres in which the ship makes way.
     kept = [(kind, rows) for kind, rows in found if whole[rows].all()]
     fast = thresholds.UNDER_WAY * np.sqrt(9.81 * length)
     kept = [(kind, rows) for kind, rows in kept if np.mean(speed[rows]) > fast]
+    # Correct the clock and the scale of the speed log by the motion itself.
     clock, scale = own_clock(record.time, measured, length)
     measured = measured.copy()
     measured[:, 3:5] *= scale
@@ -118,6 +122,7 @@ def as_ordered(record: Record, log: xarray.Dataset, model: ShipModel) -> Record:
     Record
     """
     time = log["time"].values
+    # The nearest logged row, instead of an average.
     after = np.clip(np.searchsorted(time, record.time), 1, time.size - 1)
     at = after - (record.time - time[after - 1] < time[after] - record.time)
     units = {}
@@ -131,6 +136,7 @@ def as_ordered(record: Record, log: xarray.Dataset, model: ShipModel) -> Record:
             ),
             None,
         )
+        # Orders as logged; the averaged ones where the log has a hole.
         own = speed if role is None else told[role][1] * _known(log[role].values, speed, at)
         azimuth = f"{name}_azimuth"
         units[name] = (
@@ -153,6 +159,8 @@ def steering(record: Record, model: ShipModel) -> np.ndarray:
     Of a ship with azimuths or a rudder it is the sine of their angle, of one with two fixed propellers their difference
     over their sum.
     """
+    # Yaw moment of all steering thrusters by their shares of thrust, and the largest that they
+    # could have.
     moment = most = np.zeros(record.time.size)
     for name, (speed, direction) in record.units.items():
         unit = dp_thruster_of(model, name)
@@ -179,6 +187,7 @@ def _bridged(measured):
         if not there.any():
             continue
         filled[:, channel] = np.interp(rows, rows[there], measured[there, channel])
+        # Holes are filled linearly; long ones, and both ends, make rows unusable.
         for a, b in pairwise(np.flatnonzero(there)):
             if b - a - 1 > thresholds.LONGEST_HOLE:
                 whole[a + 1 : b] = False
@@ -201,10 +210,12 @@ def _runs(mask):
 def _circles(helm, measured):
     """Rows of orders held until the ship has turned round, from where the order leaves its rest."""
     for side in (1.0, -1.0):
+        # Runs of helm to one side that turn the ship far enough.
         for run in _runs(side * helm > thresholds.TURNING):
             turned = side * (measured[:, 2] - measured[run.start, 2])
             if turned[run.stop - 1] < np.radians(thresholds.CIRCLE):
                 continue
+            # Go back to where the order left its rest, and end after the wanted number of circles.
             start = run.start
             while (
                 start > 0 and side * helm[start - 1] > thresholds.STEADY and start > run.start - 20
@@ -219,6 +230,7 @@ def _zig_zags(helm, measured, length):
     """Rows from the first order of a zig-zag to its last change of the helm."""
     way = _way(measured)
     side = np.where(helm > thresholds.ZIG_ZAG, 1, np.where(helm < -thresholds.ZIG_ZAG, -1, 0))
+    # Times with helm to either side, in order.
     swings = [run for one in (1, -1) for run in _runs(side == one)]
     swings.sort(key=lambda run: run.start)
     chains = []
@@ -226,6 +238,7 @@ def _zig_zags(helm, measured, length):
         if np.ptp(measured[run, 2]) > np.radians(thresholds.HALF_A_CIRCLE):
             continue
         last = chains[-1][-1] if chains else run
+        # A swing continues the zig-zag if the helm is reversed soon and the swing is short.
         near = way[run.start] - way[last.stop - 1] < thresholds.REVERSED * length
         quick = way[run.stop - 1] - way[last.start] < 2.0 * thresholds.LONGEST_SWING * length
         if near and quick and side[run.start] != side[last.start]:
@@ -234,6 +247,7 @@ def _zig_zags(helm, measured, length):
             chains.append([run])
     for chain in (chain for chain in chains if len(chain) > thresholds.SWINGS):
         start = chain[0].start
+        # Go back to where the first order left its rest.
         while (
             start > 0 and abs(helm[start - 1]) > thresholds.STEADY and start > chain[0].start - 10
         ):
@@ -248,6 +262,7 @@ def _merged(slices):
 def _straight_runs(helm, record, measured, length, busy):
     """Rows of straight courses at held orders, after the speed has settled."""
     way = _way(measured)
+    # Helm near zero on average, little turning, orders constant, and no other manoeuvre.
     held = np.abs(moving_average(helm, _rows_of_rest(record))) < thresholds.STEADY
     rate = moving_average(measured[:, 5], _rows_of_rest(record))
     speed = np.hypot(measured[:, 3], measured[:, 4])
@@ -257,6 +272,7 @@ def _straight_runs(helm, record, measured, length, busy):
     for rows in busy:
         held[rows] = False
     for run in _runs(held):
+        # Drop the first lengths, in which the speed still settles.
         after = np.flatnonzero(way[run] - way[run.start] > thresholds.SETTLED * length)
         if not after.size:
             continue
@@ -289,6 +305,8 @@ def _held(series, record):
 
 def _trial(kind, rows, record, measured, clock, helm, length):
     """The rows of a manoeuvre on even steps of its own clock."""
+    # Even steps of the ship's time scale on the corrected clock; orders are steps, so they are not
+    # interpolated.
     own = clock[rows] - clock[rows][0]
     h = thresholds.STEP * np.sqrt(length)
     time = np.arange(int(own[-1] / h) + 1) * h
@@ -301,6 +319,7 @@ def _trial(kind, rows, record, measured, clock, helm, length):
         name: (speed[nearest], direction[nearest])
         for name, (speed, direction) in record.units.items()
     }
+    # The first clear order gives the side.
     order = helm[rows][np.argmax(np.abs(helm[rows]) > thresholds.ZIG_ZAG)]
     side = 0 if kind == "straight run" else int(np.sign(order))
     logged = float(record.time[rows][0]), float(record.time[rows][-1])

@@ -71,6 +71,8 @@ def rows_without_condition(record: Record) -> dict[str, np.ndarray]:
         ``"other headings"``: all but the quarter circle with the most predictions in it of those that leave half of
         the rows. ``"free drift"``: all but the rows without thrust. What the log has none of is left out.
     """
+    # Leave out a quarter circle of headings, in turn every 30 deg; the one that holds most
+    # predictions counts.
     rows = starts(record)
     found = {}
     sectors = [
@@ -84,6 +86,7 @@ def rows_without_condition(record: Record) -> dict[str, np.ndarray]:
     most = max(tries, key=lambda one: one[0], default=(0, None))
     if most[0]:
         found["other headings"] = most[1]
+    # Free drift: predictions that lie wholly on rows without thrust.
     powered = ~is_idle(record)
     if sorted_by(powered, rows, record)[1].size and powered.mean() >= LEAST_TRAINED:
         found["free drift"] = powered

@@ -73,6 +73,7 @@ def simulated(
         As ``comparison.errors``; besides ``difference`` [m] by model ``plain`` and ``extended``, horizon and segment:
         how far the co-simulation is from the same prediction in array form.
     """
+    # Evenly spread segments; a co-simulation of all would take too long.
     count = min(most, comparison.rows.size)
     some = np.linspace(0, comparison.rows.size - 1, count).round().astype(int)
     rows = comparison.rows[some]
@@ -91,12 +92,14 @@ def simulated(
         )
         found = replayed(one, predictor, rows, progress=each)
         done += count
+        # Errors at the end of each horizon, against the same reference as those in array form.
         horizons = in_rows(predictor.record)
         ends = rows + np.array(horizons)[:, None]
         for channel, values in missing(found, comparison.seen, ends).items():
             errors[channel].loc[{"model": model}] = values
             if "extended" not in replays:
                 errors[channel].loc[{"model": "extended"}] = values
+        # How far co-simulation and array form differ: a check of the array form.
         array = in_array_form(predictor, rows)
         apart[number:] = np.hypot(found.x - array.x, found.y - array.y)
     errors["difference"] = (("replayed", "horizon", "segment"), apart, {"units": "m"})
@@ -144,6 +147,7 @@ def replayed(
     """
     ship = predictor.model.vessel
     record = predictor.record
+    # Instruments show the ship late by the navigation lag: the replay starts that much earlier.
     lag = predictor.original.parts["instruments"].navigation_lag
     table, states = driving_table(one.system, predictor, step_size, lag)
     states |= {
@@ -166,9 +170,11 @@ def replayed(
         signals=signals,
         progress=progress,
     )
+    # Horizons count from the start as shown, so the delay is added.
     ends = late + record.step * np.array(in_rows(record))
     time = found["time"].values
     channels = [found[name].values for name in signals]
+    # Unwrap before interpolating, then take the channels at the horizons.
     channels[2] = np.unwrap(channels[2], axis=1)
     motion = Motion(*(np.array([_at(series, time, end) for end in ends]) for series in channels))
     return motion if one.signals else readings(motion, predictor.model)
@@ -214,6 +220,8 @@ def driving_table(
     columns = []
     states = {}
     problems = []
+    # Each thruster: a series for every input that the system feeds, a constant where it never
+    # changes.
     for name, (speed, direction) in record.units.items():
         states |= {} if name in model.third_party else {f"{name}.replay": True}
         series = {
@@ -236,6 +244,7 @@ def driving_table(
     weather, calm = _weather(system, model.vessel, record)
     columns = columns + weather
     last = record.time[-1] + record.step
+    # Times of the table, early by the delays of measurements and inputs.
     time = np.append(record.time, last) - lag - INPUT_DELAY * step_size
     table = make_table(
         time, [(name, np.append(values, values[-1]), *more) for name, values, *more in columns]
@@ -268,6 +277,7 @@ def _connected(system, component, variable):
 
 def _weather(system, ship, record):
     """Columns of the wind, and values that leave it as logged."""
+    # A wind component with gusts and waves is calmed; the logged wind replaces them.
     sources = [c.source for c in system.connections if c.target == (ship, "wind_north")]
     if not sources or sources[0][0] is None:
         return _straight(system, ship, record), {}

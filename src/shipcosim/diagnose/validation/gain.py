@@ -129,17 +129,22 @@ def compare(
     Comparison or None
         None where the other rows are too few or have too many gaps.
     """
+    # Predictions wholly on training rows tune the observers; those that touch none are judged.
     record = problem.record
     train = first_rows(record) if train is None else train
     inside, rows = sorted_by(train, starts(record), record)
     if inside.size == 0 or rows.size == 0 or record.time[rows[-1]] - record.time[rows[0]] < BLOCK:
         return None
+    # Causes are fitted again on the training rows alone.
     if part is None:
         part = fitted(
             trained(problem, train), fit.hypotheses, fit.values, rounds=3 if fit.hypotheses else 1
         )
+    # Reference: smoothed with a free force, so that it favours no model.
     linear = linearise(fit.motion, record, fit.model, [])
     seen = reference(linear, fit.motion, problem.noise, record, fit.model)
+    # Calibrated has the fit's numbers of the training rows; the floor has those of the whole log,
+    # as a lower limit of the error.
     extended = problem.model.with_values(part.values)
     ship_models = {
         "plain": problem.model if plain is None else plain,
@@ -153,6 +158,7 @@ def compare(
     found = {}
     observers = {}
     predictors = {}
+    # Errors of each model, with the held force of its observer where it has one.
     for name, held in _HELD.items():
         judged = _judged(models[name], inside[::2], rows, seen, held is not None)
         for label, (errors, observer, _) in zip((name, held), judged, strict=False):
@@ -181,6 +187,8 @@ def _judged(model, inside, rows, seen, holds):
     list of tuple of dict, tuple and int
         Errors by channel, the observer as in `Comparison`, its number.
     """
+    # One pass over training and held-out starts; the observer is chosen by the longest horizon on
+    # the training starts only.
     missed = model.missed(np.concatenate([inside, rows]), seen, holds)
     found = []
     tuning = (missed["position"][-1, ..., : len(inside)] ** 2).mean(-1)
@@ -198,6 +206,7 @@ def _judged(model, inside, rows, seen, holds):
 
 def calibrated(fit: Fit) -> ShipModel:
     """The ship model of a fit with every known number where the log would have it, within its tolerance."""
+    # Shift every number by its posterior mean.
     changes = zip(fit.columns, fit.left, strict=True)
     moved = [
         (path, size * share) for column, share in changes for path, size in column.changes.items()
@@ -228,6 +237,7 @@ class _Model:
 
         By channel, (horizons, 1 or 1 + fades, observers, s) arrays.
         """
+        # Without the observed force, then with it at each rate of fading, all in one simulation.
         shares = np.array([0.0] + [1.0] * len(FADES) if holds else [0.0])[:, None, None]
         fades = np.array([0.0, *FADES])[: len(shares), None, None]
         motion = Motion(*(value[:, rows] + 0.0 * shares for value in self.known.motion))
@@ -245,12 +255,15 @@ class _Model:
 def _observed(problem, about_fit, motion, seen, ship_models):
     """Each ship model with its observers, all run over the log at once."""
     record = problem.record
+    # All but the plain model share the linearisation about the fit's motion; only their defects
+    # differ.
     about = {name: problem.motion if name == "plain" else motion for name in ship_models}
     linear = {
         name: restarted(about_fit, motion, record, model) for name, model in ship_models.items()
     }
     linear["plain"] = problem.base_of([]).whole()
     choices = {"plain": _BOTH, "extended": _BOTH, "calibrated": _EARTH[1:2], "floor": _EARTH[1:2]}
+    # All pairs of model and observer, as one stack of filters.
     each = [(name, frame, time) for name in ship_models for frame, time in choices[name]]
     problems = [
         earth_fixed(linear[name], about[name], ship_models[name])
@@ -258,6 +271,7 @@ def _observed(problem, about_fit, motion, seen, ship_models):
         else linear[name]
         for name, frame, _ in each
     ]
+    # An observer that learns a force within a time T: random walk of the jolts' size over T.
     walks = np.stack([problem.noise.jolt / time for _, _, time in each])
     noise = replace(
         problem.noise, jolt=np.broadcast_to(problem.noise.jolt, walks.shape), walk=walks
@@ -291,6 +305,7 @@ def error_with(comparison: Comparison, numbers: Mapping[str, float]) -> float:
     numbers : mapping of str to float
         By ``place.name``, in the units of the ship's numbers.
     """
+    # Start states are those that the plain model's observer knew.
     predictor = comparison.predictors["plain"]
     ends = comparison.rows + in_rows(predictor.record)[-1]
     off = missing(sailed(comparison, predictor.model.with_values(numbers)), comparison.seen, ends)
@@ -363,9 +378,13 @@ def gain(errors: xarray.Dataset, seed: int = 1, fewest: int = 1) -> dict[str, An
         .values
         ** 2
     )
+    # Root mean square errors of the models, and the share of the explainable error that the cause
+    # removes.
     times = errors["start_time"].values
     before, rival, after, floor = _roots(squares.mean(1))
     share = share_explained(before, after, floor)
+    # Block bootstrap for its confidence interval: neighbouring predictions overlap, so blocks are
+    # drawn instead of segments.
     drawn = share_explained(*_roots(_resampled(squares, times, seed))[[0, 2, 3]])
     some = np.isfinite(share)
     sure = some and _blocks(times).max() + 1 >= fewest
@@ -472,6 +491,7 @@ def _resampled(squares, times, seed):
     """Mean squares of draws of blocks, (models, draws) array."""
     block = _blocks(times)
     blocks = block.max() + 1
+    # Sums of squares and counts by block; a draw's mean is the ratio of its sums.
     sums = np.stack(
         [np.bincount(block, weights, blocks) for weights in (*squares, np.ones(block.size))]
     )

@@ -56,6 +56,8 @@ def healthy_errors(comparison: Comparison, seed: int = 0) -> HealthyErrors:
     HealthyErrors
     """
     plain = comparison.predictors["plain"].model
+    # All ships sail at once, from the same states with the same inputs; the plain model is the
+    # reference.
     ships = drawn_within_tolerances(plain, (HEALTHY_SHIPS, 1), np.random.default_rng(seed))
     said = sailed(comparison, plain)
     off = missing(sailed(comparison, ships), said, np.arange(comparison.rows.size))
@@ -64,6 +66,7 @@ def healthy_errors(comparison: Comparison, seed: int = 0) -> HealthyErrors:
     largest = {}
     for channel in ("position", "heading"):
         measured[channel] = rms(comparison.errors, channel, "plain")
+        # Error by tolerances and by noise add as variances; the worst ship sets the limit.
         floor = FLOOR_VARIES * rms(comparison.errors, channel, "floor")
         largest[channel] = float(np.sqrt((off[channel] ** 2).mean(-1) + floor**2).max())
     return HealthyErrors(measured, largest)

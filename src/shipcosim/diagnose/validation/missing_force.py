@@ -68,6 +68,7 @@ def by_sector(force: xarray.Dataset, angle: str) -> xarray.Dataset:
         ``surge_std``, ``sway_std`` [N].
     """
     width = 360.0 / SECTORS
+    # Sector of each row, the angle wrapped to a full circle.
     sector = np.minimum((force[angle].values % 360.0 / width).astype(int), SECTORS - 1)
     columns = {}
     for name in ("surge", "sway"):
@@ -107,8 +108,11 @@ def missing_force(
         ``speed`` over ground [m/s].
     """
     record = problem.record
+    # A random walk that may change as fast as the jolts within FORCE_TIME: the unexplained
+    # acceleration then takes up all that is missing.
     noise = replace(problem.noise, walk=problem.noise.jolt / FORCE_TIME)
     motion, slow = smoothed(linearised_by_parts(motion, record, model, []), noise, record, motion)
+    # Acceleration times mass and added mass; not where the inputs are unknown.
     force = np.where(record.known[:, None], slow[:, :3] @ model.mass_matrix.T, np.nan)
     return _in_frames(force.T, motion, record, model)
 
@@ -118,6 +122,7 @@ def _in_frames(
 ) -> xarray.Dataset:
     """Table of a force, (3, n) array in body axes, and of what it may depend on."""
     surge, sway, yaw = force
+    # The same force in north-east axes and along each thruster, to see what it goes with.
     north, east = to_ned(motion.psi, surge, sway)
     columns = {
         "surge": (surge, "N", "missing force forward"),

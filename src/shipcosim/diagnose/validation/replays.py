@@ -51,6 +51,7 @@ def with_cosimulation(
     progress : callable, optional
         Called with (parts done, parts in all), whose number changes on the way.
     """
+    # Too few rows, or a system that could not be extended: predictions in array form stand.
     if log.comparison is None:
         return SimulatedLog(None, {}, False)
     in_array_form = {name: one.errors for name, one in log.held_out.items()}
@@ -61,6 +62,7 @@ def with_cosimulation(
     run = partial(_cosimulated, extended, found.causes, craft)
     count = 1 + len(log.held_out)
     say = progress or (lambda *_: None)
+    # All rows first, then each held-out condition with half as many segments.
     try:
         errors = run(lambda done, of: say(done, count * of), log.comparison, MOST)
         held_out = {
@@ -82,6 +84,8 @@ def _cosimulated(extended, causes, craft, progress, comparison, most):
     fitted = None
     findings = findings_of(comparison.fit)
     with temporary_folder() as folder:
+        # Extend the system by the causes as fitted on the training rows, not by those of the whole
+        # log.
         if findings or craft:
             about = {"span": comparison.fit.model.span}
             made = extend(

@@ -73,13 +73,17 @@ def starts(record: Record) -> np.ndarray:
     """
     horizons = in_rows(record)
     h = record.step
+    # Evenly spaced starts after the observer has settled, so that the longest horizon still fits.
     rows = np.arange(
         round(SETTLED / h), record.time.size - horizons[-1], max(1, round(START_STEP / h))
     )
+    # Cumulative count of rows with unknown inputs: equal at both ends where there is none between.
     lost = np.concatenate([[0], np.cumsum(~record.known)])
+    # Position and heading must be measured near the start and near each horizon.
     measured = np.isfinite(record.measured[:, :3]).all(-1)
     near = np.convolve(measured, np.ones(2 * round(MEASURED_WITHIN / h) + 1), "same") > 0.0
     sound = (lost[rows + horizons[-1]] == lost[rows]) & near[rows]
+    # The observer must have settled within the same stretch of the log.
     stretch = np.cumsum(record.is_last)
     sound &= stretch[rows] == stretch[np.maximum(rows - round(SETTLED / h), 0)]
     for k in horizons:
@@ -101,6 +105,7 @@ def sorted_by(train: np.ndarray, rows: np.ndarray, record: Record) -> tuple[np.n
     tuple of two arrays of int
     """
     last = in_rows(record)[-1]
+    # Training rows in each prediction, by a cumulative count.
     used = np.concatenate([[0], np.cumsum(train)])
     used = used[rows + last + 1] - used[rows]
     return rows[used == last + 1], rows[used == 0]
@@ -123,6 +128,7 @@ def trained(problem: IdentificationProblem, train: np.ndarray) -> Identification
     train = train[:n]
     record = problem.record
     base = problem.linear
+    # A step needs both of its rows to be training rows; other steps and measurements get no weight.
     steps = train[:-1] & train[1:]
     cut = replace(
         record,
@@ -172,16 +178,19 @@ def conditions(
         ``heading_known``: whether training rows have a heading within 15 deg; ``wind_from``, of the logged wind from
         the bow.
     """
+    # Distance sailed and range of heading over each prediction.
     spans = rows[:, None] + np.arange(in_rows(record)[-1] + 1)
     way = np.hypot(np.diff(seen.x[spans], axis=1), np.diff(seen.y[spans], axis=1)).sum(1)
     turn = np.ptp(seen.psi[spans], axis=1)
     idle = is_idle(record)[spans].all(1)
+    # The first that applies: without thrust, turning, moving, else holding position.
     regime = np.select(
         [idle, turn > TURNING, way > MOVING * HORIZONS[-1]],
         ["drifting", "turning", "moving"],
         "holding",
     )
     heading = np.degrees(seen.psi[rows]) % 360.0
+    # Degrees of heading with training rows, widened by 15 deg to both sides round the circle.
     used = np.bincount(np.degrees(seen.psi[train]).astype(int) % 360, minlength=360) > 0
     near = np.convolve(np.concatenate([used[-15:], used, used[:15]]), np.ones(31), "valid") > 0.0
     found = {
@@ -195,6 +204,7 @@ def conditions(
         "heading_known": ("segment", near[heading.astype(int) % 360]),
     }
     if record.wind is not None:
+        # The wind direction relative to the bow.
         bow = seen.psi[rows] if model.wind_is_true else 0.0
         found["wind_from"] = (
             "segment",

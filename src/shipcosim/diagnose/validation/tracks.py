@@ -83,6 +83,8 @@ def tracks_of(log: JudgedLog, is_named: bool) -> Tracks | None:
 
 def fitting_horizon(record: Record, model: ShipModel) -> float:
     """Length of predictions: some of the craft's slowest time constants, and a part of the log at most. [s]"""
+    # As long as the ship needs to respond, within limits, and so that the log holds several
+    # predictions.
     slowest = response_times(model, first_motion(record, model)).slowest
     wanted = np.clip(TIME_CONSTANTS * slowest, SHORTEST_HORIZON, LONGEST_HORIZON)
     return float(min(wanted, LEAST_SHARE * (record.time[-1] - record.time[0])))
@@ -101,11 +103,13 @@ def tracks_by_models(record: Record, models: Mapping[str, ShipModel], horizon: f
     """
     rows, count, found = *_segments(record, horizon), {}
     for name, model in models.items():
+        # Smoothed measurements give the start; inputs are those of the log without delay.
         seen = _seen(record, model, horizon)
         driven, neutral = replayable(record, model, seen)
         start = true_motion(Motion(*(value[rows] for value in seen)), model)
         ahead = readings(predicted(start, rows, driven, neutral, range(1, count + 1)), model)
         first = readings(start, model)
+        # The start itself is the first row of each prediction.
         channels = [np.vstack([a[None], b]).T for a, b in zip(first, ahead, strict=True)]
         found[name] = _dataset(channels, record.step * np.arange(count + 1), record.time[rows])
     return Tracks(horizon, _measured(record), found)
@@ -141,6 +145,7 @@ def tracks_by_systems(
         If a system has no inputs for what the log says of its thrusters, or a run fails.
     """
     rows, _ = _segments(record, horizon)
+    # At most this many segments, evenly spread.
     rows = (
         rows
         if most is None
@@ -162,6 +167,7 @@ def _cosimulated(record, model, one, rows, horizon, progress):
     """Predictions of one system from some rows."""
     seen = _seen(record, model, horizon)
     driven, neutral = replayable(record, model, seen)
+    # The system's instruments have errors of their own: take them out of the start values.
     errors, lag = _instruments(one)
     own = model.with_values({f"instruments.{key}": value for key, value in errors.items()})
     start = true_motion(Motion(*(value[rows] for value in seen)), own)
@@ -175,6 +181,7 @@ def _cosimulated(record, model, one, rows, horizon, progress):
         if one.signals
         else [f"{model.vessel}.{name}" for name in Motion._fields]
     )
+    # Whole steps, long enough for the instruments' delay.
     duration = STEP * np.ceil((horizon + lag) / STEP - 1e-6)
     starts = record.time[rows] - lag
     run = replay(
@@ -190,9 +197,11 @@ def _cosimulated(record, model, one, rows, horizon, progress):
     time = run["time"].values
     channels = [run[signal].values for signal in signals]
     channels[2] = np.unwrap(channels[2], axis=1)
+    # Unwrapped headings may differ by full turns from the log's: shift them to its start.
     channels[2] += (
         2.0 * np.pi * np.round((seen.psi[rows] - channels[2][:, 0]) / (2.0 * np.pi))[:, None]
     )
+    # Drop the time before the first delayed measurement.
     kept = slice(round(lag / STEP), None)
     return _dataset(
         [values[:, kept] for values in channels], time[kept] - time[kept][0], record.time[rows]
@@ -211,6 +220,7 @@ def _instruments(one: Replayed) -> tuple[dict[str, float], float]:
 
 def _segments(record: Record, horizon: float) -> tuple[np.ndarray, int]:
     """Rows at which predictions start, one after another where the log is whole, and how many rows each has."""
+    # Walk along the log: a segment where all inputs are known, the next one behind it.
     count = max(int(horizon / record.step + 1e-6), 1)
     whole = np.isfinite(record.measured[:, :3]).sum(axis=-1) == 3
     rows = []

@@ -36,6 +36,7 @@ def library() -> ctypes.CDLL:
     ShipcosimError
         If there is none for it.
     """
+    # Processor names differ between operating systems for the same architecture.
     machine = platform.machine().lower()
     file = library_for(f"{sys.platform}-{MACHINES.get(machine, machine)}")
     try:
@@ -50,6 +51,7 @@ def library() -> ctypes.CDLL:
 
 def _call(name: str, sizes: tuple[int, ...], *arrays: np.ndarray | None) -> None:
     """Call a function of the filter with sizes, then arrays; None stands for one that is not wanted."""
+    # The compiled code takes plain pointers: refuse arrays of another type or layout.
     pointers = []
     for array in arrays:
         if array is None:
@@ -58,6 +60,7 @@ def _call(name: str, sizes: tuple[int, ...], *arrays: np.ndarray | None) -> None
         if not array.flags.c_contiguous or array.dtype not in (np.float64, np.bool_):
             raise ValueError(f"{name} takes arrays of doubles or bools without gaps")
         pointers.append(ctypes.c_void_p(array.ctypes.data))
+    # A result other than 0 means that it could not allocate memory.
     if getattr(library(), name)(*map(ctypes.c_int64, sizes), *pointers):
         raise MemoryError(name)
 

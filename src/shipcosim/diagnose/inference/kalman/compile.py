@@ -70,6 +70,7 @@ def compile_filter(platform: str, out: Path) -> Path:
     ):  # takes the import library that the linker leaves for Windows
         library = Path(folder, target.name)
         command = [sys.executable, "-m", "ziglang", "cc", "kalman.c", *_options(platform)]
+        # The digest in the library tells whether it was compiled from the present source.
         command += [f'-DSOURCES="{digest(platform)}"', "-o", str(library)]
         subprocess.run(command, cwd=FOLDER, check=True)
         target.write_bytes(library.read_bytes())
