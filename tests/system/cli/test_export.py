@@ -171,7 +171,7 @@ def test_commands_of_the_page_run(root, gunnerus, call):
     lines = re.findall(r"^shipcosim (.*)$", page, re.MULTILINE)
     codes = {line: call(*line.split()).code for line in lines}
     assert set(codes.values()) == {0, 1}
-    differing = ("check ssp/gunnerus_dp --for", "compare ssp/gunnerus_dp")
+    differing = ("check gunnerus_dp --for", "compare gunnerus_dp")
     assert [line for line, code in codes.items() if code] == [
         line for line in lines if line.startswith(differing)
     ]

@@ -20,7 +20,8 @@ def project(tmp_path, monkeypatch):
 
 
 def told(*arguments):
-    return CliRunner().invoke(app, [*arguments])
+    # Wide enough for the sources of the numbers.
+    return CliRunner().invoke(app, [*arguments], env={"COLUMNS": "120"})
 
 
 def test_a_few_options_make_a_ship_that_is_found_checked_and_runs(project):

@@ -11,7 +11,7 @@ from conformance.test_features import assert_closed_form
 import shipcosim as sc
 from shipcosim.cli.commands.check import check
 from shipcosim.cli.commands.simulate import simulate
-from shipcosim.cli.outcomes.exits import FAILED
+from shipcosim.cli.outcomes.exits import FAILED, guarded
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp import check_system, read_system
 
@@ -60,10 +60,10 @@ def test_read_for_changes_and_written_it_is_without_flaw_of_form_or_runs_the_sam
 
 @pytest.mark.parametrize("flaw", ["empty_elements"])
 def test_the_commands_say_it_and_refuse_it_with_strict(flaw, path, capsys):
-    check([str(path)])
+    guarded(check)([str(path)])
     assert "remark: " in capsys.readouterr().out
     with pytest.raises(typer.Exit) as caught:
-        check([str(path)], strict=True)
+        guarded(check)([str(path)], strict=True)
     assert caught.value.exit_code == FAILED
     with pytest.raises(ShipcosimError, match="startElement"):
         simulate(str(path), strict=True)

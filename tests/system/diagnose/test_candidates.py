@@ -33,6 +33,6 @@ def of_craft(seed, fault, change):
 
 
 def test_candidates_of_a_drawn_craft_do_not_contradict_what_is_not_testable():
-    found = of_craft(228, "exchanged", "none")
+    found = of_craft(203, "exchanged", "none")  # a steady spin, which tells no labels
     agrees(found)
     assert {"channel_swap", "sign"} <= {*found.not_testable}

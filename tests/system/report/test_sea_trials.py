@@ -53,7 +53,7 @@ def test_the_page_says_what_is_wrong_what_fits_alike_and_what_to_sail(found, tmp
 
 def test_the_summary_says_the_same_as_the_page(found, tmp_path, capsys):
     (tmp_path / "report.html").write_text(render(found, {}), encoding="utf-8")
-    print_study(found, tmp_path, False)
+    print_study(found, tmp_path)
     said = capsys.readouterr().out
     sentence = re.search(r"[A-Z][a-z ]+ drag explains best[^.]*\.", said)[0]
     assert sentence in (tmp_path / "report.html").read_text(encoding="utf-8")
