@@ -66,7 +66,7 @@ def test_planted_labels_are_named_and_nothing_else(craft, name, stride, tmp_path
 
 
 def _labels(log):
-    """Cause, channels, and whether in a part of the log only, of what is said of labels."""
+    """Findings on labels: cause, channels, and whether in a part of the log only."""
     causes = ("sign", "channel_swap", "frame", "clock")
     return {
         (one.cause, frozenset(one.channels), bool(one.segments))

@@ -174,7 +174,7 @@ def _publish_errors(command: str, problems: Sequence[Problem], output: Output) -
         Check(problem.where or command, "error", f"{problem.found} {problem.remedy}".rstrip())
         for problem in problems
     ]
-    with suppress(ShipcosimError, OSError):  # the error that is told may be that of this file
+    with suppress(ShipcosimError, OSError):  # the reported error may be that of this file
         output.publish(command, "error", checks)
 
 

@@ -227,7 +227,6 @@ def _by_fit(weighed: Sequence[_Weighed], axes: Sequence[Axis]) -> Labels:
     logged = first.reading
     # By the labels as logged the thrusters would brake the craft: readings by which they do, too, are no rivals.
     brakes = first.drives < -BRAKES < BRAKES < best.drives
-    # Interpretations by which thrusters drive the craft remain as rivals.
     others = [one for one in ranked[1:] if not brakes or one.drives > 0.0]
     rivals = tuple(one.reading for one in others if one.fit > best.fit - RIVAL)
     # Gain in fit, and whether the logged labels are plainly wrong by it.
@@ -235,15 +234,12 @@ def _by_fit(weighed: Sequence[_Weighed], axes: Sequence[Axis]) -> Labels:
     plain = _is_contradicted(best.reading, logged, axes) or gained > PLAINLY_WRONG
     # How much the foresight must agree: more where the interpretation explains little, less where
     # other evidence is strong.
-    least = (
-        SURELY_CAUSED
-        if _explained(best.reading, logged, axes) <= TOLD
-        else -UNLIKELIER
-        if brakes
-        else 0.0
-        if plain
-        else RIVAL
-    )
+    if _explained(best.reading, logged, axes) <= TOLD:
+        least = SURELY_CAUSED
+    elif brakes:
+        least = -UNLIKELIER
+    else:
+        least = 0.0 if plain else RIVAL
     changes = CHANGE_COST * len(best.reading.changes)
     # Changed labels need a clear gain in fit, no better logged rival, no braking, and foresight.
     is_wrong = (

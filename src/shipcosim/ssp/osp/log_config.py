@@ -1,4 +1,4 @@
-"""Reader of LogConfig.xml, in which libcosim is told what to record."""
+"""Reader of LogConfig.xml, libcosim's settings of what to record."""
 
 from __future__ import annotations
 
