@@ -68,7 +68,7 @@ for _function in (
     capability.capability,
 ):
     app.command(epilog=EXIT_CODES)(guarded(_function))
-for _function in (export.fmu, export.osp):
+for _function in (export.fmu, export.osp, export.page):
     exporting.command(epilog=EXIT_CODES)(guarded(_function))
 for _function in (new.fmu, new.scenario, new_ship.ship, new.system):
     making.command(epilog=EXIT_CODES)(guarded(_function))

@@ -1,4 +1,4 @@
-"""The command `shipcosim export`: `export fmu` and `export osp`."""
+"""The command `shipcosim export`: `export fmu`, `export osp` and `export page`."""
 
 from pathlib import Path
 from typing import Annotated
@@ -74,6 +74,50 @@ def fmu(
     print_problems(
         export_fmu(system, target, step, connectors_only=connectors_only, check=not unchecked)
     )
+    say(shown_path(target))
+
+
+def page(
+    what: SystemOrScenario,
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Folder that gets NAME.html.")
+    ] = Path("."),
+    stop_time: ScenariosStopTime = None,
+    step_size: ScenariosStepSize = None,
+    parameters: Parameters = None,
+    components: Components = None,
+    fmus: Fmus = None,
+    strict: Strict = False,
+    force: Force = False,
+    debug: Debug = False,
+) -> None:
+    """Make one HTML file that runs the system itself: a desk to steer the ship and fail her units, without a network.
+
+    All components need native code, as for `--engine native`. Events of a scenario happen in the page, too; its
+    expectations are not judged. The first time takes about a minute.
+
+    Example: shipcosim export page four_corner --out results
+    """
+    from shipcosim.calls.arguments import Reading, system_and_scenario
+    from shipcosim.cli.console import print_problems, progress_of, shown_path
+    from shipcosim.cli.requests import parsed_components
+    from shipcosim.report.live.export import export_page
+    from shipcosim.staging import set_file_aside
+
+    reading = Reading(
+        parameters=parameters or [],
+        components=parsed_components(components or ()),
+        fmus=fmus or [],
+        strict=strict,
+    )
+    times = {"stop_time": stop_time, "step_size": step_size}
+    keys = {name: time for name, time in times.items() if time is not None}
+    system, scenario, remarks = system_and_scenario(what, reading, keys)
+    print_problems([*system.deviations, *remarks])
+    target = out / f"{scenario.name or system.name}.html"
+    set_file_aside(target, force=force)
+    with progress_of("Compiling") as progress:
+        export_page(system, scenario, target, progress)
     say(shown_path(target))
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import degrees
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +13,14 @@ from shipcosim.angles import unwrap_series
 from shipcosim.report.run.predictions import predicted_tracks
 from shipcosim.report.run.roles import find_roles
 from shipcosim.report.run.track import hull_outline, outline_rows, symbol_size
-from shipcosim.report.run.vessels import DrawnThruster, Vessel, find_vessels, in_unit, start_values
+from shipcosim.report.run.vessels import (
+    DrawnThruster,
+    Vessel,
+    conversion_to,
+    find_vessels,
+    in_unit,
+    start_values,
+)
 from shipcosim.report.theme.display import is_constant
 from shipcosim.report.theme.packing import LEVELS, packed_series
 from shipcosim.report.theme.views import JsonObject
@@ -26,6 +33,29 @@ EXACT = 1e9  # steps of the time axis
 METRES = 0.01  # what a screen can tell apart
 DEGREES = 0.02
 FLOWS = {"wind": ("from", -1.0), "current": ("to", 1.0)}  # named by where it comes from or goes to
+
+
+class Recipe(NamedTuple):
+    """How a column follows from signals: ``factor * signal + offset``, times cosine or sine of an angle in rad.
+
+    Attributes
+    ----------
+    signal : str
+    factor, offset : float
+    angle : str
+        Signal of the angle; none where empty.
+    trigonometric : str
+        ``"cos"`` or ``"sin"``.
+    turns : bool
+        Whether it is an angle in degrees that goes on beyond a turn.
+    """
+
+    signal: str
+    factor: float = 1.0
+    offset: float = 0.0
+    angle: str = ""
+    trigonometric: str = ""
+    turns: bool = False
 
 
 @dataclass(frozen=True)
@@ -52,6 +82,8 @@ class Run:
         What had to be supposed.
     predicted : list of dict
         Tracks that predictors foretold, of the first vessel.
+    recipes : dict of str to Recipe
+        How the columns follow from signals, for a run that goes on; the page of a finished run has none.
     """
 
     label: str
@@ -63,6 +95,7 @@ class Run:
     watch: dict[str, float]
     read_as: list[str]
     predicted: list[JsonObject]
+    recipes: dict[str, Recipe] = field(default_factory=dict)
 
 
 @dataclass
@@ -72,6 +105,7 @@ class _Columns:
     table: Dataset
     rows: NDArray
     packed: JsonObject = field(default_factory=dict)
+    recipes: dict[str, Recipe] = field(default_factory=dict)
     without_unit: list[str] = field(default_factory=list)
 
     def add(self, name: str | None, unit: str, resolution: float = np.inf) -> str | None:
@@ -90,17 +124,29 @@ class _Columns:
                 f"{name} in {'rad' if unit == 'deg' else unit.removeprefix('k')}"
             )
         # Angles without jumps, so that the display can interpolate.
-        self.put(name, unwrap_degrees(values) if unit == "deg" else values, resolution)
+        recipe = Recipe(
+            name, *(self.conversion_of(name, unit) if unit else (1.0, 0.0)), turns=unit == "deg"
+        )
+        self.put(name, unwrap_degrees(values) if unit == "deg" else values, recipe, resolution)
         return name
 
-    def put(self, name: str, values: ArrayLike, resolution: float = np.inf) -> str:
+    def conversion_of(self, name: str, unit: str) -> tuple[float, float]:
+        """Factor and offset from a signal's own unit to another one."""
+        return conversion_to(self.table, name, unit) or (1.0, 0.0)
+
+    def put(self, name: str, values: ArrayLike, recipe: Recipe, resolution: float = np.inf) -> str:
         """Pack values under a name."""
+        self.recipes[name] = recipe
         self.packed[name] = _packed(np.asarray(values, float)[self.rows], resolution)
         return name
 
 
 def make_run(
-    table: Dataset, verdicts: Sequence[Verdict] = (), label: str = "", shift: float = 0.0
+    table: Dataset,
+    verdicts: Sequence[Verdict] = (),
+    label: str = "",
+    shift: float = 0.0,
+    goes_on: bool = False,
 ) -> Run | None:
     """The scene of one run; None where nothing in it has a position and a heading.
 
@@ -114,6 +160,8 @@ def make_run(
         Name of the run, where there are two.
     shift : float
         Added to its times. [s]
+    goes_on : bool
+        Whether the page goes on with the run: then flows that are zero so far are shown, too.
 
     Returns
     -------
@@ -126,7 +174,7 @@ def make_run(
     drawn = [made for vessel in vessels if (made := _vessel(vessel, columns)) is not None]
     if not drawn:
         return None
-    flows = _flows(table, columns)
+    flows = _flows(table, columns, goes_on)
     # The page says how names were read, and which units were assumed.
     supposed = [
         f"{names[0]} north, {names[1]} east, {names[2]} heading"
@@ -151,6 +199,7 @@ def make_run(
         _watch(table),
         supposed,
         predicted_tracks(table, shift),
+        columns.recipes if goes_on else {},
     )
 
 
@@ -266,21 +315,33 @@ def _force(unit: DrawnThruster, columns: _Columns) -> list[str] | None:
     thrust = in_unit(columns.table, unit.thrust, "kN")
     if angle is None or thrust is None:
         return None
-    parts = {"forward": thrust * np.cos(angle), "starboard": thrust * np.sin(angle)}
-    return [columns.put(f"{unit.name} force {way}", values) for way, values in parts.items()]
+    assert unit.azimuth is not None
+    recipe = Recipe(unit.thrust, *columns.conversion_of(unit.thrust, "kN"), unit.azimuth)
+    return [
+        columns.put(
+            f"{unit.name} force forward",
+            thrust * np.cos(angle),
+            recipe._replace(trigonometric="cos"),
+        ),
+        columns.put(
+            f"{unit.name} force starboard",
+            thrust * np.sin(angle),
+            recipe._replace(trigonometric="sin"),
+        ),
+    ]
 
 
-def _flows(table: Dataset, columns: _Columns) -> list[JsonObject]:
+def _flows(table: Dataset, columns: _Columns, goes_on: bool) -> list[JsonObject]:
     """Wind and current as velocity north and east, waves as height and direction, if logged."""
     roles = find_roles(table.data_vars)
     found: list[JsonObject] = []
     # Flows that are zero all along are not shown.
     for what, (sense, sign) in FLOWS.items():
-        values = _velocity(table, roles.anywhere, what, sense, sign)
-        if values is not None and np.nanmax(np.hypot(*values), initial=0.0) > 0.0:
+        parts = _velocity(table, roles.anywhere, what, sense, sign)
+        if parts and (goes_on or np.nanmax(np.hypot(*(v for v, _ in parts)), initial=0.0) > 0.0):
             names = [
-                columns.put(f"{what} {way}", v)
-                for way, v in zip(("north", "east"), values, strict=True)
+                columns.put(f"{what} {way}", *part)
+                for way, part in zip(("north", "east"), parts, strict=True)
             ]
             found.append({"what": what, "sense": sense, "velocity": names})
     # Waves need height and direction.
@@ -289,29 +350,37 @@ def _flows(table: Dataset, columns: _Columns) -> list[JsonObject]:
     )
     height = columns.add(heights, "m")
     source = columns.add(sources, "deg")
-    if height is not None and source is not None and np.nanmax(table[height].values) > 0.0:
+    if height and source and (goes_on or np.nanmax(table[height].values) > 0.0):
         found.append({"what": "waves", "sense": "from", "height": height, "direction": source})
     return found
 
 
 def _velocity(
     table: Dataset, anywhere: Any, what: str, sense: str, sign: float
-) -> list[NDArray] | None:
-    """Velocity north and east: by its components, else by speed and direction. [m/s]"""
+) -> list[tuple[NDArray, Recipe]]:
+    """Velocity north and east, and how it follows: by its components, else by speed and direction. [m/s]"""
     # Components are exact; read them first.
     parts = [_first_in(table, anywhere(f"{what}_{way}")) for way in ("north", "east")]
-    read = [None if name is None else in_unit(table, name, "m/s") for name in parts]
-    if all(values is not None for values in read):
-        return [values for values in read if values is not None]
+    read = [
+        (values, Recipe(name, *(conversion_to(table, name, "m/s") or (1.0, 0.0))))
+        for name in parts
+        if name is not None and (values := in_unit(table, name, "m/s")) is not None
+    ]
+    if len(read) == 2:
+        return read
     # Else speed and direction; a direction "from" points against the velocity.
-    named = [_first_in(table, anywhere(f"{what}_{part}")) for part in ("speed", sense)]
-    speed = None if named[0] is None else in_unit(table, named[0], "m/s")
-    angle = None if named[1] is None else in_unit(table, named[1], "rad")
-    return (
-        None
-        if speed is None or angle is None
-        else [sign * speed * np.cos(angle), sign * speed * np.sin(angle)]
-    )
+    speed, angle = (_first_in(table, anywhere(f"{what}_{part}")) for part in ("speed", sense))
+    if speed is None or angle is None:
+        return []
+    size, direction = in_unit(table, speed, "m/s"), in_unit(table, angle, "rad")
+    if size is None or direction is None:
+        return []
+    factor, _ = conversion_to(table, speed, "m/s") or (1.0, 0.0)
+    recipe = Recipe(speed, sign * factor, 0.0, angle)
+    return [
+        (sign * size * np.cos(direction), recipe._replace(trigonometric="cos")),
+        (sign * size * np.sin(direction), recipe._replace(trigonometric="sin")),
+    ]
 
 
 def _first_in(table: Dataset, names: Iterable[str]) -> str | None:

@@ -139,15 +139,21 @@ def start_values(table: Dataset) -> dict[str, Any]:
 
 def in_unit(table: Dataset, name: str, unit: str) -> NDArray | None:
     """Values of a signal in a unit, (n,); None for another quantity. SI where it has no unit."""
-    # A conversion that fails means another quantity.
+    found = conversion_to(table, name, unit)
+    if found is None:
+        return None
+    factor, offset = found
+    return factor * np.asarray(table[name].values, float) + offset
+
+
+def conversion_to(table: Dataset, name: str, unit: str) -> tuple[float, float] | None:
+    """Factor and offset from a signal's unit to another one; None for another quantity."""
+    # Without a unit: SI, so N for kN and rad for deg.
+    own = table[name].attrs.get("units") or {"kN": "N", "deg": "rad"}.get(unit, unit)
     try:
-        factor, offset = conversion(table[name].attrs.get("units") or None, unit)
+        return conversion(own, unit)
     except ShipcosimError:
         return None
-    # Without a unit: SI, so N for kN and rad for deg.
-    if not table[name].attrs.get("units"):
-        factor, offset = conversion({"kN": "N", "deg": "rad"}.get(unit, unit), unit)
-    return factor * np.asarray(table[name].values, float) + offset
 
 
 def _plain(connector: str) -> str:

@@ -32,6 +32,11 @@ def packed_text(text: str) -> str:
     return base64.b64encode(gzip.compress(text.encode(), 6, mtime=0)).decode()
 
 
+def packed_bytes(content: bytes) -> str:
+    """Bytes of a page, compressed and in letters, as short as can be."""
+    return base64.b64encode(gzip.compress(content, 9, mtime=0)).decode()
+
+
 def packed_data(data: Any) -> str:
     """Data of a page as compressed JSON, records by their fields; NaN and infinity are an error."""
     return packed_text(json.dumps(data, separators=(",", ":"), allow_nan=False, default=vars))

@@ -8,7 +8,7 @@
   // ---- what there is to see
 
   const size = (vessel) => vessel.size[0];
-  const largest = Math.max(...runs.flatMap((run) => run.vessels.flatMap((vessel) => vessel.units.flatMap((unit) => (unit.force && unit.place ? forces(run, unit) : [])))), 0);
+  const largest = report.live ? Math.max(...runs.flatMap((run) => run.vessels.flatMap((vessel) => vessel.units.map(({ limits, largest: most }) => Math.max(...(limits || [most]).map(Math.abs))))), 0) : Math.max(...runs.flatMap((run) => run.vessels.flatMap((vessel) => vessel.units.flatMap((unit) => (unit.force && unit.place ? forces(run, unit) : [])))), 0);
   function forces(run, unit) {
     const [x, y] = unit.force.map((name) => run.columns[name]);
     let most = 0;
@@ -17,8 +17,11 @@
   }
   const VECTOR = 0.6;  // length of the largest force, over the ship's
 
-  function extent() {
-    const box = { east: [Infinity, -Infinity], north: [Infinity, -Infinity] };
+  const box = { east: [Infinity, -Infinity], north: [Infinity, -Infinity] };
+  let seen = 0;  // rows of a run that goes on which the box holds
+  function extend() {
+    const first = seen;
+    seen = runs[0].time.length;
     const hold = (e, n, around) => {
       if (!Number.isFinite(e + n)) return;
       box.east = [Math.min(box.east[0], e - around), Math.max(box.east[1], e + around)];
@@ -27,16 +30,16 @@
     for (const run of runs) {
       for (const vessel of run.vessels) {
         const [north, east] = vessel.pose.map((name) => run.columns[name]);
-        for (let k = 0; k < north.length; k++) hold(east[k], north[k], 0.6 * size(vessel));
-        for (const [n, e] of Object.values(vessel.aims).map((names) => names.map((name) => run.columns[name]))) for (let k = 0; k < n.length; k += 10) hold(e[k], n[k], 0);
+        for (let k = first; k < north.length; k++) hold(east[k], north[k], 0.6 * size(vessel));
+        for (const [n, e] of Object.values(vessel.aims).map((names) => names.map((name) => run.columns[name]))) for (let k = first; k < n.length; k += 10) hold(e[k], n[k], 0);
       }
       for (const { centre, radius } of run.circles) hold(centre[1], centre[0], radius);
     }
-    return box;
   }
-  const box = extent();
+  extend();
 
   function projection(width, height, states) {
+    if (report.live && seen !== runs[0].time.length) extend();
     const middle = { east: (box.east[0] + box.east[1]) / 2, north: (box.north[0] + box.north[1]) / 2 };
     let scale = Math.min((width - 70) / (box.east[1] - box.east[0] || 1), (height - 50) / (box.north[1] - box.north[0] || 1));
     const own = states.map(scene.of).find(Boolean);
@@ -90,6 +93,7 @@
   const number = (v, digits) => (Math.abs(v) >= 1e6 ? v.toExponential(1) : (v === 0 ? 0 : v).toFixed(digits)).replace("-", "−").replace(/^−(0(\.0*)?)$/, "$1");
 
   function background(c, p, run) {
+    if (report.live) return;  // there is no track yet to paint once
     for (const vessel of run.vessels) {
       const [north, east] = vessel.pose.map((name) => run.columns[name]), [n, e, h] = vessel.way;
       n.forEach((_, k) => { const corners = placed(vessel, n[k], e[k], h[k]); path(c, p, corners.east, corners.north, true); stroke(c, `${run.colour}/0.28`, 1, k ? [] : [5, 4]); });
@@ -101,6 +105,7 @@
   function trails(c, p, { run, where }) {
     for (const vessel of run.vessels) {
       const [north, east] = vessel.pose.map((name) => run.columns[name]), until = where ? where.row + 1 : 0;
+      if (report.live && vessel.aims.reference) { const [rn, re] = vessel.aims.reference.map((name) => run.columns[name].subarray(0, until)); path(c, p, re, rn); stroke(c, "orange", 1.3, [6, 5]); }
       path(c, p, east.subarray(0, until), north.subarray(0, until)); stroke(c, run.colour, 2);
     }
   }
@@ -222,6 +227,7 @@
     legend(p);
     return drawn;
   });
+  scene.place = (x, y) => ({ east: shown.east(x), north: shown.north(y) });
   scene.pixel = (east, north) => [shown.x(east), shown.y(north)];  // of the chart, in pixels of the style sheet
 
   // ---- key, and what the reader turns

@@ -2,12 +2,12 @@
 const scene = (() => {
   const section = document.getElementById("scene");
   if (!section) return null;
-  const { data } = report;
+  const { data, live } = report;  // live: a run that goes on
 
   // ---- the table
 
   const COLOURS = ["blue", "purple"];
-  const runs = data.scene.map((run, k) => {
+  const runs = live ? live.runs : data.scene.map((run, k) => {
     const time = report.series(run.time), columns = {};
     for (const [name, packed] of Object.entries(run.columns)) columns[name] = report.series(packed, time.length);
     const predicted = run.predicted.map((one) => {
@@ -16,7 +16,8 @@ const scene = (() => {
     });
     return { ...run, time, columns, predicted, colour: COLOURS[k] };
   });
-  const start = Math.min(...runs.map((run) => run.time[0])), end = Math.max(...runs.map((run) => run.time[run.time.length - 1]));
+  const start = Math.min(...runs.map((run) => run.time[0]));
+  let end = Math.max(...runs.map((run) => run.time[run.time.length - 1]));
 
   // Last row at or before a time, and how far the time is on the way to the next; null outside of the run.
   function place(run, t) {
@@ -113,7 +114,7 @@ const scene = (() => {
   const shades = new Map();  // what the style sheet says of a colour, asked once
   const colour = (name) => shades.get(name) ?? shades.set(name, report.colour(name)).get(name);
 
-  const self = { runs, start, end, time: end, speed: 16, playing: false, frames: 0, chosen: 0, ghost: null, at, placed, compass, wrapped, colour, drawn: [] };
+  const self = { runs, start, get end() { return end; }, time: end, speed: live ? 1 : 16, playing: false, frames: 0, chosen: 0, ghost: null, at, placed, compass, wrapped, colour, drawn: [] };
   const painters = [], writers = [];
   let read = 0;
   self.paints = (painter) => painters.push(painter);  // on canvases, every frame
@@ -153,20 +154,23 @@ const scene = (() => {
   let last = 0;
   function step(now) {
     if (!self.playing) return;
-    self.time = Math.min(self.time + (Math.min(now - last, 250) / 1000) * self.speed, end);
+    const due = self.time + (Math.min(now - last, 250) / 1000) * self.speed;
+    if (live) self.grown(live.reach(due));
+    self.time = Math.min(due, end);
     last = now;
     self.paint();
-    if (self.time >= end) self.pause(); else requestAnimationFrame(step);
+    if (live ? live.stopped : self.time >= end) self.pause(); else requestAnimationFrame(step);
   }
 
   self.play = () => {
     if (self.playing) return;
-    if (self.time >= end) self.time = start;
+    if (self.time >= end && !live) self.time = start;
     self.playing = true;
     last = performance.now();
     requestAnimationFrame(step);
     label();
   };
+  self.grown = (last) => { end = last; slider.max = end; };  // the record has another end
   self.pause = () => { self.playing = false; label(); self.refresh(); keep(); };
   self.toggle = () => (self.playing ? self.pause() : self.play());
 
@@ -175,7 +179,7 @@ const scene = (() => {
   const by = (name) => document.getElementById(`scene-${name}`);
   const slider = by("time"), clock = by("clock"), play = by("play"), speed = by("speed");
   Object.assign(slider, { min: start, max: end, value: end });
-  const label = () => { play.textContent = self.playing ? "Pause" : "Play"; };
+  const label = () => { play.textContent = self.playing ? "Pause" : live ? "Run" : "Play"; };
 
   function stamp(t) {
     const whole = Math.floor(t - start), two = (n) => String(n).padStart(2, "0"), hours = Math.floor(whole / 3600);

@@ -6,9 +6,9 @@ const report = (() => {
 
   // ---- what the page brings, compressed
 
-  async function unpacked(id) {
+  function unpacked(id) {
     const bytes = Uint8Array.from(atob(document.getElementById(id).textContent), (c) => c.charCodeAt(0));
-    return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).text();
+    return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip")));
   }
 
   async function start(page) {
@@ -16,12 +16,13 @@ const report = (() => {
       document.body.insertAdjacentText("afterbegin", "The figures need a browser of 2023 or later.");
       return;
     }
-    const [library, data] = await Promise.all(["plotly", "data"].map(unpacked));
-    const script = document.createElement("script");
-    script.textContent = library;
-    document.head.append(script);
-    shared.data = JSON.parse(data);
-    page();
+    shared.data = await unpacked("data").json();
+    if (document.getElementById("plotly")) {
+      const script = document.createElement("script");
+      script.textContent = await unpacked("plotly").text();
+      document.head.append(script);
+    }
+    await page();
     schedule();
   }
 
@@ -128,5 +129,5 @@ const report = (() => {
     for (const place of document.querySelectorAll(".js-plotly-plot")) Plotly.relayout(place, { width: null, height: null, autosize: true });
   });
   addEventListener("scheme", () => drawings.forEach((how, place) => later(place, how)));
-  return Object.assign(shared, { start, series, colour, markup, painted, traces, axis, layout, narrow, makeRoom, draw, later });
+  return Object.assign(shared, { start, unpacked, series, colour, markup, painted, traces, axis, layout, narrow, makeRoom, draw, later });
 })();

@@ -1,0 +1,192 @@
+"""A system as WebAssembly: its components' models in C, its wiring, and the loop of the native engine."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+import sys
+import zipfile
+from collections.abc import Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from shipcosim.cosim.master.plan import Plan, label, make_plan
+from shipcosim.cosim.slaves.instances import Instances
+from shipcosim.cosim.webassembly.wiring import Wiring
+from shipcosim.errors import Problem, ShipcosimError, error_at
+from shipcosim.library import cache
+from shipcosim.native.compiler import EXACT, check_installed
+from shipcosim.native.export.functions import understood
+from shipcosim.native.export.text import source_of_model
+from shipcosim.native.export.variants import variant_of
+from shipcosim.native.symbols import Untraceable
+from shipcosim.options import CountProgress
+from shipcosim.scenario import Scenario
+from shipcosim.ssp import Component, System
+from shipcosim.temporary import replace_file, temporary_folder
+
+TARGET = ("-target", "wasm32-wasi", "-Os", "-g0", "-std=c11", EXACT)
+CALLS = (
+    *("start", "advance", "record", "modify", "release", "give", "set", "change_start"),
+    *("step", "rows", "words", "table", "sources", "inputs"),
+)
+"""What a page calls, in `desk.c`."""
+
+REMEDY = "Run the system with `shipcosim run`, or give this component an FMU that compiles."
+
+
+@dataclass(frozen=True)
+class Module:
+    """A system that runs in a page.
+
+    Attributes
+    ----------
+    code : bytes
+        WebAssembly without imports from its host.
+    plan : Plan
+    wiring : Wiring
+    """
+
+    code: bytes
+    plan: Plan
+    wiring: Wiring
+
+
+def make_module(
+    system: System, scenario: Scenario, progress: CountProgress | None = None
+) -> Module:
+    """Compile a system.
+
+    Parameters
+    ----------
+    system : System
+        Checked, with the scenario's start values.
+    scenario : Scenario
+        Checked; its values in the units of the signals.
+    progress : callable, optional
+        Called with (components done, in all).
+
+    Raises
+    ------
+    ShipcosimError
+        With every component that has no native code, and why; or the compiler is missing or fails.
+    """
+    check_installed()
+    # Every input gets a row, so that the page can change it.
+    inputs = [
+        label((component.name, variable.name))
+        for component in system.components.values()
+        for variable in component.variables.values()
+        if variable.causality == "input" and variable.kind in ("Real", "Integer", "Boolean")
+    ]
+    plan = make_plan(system, scenario, (), inputs)
+    texts = _texts(system, progress)
+    # Components with the same text share its functions.
+    prefixes = {text: f"fmu{n}_" for n, text in enumerate(dict.fromkeys(texts.values()))}
+    of_component = {name: (prefixes[text], _guid(text)) for name, text in texts.items()}
+    wiring = Wiring(plan, scenario, of_component)
+    desk = "\n".join(
+        [
+            files("shipcosim.native").joinpath("loop.c").read_text(encoding="utf-8"),
+            _runtime("desk.h"),
+            wiring.text(),
+            _runtime("desk.c"),
+        ]
+    )
+    return Module(_linked([*prefixes.items(), (desk, "")]), plan, wiring)
+
+
+def _texts(system: System, progress: CountProgress | None) -> dict[str, str]:
+    """C texts of all components, by name."""
+    found = {}
+    problems = []
+    known: dict[Any, str] = {}
+    with Instances() as instances:
+        for done, component in enumerate(system.components.values(), start=1):
+            # Components that share FMU and start values share their text.
+            key = component.fmu.path, repr(sorted(component.start.items()))
+            try:
+                if key not in known:
+                    known[key] = _text_of(component, instances)
+                found[component.name] = known[key]
+            except Untraceable as reason:
+                problems.append(Problem(component.name, f"has no native code: {reason}.", REMEDY))
+            if progress is not None:
+                progress(done, len(system.components))
+    if problems:
+        raise ShipcosimError(problems)
+    return found
+
+
+def _text_of(component: Component, instances: Instances) -> str:
+    """C text of a component's FMU, for its start values."""
+    # A native FMU brings its text along.
+    with zipfile.ZipFile(component.fmu.path) as archive:
+        if "sources/all.c" in archive.namelist():
+            return archive.read("sources/all.c").decode()
+    instance = instances.instance_of(component).python_object
+    if instance is None:
+        raise Untraceable("it is an FMU of another tool, without a model in C of this package")
+    cls: Any = type(instance)
+    package = cls.__module__.partition(".")[0]
+    words = sys.modules[f"{package}.shipcosim.fmi.failures"].text_of
+    with understood(package):
+        variant = variant_of(cls, component.start, cls.default_step_size)
+        return source_of_model(cls, component.fmu.path.stem, "", [variant], words)
+
+
+def _guid(text: str) -> str:
+    """The GUID that a text was written with."""
+    return text.partition('#define GUID "')[2].partition('"')[0]
+
+
+def _runtime(name: str) -> str:
+    return files("shipcosim.cosim.webassembly").joinpath(name).read_text(encoding="utf-8")
+
+
+def _linked(sources: Sequence[tuple[str, str]]) -> bytes:
+    """Compile texts, each with a prefix for its functions of FMI, and link them."""
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        objects = list(pool.map(lambda one: _object(*one), sources))
+    with temporary_folder() as folder:
+        for number, content in enumerate(objects):
+            Path(folder, f"{number}.o").write_bytes(content)
+        options = [
+            "-mexec-model=reactor",
+            "-Wl,--strip-all",
+            "-Wl,-z,stack-size=4194304",
+            "-Wl,--export=__global_base",
+        ]
+        options += [f"-Wl,--export=desk_{name}" for name in CALLS]
+        names = [f"{number}.o" for number in range(len(objects))]
+        _compile([*options, *names, "-o", "desk.wasm"], folder)
+        return Path(folder, "desk.wasm").read_bytes()
+
+
+def _object(source: str, prefix: str) -> bytes:
+    """Compile a text or read it from the cache. A cache that cannot be written keeps nothing."""
+    key = hashlib.sha256(repr((source, prefix, TARGET)).encode()).hexdigest()[:32]
+    path = cache() / "native" / f"{key}.wasm.o"
+    if path.is_file():
+        return path.read_bytes()
+    with temporary_folder() as folder:
+        Path(folder, "all.c").write_text(source, encoding="utf-8")
+        named = [f"-DFMI2_FUNCTION_PREFIX={prefix}"] if prefix else []
+        _compile([*named, "-c", "all.c", "-o", "all.o"], folder)
+        content = Path(folder, "all.o").read_bytes()
+    try:
+        replace_file(path, content)
+    except OSError:
+        pass
+    return content
+
+
+def _compile(arguments: Iterable[str], folder: str | Path) -> None:
+    command = [sys.executable, "-m", "ziglang", "cc", *TARGET, *arguments]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise error_at("compiler for WebAssembly", f"fails: {done.stderr.strip()[:1000]}")

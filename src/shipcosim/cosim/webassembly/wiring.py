@@ -1,0 +1,364 @@
+"""C text of a system's wiring: the tables that `native/loop.c` and `desk.c` work on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from shipcosim.cosim.master.instantiate import make_exchanges
+from shipcosim.cosim.master.plan import Plan, label
+from shipcosim.cosim.master.result import recorded_rows
+from shipcosim.cosim.master.signals import Exchange
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.native.source import literal
+from shipcosim.scenario import Scenario
+from shipcosim.ssp import Component
+from shipcosim.units import whole_steps
+
+KINDS = ("Real", "Integer", "Boolean")
+"""In the order in which a component's memory holds them."""
+
+MOST_STEPS = 4096
+"""Steps that one call of the page can make."""
+
+
+@dataclass(frozen=True)
+class StartValue:
+    """A start value, which the page can change before a start where it is a number.
+
+    Attributes
+    ----------
+    place : int
+        Among all of them.
+    signal, unit : str
+    value : number, bool or text
+    """
+
+    place: int
+    signal: str
+    value: float | bool | str
+    unit: str
+
+
+class Wiring:
+    """The wiring of a planned system.
+
+    Parameters
+    ----------
+    plan : Plan
+        Of the run; every input that the page may change has a row.
+    scenario : Scenario
+        Steps and times.
+    prefixes : dict of str to (prefix, guid)
+        How the C functions of each component's FMU begin, and its GUID.
+
+    Attributes
+    ----------
+    exchanges : dict of str to Exchange
+        By kind.
+    kinds : list of str
+        In the order of the tables.
+    step : Fraction
+        Of the exchange. [s]
+    steps_per_row, most_steps : int
+        Steps from one recorded row to the next; steps that one call can make.
+    starts : list of StartValue
+        Known once the text is written.
+
+    Raises
+    ------
+    ShipcosimError
+        With what the page cannot exchange: texts, connections into parameters, integers of 64 bits.
+    """
+
+    def __init__(self, plan: Plan, scenario: Scenario, prefixes: dict[str, tuple[str, str]]):
+        self._plan = plan
+        self._scenario = scenario
+        self._prefixes = prefixes
+        _check(plan)
+        self.exchanges: dict[str, Exchange] = make_exchanges(plan)
+        self.kinds = [*self.exchanges]
+        self._lines: list[str] = []
+        self.starts: list[StartValue] = []
+        self.step = step = Fraction(repr(scenario.step_size))
+        self.most_steps = MOST_STEPS
+        self.steps_per_row = (
+            whole_steps(scenario.output_interval or scenario.step_size, scenario.step_size) or 1
+        )
+        self._constants = {
+            "STEP_NUMERATOR": str(step.numerator),
+            "STEP_DENOMINATOR": str(step.denominator),
+            "START_TIME": "0.0",
+            "STOP_TIME": literal(float(scenario.stop_time)),
+            "MOST_STEPS": str(MOST_STEPS),
+            "MOST_MULTIPLE": str(max(plan.multiples.values())),
+            "N_PARTS": str(len(plan.system.components)),
+            "N_INPUTS": str(sum(len(e.inputs) for e in self.exchanges.values())),
+        }
+
+    @property
+    def columns(self) -> dict[str, list[str]]:
+        """Names of the columns that the loop records, by kind."""
+        found = {}
+        for kind in self.kinds:
+            layout = self._plan.layouts[kind]
+            external, inputs = recorded_rows(self._plan, kind)
+            names = list(layout.external)
+            ends = [*layout.outputs, *(names[i] for i in external)]
+            found[kind] = [label(end) for end in (*ends, *(layout.inputs[i] for i in inputs))]
+        return found
+
+    def text(self) -> str:
+        """The tables as C."""
+        components = [*self._plan.system.components.values()]
+        # Each FMU's functions once, however many components use it.
+        found = dict.fromkeys(self._prefixes[component.name] for component in components)
+        self._lines = [f"DECLARED({prefix})" for prefix, _ in found]
+        rows = [f'{{"{guid}", FUNCTIONS({prefix})}}' for prefix, guid in found]
+        self._table("static const Fmu fmus[]", rows)
+        for number, (kind, exchange) in enumerate(self.exchanges.items()):
+            self._arrays_of(number, kind, exchange)
+        self._table(
+            "static Exchange exchanges[]",
+            [self._exchange(*one) for one in enumerate(self.exchanges.items())],
+        )
+        self._external_values()
+        values = [self._part_arrays(n, component) for n, component in enumerate(components)]
+        order = [*found]
+        parts = [
+            self._part(n, component, order.index(self._prefixes[component.name]))
+            for n, component in enumerate(components)
+        ]
+        self._table("static Part parts[]", parts)
+        self._lines.append("static int step_part(double *, double *, Call, void *);")
+        self._lines.append("static int give_up(int, int64_t);")
+        self._table(
+            "static Component components[]",
+            [
+                self._component(n, component, size)
+                for n, (component, size) in enumerate(zip(components, values, strict=True))
+            ],
+        )
+        self._constants["MOST_VALUES"] = str(max(sum(sizes) for sizes in values) + 1)
+        self._start_values(components)
+        real = self.kinds.index("Real") if "Real" in self.kinds else -1
+        self._lines.append(
+            f"static System desk = {{{len(self.kinds)}, {len(components)}, exchanges, components, 0, 0, "
+            f"{self.steps_per_row}, 0, give_up, {real}, 0}};"
+        )
+        head = [f"#define {name} {value}" for name, value in self._constants.items()]
+        return "\n".join([*head, *self._lines, ""])
+
+    def _table(self, head: str, rows: Sequence[str]) -> None:
+        self._lines += [f"{head} = {{", *(f"    {row}," for row in rows), "};"]
+
+    def _array(self, name: str, kind: str, values: Iterable[Any], changes: bool = False) -> str:
+        """Write an array and return its name; one number more, since C has no empty ones."""
+        numbers = [literal(float(v)) if kind == "double" else str(int(v)) for v in values]
+        const = "" if changes else "const "
+        self._lines.append(f"static {const}{kind} {name}[] = {{{', '.join([*numbers, '0'])}}};")
+        return name
+
+    def _arrays_of(self, number: int, kind: str, exchange: Exchange) -> None:
+        """Arrays of an exchange's values, of its modifiers and of its rows."""
+        ctype = "double" if kind == "Real" else "int32_t"
+        n_inputs = len(exchange.inputs)
+        sizes = {
+            "sources": len(exchange.sources),
+            "modified": len(exchange.sources),
+            "transferred": len(exchange.transferred),
+            "inputs": n_inputs,
+            "rows": (MOST_STEPS // self.steps_per_row + 2) * self._n_columns(kind, exchange),
+        }
+        for name, size in sizes.items():
+            self._lines.append(f"static {ctype} {name}_{number}[{size + 1}];")
+        # Room for a modifier of every value.
+        for side, size in (("output", len(exchange.sources)), ("input", n_inputs)):
+            self._lines.append(f"static int64_t {side}_row_{number}[{size + 1}];")
+            for part in ("scale", "shift"):
+                self._lines.append(f"static double {side}_{part}_{number}[{size + 1}];")
+
+    def _n_columns(self, kind: str, exchange: Exchange) -> int:
+        external, inputs = recorded_rows(self._plan, kind)
+        return len(exchange.outputs) + len(external) + len(inputs)
+
+    def _exchange(self, number: int, pair: tuple[str, Exchange]) -> str:
+        """One row of the table of exchanges, in the order of the structure in `native/loop.c`."""
+        kind, exchange = pair
+        single, sums, _ = exchange.numbered
+        due = sorted(single, key=lambda one: one[1].period)
+        mappings = [connection.mapping for _, connection in due if connection.mapping is not None]
+        firsts = np.cumsum([0, *(len(mapping) for mapping in mappings)])
+        numbers = iter(range(len(mappings)))
+        others = [id(other) for other in self.exchanges.values()]
+        external, inputs = recorded_rows(self._plan, kind)
+
+        def whole(name: str, values: Iterable[Any]) -> str:
+            return self._array(f"{name}_{number}", "int64_t", values)
+
+        def real(name: str, values: Iterable[Any]) -> str:
+            return self._array(f"{name}_{number}", "double", values)
+
+        fields = [
+            int(kind == "Real"),
+            *(
+                len(array)
+                for array in (
+                    exchange.sources,
+                    exchange.outputs,
+                    exchange.inputs,
+                    exchange.transferred,
+                )
+            ),
+            *(f"{name}_{number}" for name in ("sources", "modified", "transferred", "inputs")),
+            len(due),
+            whole("source", (connection.source for _, connection in due)),
+            whole("target", (row for row, _ in due)),
+            whole("period", (connection.period for _, connection in due)),
+            real("factor", (connection.factor for _, connection in due)),
+            real("offset", (connection.offset for _, connection in due)),
+            whole("mapped", (-1 if c.mapping is None else next(numbers) for _, c in due)),
+            whole("mapping_first", firsts),
+            real("mapping_from", (key for mapping in mappings for key in mapping)),
+            real("mapping_to", (value for mapping in mappings for value in mapping.values())),
+            len(sums),
+            whole("sum_row", (row for row, _ in sums)),
+            whole("sum_first", (terms.start for _, terms in sums)),
+            whole("sum_end", (terms.stop for _, terms in sums)),
+            len(exchange.type_changes),
+            whole("change_row", (row for row, _, _ in exchange.type_changes)),
+            whole("change_exchange", (others.index(id(o)) for _, o, _ in exchange.type_changes)),
+            whole("change_source", (source for _, _, source in exchange.type_changes)),
+            0,
+            0,
+            *(f"{side}_row_{number}" for side in ("output", "input")),
+            *(f"{s}_{part}_{number}" for s in ("output", "input") for part in ("scale", "shift")),
+            0,
+            f"rows_{number}",
+            self._n_columns(kind, exchange),
+            len(external),
+            len(inputs),
+            whole("external_columns", (len(exchange.outputs) + row for row in external)),
+            whole("input_columns", inputs),
+            0,
+        ]
+        return f"{{{', '.join(map(str, fields))}}}"
+
+    def _external_values(self) -> None:
+        """A function that gives values from outside their start values again."""
+        lines = []
+        for number, (kind, exchange) in enumerate(self.exchanges.items()):
+            ctype = "double" if kind == "Real" else "int32_t"
+            n = len(exchange.outputs)
+            name = self._array(f"external_{number}", ctype, exchange.external)
+            size = f"{len(exchange.external)} * sizeof({ctype})"
+            lines.append(f"    memcpy(sources_{number} + {n}, {name}, {size});")
+        self._lines += ["static void restore_external(void)", "{", *lines, "}"]
+
+    def _rows(self, component: Component, side: int) -> list[tuple[int, int, int]]:
+        """(value reference, exchange, row) of a component's outputs or inputs, in the memory's order."""
+        found = []
+        for kind in KINDS:
+            if kind not in self.exchanges:
+                continue
+            first, variables = self._plan.rows(kind, component.name)[side]
+            number = self.kinds.index(kind)
+            found += [(v.value_reference, number, first + i) for i, v in enumerate(variables)]
+        return found
+
+    def _part_arrays(self, number: int, component: Component) -> tuple[int, int]:
+        """Arrays of a component; how many inputs and outputs it has."""
+        outputs, inputs = (self._rows(component, side) for side in (0, 1))
+        for word, rows, first in (("input", inputs, 0), ("output", outputs, len(inputs))):
+            self._array(f"part_{number}_{word}s", "unsigned", (row[0] for row in rows))
+            self._array(f"part_{number}_{word}_place", "int64_t", range(first, first + len(rows)))
+            self._array(f"part_{number}_{word}_exchange", "int64_t", (row[1] for row in rows))
+            self._array(f"part_{number}_{word}_row", "int64_t", (row[2] for row in rows))
+        self._lines.append(f"static double memory_of_{number}[{len(inputs) + len(outputs) + 2}];")
+        return len(inputs), len(outputs)
+
+    def _part(self, number: int, component: Component, fmu: int) -> str:
+        feeds = any(
+            connection.source[0] == component.name and connection.target[0] is not None
+            for connection in self._plan.system.connections
+        )
+        counts = [
+            "{" + ", ".join(
+                str(len(self._plan.rows(kind, component.name)[side][1]))
+                if kind in self.exchanges
+                else "0"
+                for kind in KINDS
+            ) + "}"
+            for side in (1, 0)
+        ]  # fmt: skip
+        arrays = f"part_{number}_inputs, part_{number}_outputs, NULL"
+        return f'{{fmus + {fmu}, "{component.name}", {int(feeds)}, {", ".join(counts)}, {arrays}}}'
+
+    def _component(self, number: int, component: Component, size: tuple[int, int]) -> str:
+        """One row of the loop's components; the component itself is what its step gets as `kept`."""
+        multiple = self._plan.multiples[component.name]
+        fields: list[Any] = [
+            "step_part",
+            f"memory_of_{number}",
+            f"(double *)(void *)(parts + {number})",
+            "0",
+            sum(size),
+            multiple,
+            literal(0.0),
+            *size,
+            *(
+                f"part_{number}_{word}_{part}"
+                for word in ("input", "output")
+                for part in ("place", "exchange", "row")
+            ),
+        ]
+        return f"{{{', '.join(map(str, fields))}}}"
+
+    def _start_values(self, components: Sequence[Component]) -> None:
+        """All start values, in the order in which the FMUs get them."""
+        rows = []
+        for number, component in enumerate(components):
+            for name, value in component.start.items():
+                variable = component.fmu.variables[name]
+                is_text = isinstance(value, str)
+                kind = "STRING" if is_text else (self._plan.kind(variable) or "").upper()
+                signal = label((component.name, name))
+                told_as = variable.unit or ""
+                self.starts.append(StartValue(len(rows), signal, value, told_as))  # pyright: ignore
+                shown = c_text(value) if isinstance(value, str) else "NULL"
+                told = "0.0" if isinstance(value, str) else literal(float(value))  # pyright: ignore
+                rows.append(f"{{{number}, {variable.value_reference}, {kind}, {told}, {shown}}}")
+        self._constants["N_STARTS"] = str(len(rows))
+        self._table("static Start starts[]", [*rows, "{0, 0, 0, 0.0, NULL}"])
+
+
+def c_text(value: str) -> str:
+    """A text as a C literal."""
+    escaped = "".join(
+        c if c.isascii() and c.isprintable() and c not in '"\\?'
+        else "".join(f"\\{byte:03o}" for byte in c.encode())
+        for c in value
+    )  # fmt: skip
+    return f'"{escaped}"'
+
+
+def _check(plan: Plan) -> None:
+    """Refuse what the loop in C does not exchange."""
+    problems = [
+        Problem(c.place or label(c.target), "It carries a text.", "Pages exchange numbers alone.")
+        for c in plan.string_connections
+    ]
+    problems += [
+        Problem(c.place or label(c.target), "It leads into a parameter.", "Give it a start value.")
+        for c in plan.parameter_connections
+    ]
+    if plan.layouts["Long"].inputs or plan.layouts["Long"].outputs:
+        problems.append(
+            Problem(plan.system.name, "It exchanges integers of 64 bits.", "Use those of 32 bits.")
+        )
+    if problems:
+        raise ShipcosimError(problems)

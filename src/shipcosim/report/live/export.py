@@ -1,0 +1,48 @@
+"""A system as one HTML file that runs it: from a disk, from a mail, without a network."""
+
+from __future__ import annotations
+
+from shipcosim.cosim import simulate
+from shipcosim.cosim.webassembly import make_module
+from shipcosim.errors import raise_errors
+from shipcosim.options import CountProgress, RunOptions
+from shipcosim.report.live.page import render_live
+from shipcosim.scenario import Scenario, check_scenario, units_of, with_numbers
+from shipcosim.series import write_file
+from shipcosim.ssp import AnyPath, System, with_values
+
+FIRST_ROWS = 3
+"""Rows of the run from which the scene is made: which signals belong to one ship shows where they move."""
+
+
+def export_page(
+    system: System, scenario: Scenario, path: AnyPath, progress: CountProgress | None = None
+) -> None:
+    """Write a page that runs a system itself.
+
+    Parameters
+    ----------
+    system : System
+        Checked.
+    scenario : Scenario
+        Its start values and events; its expectations are not judged.
+    path : path
+        HTML file; it is there completely or not at all.
+    progress : callable, optional
+        Called with (components compiled, in all).
+
+    Raises
+    ------
+    ShipcosimError
+        With every component that has no native code, and why; there is no compiler; system and scenario do not fit;
+        nothing in it is a ship; or the file cannot be written.
+    """
+    system = with_values(system, scenario.set, str(scenario.path or "scenario"))
+    raise_errors(check_scenario(scenario, system))
+    # Compile first: a component without native code is said before anything runs.
+    numbers = with_numbers(scenario, units_of(system))
+    module = make_module(system, numbers, progress)
+    interval = scenario.output_interval or scenario.step_size
+    until = min(FIRST_ROWS * interval, scenario.stop_time)
+    table = simulate(system, scenario, RunOptions(until=until))
+    write_file(path, render_live(module, table, numbers, scenario).encode())

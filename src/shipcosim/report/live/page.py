@@ -1,0 +1,188 @@
+"""The page that runs a system: its code, its signals, and the scene that follows them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from xarray import Dataset
+
+from shipcosim.cosim.master.events import changes
+from shipcosim.cosim.master.plan import Plan, label
+from shipcosim.cosim.master.time_grid import time_grid_of
+from shipcosim.cosim.webassembly import Module
+from shipcosim.errors import error_at
+from shipcosim.report.run.scene import Recipe, Run, make_run
+from shipcosim.report.theme.packing import packed_bytes
+from shipcosim.report.theme.pages import render as render_template
+from shipcosim.report.theme.views import Fact, JsonObject, Outcome, Page, known_facts
+from shipcosim.scenario import Scenario
+from shipcosim.ssp import Variable
+
+SIDES = ("output", "input", "external")
+"""Where a signal's value lies in an exchange."""
+
+PREDICTED = {"north": "x", "east": "y", "heading": "psi", "radius": "position_region"}
+"""Outputs of a predictor for each part of a predicted track, as in `interfaces.MotionPredictor`."""
+
+
+@dataclass(frozen=True)
+class LivePage(Page):
+    """What the page of a running system shows.
+
+    Attributes
+    ----------
+    code : str
+        WebAssembly, compressed and in letters.
+    remarks : tuple of str
+    """
+
+    code: str
+    remarks: tuple[str, ...]
+
+
+def render_live(module: Module, table: Dataset, scenario: Scenario, written: Scenario) -> str:
+    """The page as HTML.
+
+    Parameters
+    ----------
+    module : Module
+        The system's code.
+    table : xarray.Dataset
+        The first seconds of the run, from which the scene is made.
+    scenario : Scenario
+        With its values in the units of the signals.
+    written : Scenario
+        The same as its file says, for the scenario that the page saves.
+
+    Raises
+    ------
+    ShipcosimError
+        Nothing in the system has a position and a heading.
+    """
+    run = make_run(table, goes_on=True)
+    if run is None:
+        found = "Nothing in it has a position and a heading, so there is no ship to show."
+        raise error_at(module.plan.system.name, found, "Run it with `shipcosim run`.")
+    page = LivePage(
+        title=written.description or f"Simulation of {module.plan.system.name}",
+        facts=_facts(written),
+        outcome=Outcome("", "", ""),
+        links=(),
+        data={
+            "live": _description(module, scenario, written),
+            "scene": [_growing(run, module.plan)],
+            "events": sorted({event.time for event in scenario.events}),
+        },
+        code=packed_bytes(module.code),
+        remarks=(),
+    )
+    return render_template("live/templates/live.html.jinja", page)
+
+
+def _facts(written: Scenario) -> tuple[Fact, ...]:
+    return known_facts(
+        [
+            ("Ship", ", ".join(written.parameters)),
+            ("System", written.system),
+            ("Scenario", written.name),
+            ("Step size", f"{written.step_size:g} s"),
+        ]
+    )
+
+
+def _growing(run: Run, plan: Plan) -> JsonObject:
+    """The scene without rows: what its columns are made of, and which tracks are predicted."""
+    scene = vars(run) | {"time": [], "columns": {}}
+    predicted = []
+    for one in run.predicted:
+        tracks: JsonObject = {key: one[key] for key in ("name", "horizons")}
+        for part, connector in PREDICTED.items():
+            tracks[part] = []
+            for horizon in one["horizons"]:
+                signal = f"{one['name']}.{connector}_{horizon}"
+                column = f"{signal} {part}"
+                is_known = _is_output(plan, signal)
+                factor = 57.29577951308232 if part == "heading" else 1.0
+                if is_known:
+                    run.recipes[column] = Recipe(signal, factor)
+                tracks[part].append(column if is_known else None)
+        made = f"{one['name']}.predicted_at"
+        run.recipes[made] = Recipe(made)
+        predicted.append(tracks | {"made": made})
+    return scene | {
+        "predicted": predicted,
+        "recipes": {name: recipe._asdict() for name, recipe in run.recipes.items()},
+    }
+
+
+def _is_output(plan: Plan, signal: str) -> bool:
+    return any(label(end) == signal for end in plan.layouts["Real"].outputs)
+
+
+def _description(module: Module, scenario: Scenario, written: Scenario) -> JsonObject:
+    """What the script needs to run the system and to write down what was done."""
+    plan, wiring = module.plan, module.wiring
+    grid = time_grid_of(scenario)
+    happening = [
+        [change.step, change.action, label(change.end), change.value]
+        for change in changes(scenario, plan, grid)
+    ]
+    columns = wiring.columns
+    return {
+        "step": [wiring.step.numerator, wiring.step.denominator],
+        "steps_per_row": wiring.steps_per_row,
+        "most_steps": wiring.most_steps,
+        "columns": [columns[kind] for kind in wiring.kinds],
+        "kinds": wiring.kinds,
+        "signals": dict(_signals(module)),
+        "starts": [[one.place, one.signal, one.value, one.unit] for one in wiring.starts],
+        "events": happening,
+        "scenario": _header(written),
+    }
+
+
+def _header(written: Scenario) -> JsonObject:
+    """Keys of the scenario's file, for the one that the page saves."""
+    keys = ("description", "system", "parameters", "step_size", "output_interval")
+    header = {key: getattr(written, key) for key in keys}
+    return {key: value for key, value in header.items() if value} | {
+        "set": {name: value for name, value in written.set.items()},
+        "stop_time": written.stop_time,
+    }
+
+
+def _signals(module: Module) -> Iterator[tuple[str, JsonObject]]:
+    """Every signal of the exchanges: where its value lies, and what it is."""
+    plan = module.plan
+    fed = {connection.target for connection in plan.system.connections}
+    for number, kind in enumerate(module.wiring.kinds):
+        layout = plan.layouts[kind]
+        for side, ends in enumerate((layout.outputs, layout.inputs)):
+            for row, end in enumerate(ends):
+                about = _about(plan.variable(end), kind)
+                # An input that a connection feeds follows it; the others are the user's.
+                free = side == 1 and end not in fed
+                start = plan.system.components[end[0] or ""].start_value(end[1])
+                found = {"x": number, "side": side, "row": row, "free": free, "start": start}
+                yield label(end), about | found
+        first = len(layout.outputs)
+        for row, (end, start) in enumerate(layout.external.items(), start=first):
+            if end[0] is None:
+                signal = plan.system.inputs[end[1]]
+                about = {"kind": kind, "unit": signal.unit or "", "text": signal.description or ""}
+                found = {"x": number, "side": 2, "row": row, "free": True, "start": start}
+                yield label(end), about | found
+
+
+def _about(variable: Variable, kind: str) -> dict[str, Any]:
+    about: dict[str, Any] = {
+        "kind": kind,
+        "unit": variable.unit or "",
+        "text": variable.description or "",
+    }
+    for name, bound in (("min", variable.minimum), ("max", variable.maximum)):
+        if bound is not None:
+            about[name] = bound
+    return about

@@ -1,0 +1,148 @@
+// The record of a run that goes on: rows of all signals, the columns that the scene draws, and states to go back to.
+report.live = await (async () => {
+  const about = report.data.live, code = await report.unpacked("code").arrayBuffer();
+  const module = await WebAssembly.compile(code), engine = makeEngine(module, about);
+
+  // ---- columns that grow
+
+  class Column {
+    constructor() { this.all = new Float64Array(1024); this.length = 0; }
+    push(value) {
+      if (this.length === this.all.length) { const wider = new Float64Array(2 * this.length); wider.set(this.all); this.all = wider; }
+      this.all[this.length++] = value;
+    }
+    get last() { return this.length ? this.all[this.length - 1] : NaN; }
+    get values() { return this.all.subarray(0, this.length); }
+    cut(length) { this.length = Math.min(this.length, length); }
+  }
+
+  const places = new Map(about.columns.flatMap((names, x) => names.map((name, column) => [name, [x, column]])));
+  const raw = new Map([...places.keys()].map((name) => [name, new Column()])), time = new Column();
+  const run = report.data.scene[0], recipes = Object.entries(run.recipes), made = new Map(recipes.map(([name]) => [name, new Column()]));
+  const tracks = run.predicted.map((one) => ({ name: one.name, horizons: one.horizons, source: one, parts: new Map(), made: new Column() }));
+  const PARTS = ["north", "east", "heading", "radius"];
+  for (const track of tracks) for (const part of PARTS) track.parts.set(part, track.horizons.map(() => new Column()));
+
+  const shown = { ...run, columns: {}, colour: "blue", predicted: [], time: null };
+  function show() {  // the scene sees the columns as they are now
+    shown.time = time.values;
+    for (const [name, column] of made) shown.columns[name] = column.values;
+    shown.predicted = tracks.map((track) => Object.assign({ name: track.name, horizons: track.horizons, made: track.made.values }, ...PARTS.map((part) => ({ [part]: track.parts.get(part).map((column) => column.values) }))));
+  }
+
+  function take(tables, step) {  // rows of the engine, the first of them at a step
+    const count = tables[0].length / about.columns[0].length;
+    for (let row = 0; row < count; row++) {
+      time.push(engine.seconds(step + row * about.steps_per_row));
+      about.columns.forEach((names, x) => { const table = tables[x], at = row * names.length; for (let k = 0; k < names.length; k++) raw.get(names[k]).push(table[at + k]); });
+      for (const [name, recipe] of recipes) made.get(name).push(derived(recipe, made.get(name).last));
+      for (const track of tracks) predict(track);
+    }
+  }
+
+  function derived({ signal, factor, offset, angle, trigonometric, turns }, before) {
+    const value = factor * raw.get(signal).last + offset;
+    if (angle) return value * Math[trigonometric](raw.get(angle).last);
+    return turns && Number.isFinite(before) ? value + 360 * Math.round((before - value) / 360) : value;
+  }
+
+  function predict(track) {  // a new prediction has another time
+    const at = made.get(track.source.made).last;
+    if (track.made.length && at === track.made.last) return;
+    track.made.push(at);
+    for (const part of PARTS) track.parts.get(part).forEach((column, k) => column.push(track.source[part][k] === null ? 0 : made.get(track.source[part][k]).last));
+  }
+
+  // ---- what was done, and states to go back to
+
+  const EVERY = 5, RECENT = 60, OLDER = 30;  // s between states: of the last minute, and before it
+  let done = about.events.slice(), states = [], starts = {}, failure = "";
+
+  function remember() {
+    const now = engine.seconds(engine.step());
+    if (states.length && now - states[states.length - 1].time < EVERY - 1e-9) return;
+    states.push({ time: now, rows: time.length, bytes: engine.state() });
+    states = states.filter((state, k) => k === 0 || now - state.time <= RECENT || Math.floor(state.time / OLDER) !== Math.floor(states[k - 1].time / OLDER));
+  }
+
+  function rowsDue(to) {  // steps until the row at or after a time exists
+    const row = Math.ceil((to * about.step[1]) / about.step[0] / about.steps_per_row - 1e-9);
+    return row * about.steps_per_row;
+  }
+
+  function advance(to) {
+    const spacing = Math.round((EVERY * about.step[1]) / about.step[0]);
+    try {
+      while (engine.step() < to) {
+        const from = engine.step(), next = Math.min(to, from + spacing, from + about.most_steps);
+        let first = Math.ceil(from / about.steps_per_row) * about.steps_per_row;
+        engine.advance(next, done, (tables) => { take(tables, first); first = Math.ceil(engine.step() / about.steps_per_row) * about.steps_per_row; });
+        remember();
+      }
+    } catch (error) {
+      failure = error.message;
+      dispatchEvent(new CustomEvent("live-failed", { detail: failure }));
+    }
+  }
+
+  const lastTime = () => (time.length ? time.last : 0);
+
+  const self = {
+    about, module, engine, runs: [shown], raw, time, failure: () => failure,
+    get stopped() { return failure !== ""; },
+    reach(to) {
+      if (failure) return lastTime();
+      if (to === Infinity) { const until = performance.now() + 12; while (!failure && performance.now() < until) advance(engine.step() + 20 * about.steps_per_row + 1); }
+      else advance(rowsDue(to) + 1);
+      show();
+      return lastTime();
+    },
+    reset(values = {}) {
+      starts = { ...starts, ...values };
+      engine.start(starts);
+      self.cut(0, -1);
+      done = about.events.slice();
+      states = [];
+      failure = "";
+      remember();
+      advance(1);
+      show();
+    },
+    cut(rows, after) {  // forget what came later
+      time.cut(rows);
+      for (const column of [...raw.values(), ...made.values()]) column.cut(rows);
+      for (const track of tracks) {
+        let kept = track.made.length;
+        while (kept && track.made.all[kept - 1] > after) kept -= 1;
+        track.made.cut(kept);
+        for (const columns of track.parts.values()) for (const column of columns) column.cut(kept);
+      }
+    },
+    back(to) {
+      const state = [...states].reverse().find((one) => one.time <= to + 1e-9) || states[0];
+      const until = Math.floor((to * about.step[1]) / about.step[0] + 1e-9) + 1;  // its row is there
+      engine.restore(state.bytes);
+      self.cut(state.rows, state.time);
+      done = done.filter(([step, , , , byHand]) => !byHand || step < until);
+      states = states.filter((one) => one.time <= state.time);
+      failure = "";
+      advance(until);
+      show();
+    },
+    act(action, name, value) {  // from the next step on
+      done.push([engine.step(), action, name, value, true]);
+      dispatchEvent(new Event("live-acted"));
+    },
+    now: () => engine.step(),
+    value: (name) => raw.get(name)?.last,
+    held(name) {  // what the last change of a signal says, or null
+      const last = done.filter(([step, , of]) => of === name && step <= engine.step()).sort((a, b) => a[0] - b[0]).pop();
+      return last && last[1] !== "reset" ? last : null;
+    },
+    get done() { return done.filter(([step, , , , byHand]) => byHand || step < engine.step()); },
+    get starts() { return starts; },
+    signal: (name) => about.signals[name],
+  };
+  self.reset();
+  return self;
+})();

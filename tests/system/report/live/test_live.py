@@ -1,0 +1,159 @@
+"""The page that runs a system: what it computes is what the engines compute, and nothing that is done gets lost."""
+
+import json
+
+import numpy as np
+import pytest
+
+import shipcosim
+from shipcosim.calls.arguments import Reading, system_and_scenario
+from shipcosim.errors import ShipcosimError
+from shipcosim.report.live.export import export_page
+
+SAME = 1e-9  # of the range of a signal
+AHEAD = 120.0  # s, of the forecast of losses
+
+
+@pytest.fixture(scope="module")
+def page_file(tmp_path_factory):
+    """The four corners as a page."""
+    path = tmp_path_factory.mktemp("live") / "four_corner.html"
+    system, scenario, _ = system_and_scenario("four_corner", Reading(), {})
+    export_page(system, scenario, path)
+    return path
+
+
+@pytest.fixture
+def desk(page_file, browse):
+    """The page in a browser, at its start."""
+    page = browse(page_file)
+    page.wait("return Boolean(window.desk && window.scene)")
+    return page
+
+
+def repeated(page, folder):
+    """Table of the scenario that the page saves, run by the native engine."""
+    file = folder / "saved.toml"
+    file.write_text(page.ask("return desk.scenario()"), encoding="utf-8")
+    return shipcosim.run(file, engine="native", out=folder / "out").table
+
+
+def largest_difference(page, table):
+    """Largest difference of any signal in the page from a table, over the signal's range; and how many were compared."""
+    columns = page.ask(
+        "return JSON.stringify(Object.fromEntries([...desk.live.raw].map(([name, c]) => [name, [...c.values]])))"
+    )
+    found = {}
+    for name, values in json.loads(columns).items():
+        if name in table:
+            known = table[name].values.astype(float)[: len(values)]
+            off = np.max(np.abs(np.array(values, float)[: len(known)] - known))
+            found[name] = off / (np.ptp(known) or 1.0)
+    return max(found.values()), len(found)
+
+
+def test_the_saved_scenario_repeats_what_was_done(desk, tmp_path):
+    # Failure, set point, weather and bias at odd times, one of them undone.
+    desk.ask(
+        "const { live, act } = desk; live.reach(31.3); act('override', 'port.failed', true); live.reach(47);"
+        "act('override', 'reference.x_set', 5); act('override', 'environment.wind_from', 1.25); live.reach(70);"
+        "act('reset', 'port.failed'); act('bias', 'sensors.position_1_north', 0.25); live.reach(300);"
+    )
+    worst, count = largest_difference(desk, repeated(desk, tmp_path))
+    assert count > 250
+    assert worst < SAME
+
+
+def test_going_back_forgets_what_came_after(desk, tmp_path):
+    desk.ask(
+        "const { live, act } = desk; live.reach(40); act('override', 'tunnel.full_thrust', true); live.reach(80);"
+        "live.back(30); live.reach(60); act('override', 'reference.y_set', 3); live.reach(100);"
+    )
+    assert "full_thrust" not in desk.ask("return desk.scenario()")
+    worst, _ = largest_difference(desk, repeated(desk, tmp_path))
+    assert worst < SAME
+
+
+def test_another_seed_starts_another_run(desk, tmp_path):
+    place = desk.ask(
+        "return desk.live.about.starts.find(([, name]) => name === 'environment.seed')[0]"
+    )
+    desk.ask("desk.live.reset({ [arguments[0]]: 17 }); desk.live.reach(60)", place)
+    table = repeated(desk, tmp_path)
+    assert json.loads(table.attrs["start_values"])["environment.seed"] == 17
+    worst, _ = largest_difference(desk, table)
+    assert worst < SAME
+
+
+@pytest.mark.parametrize("lost", ["port", "starboard", "tunnel"])
+def test_the_forecast_of_a_loss_equals_a_run_with_it(desk, tmp_path, lost):
+    desk.ask("desk.live.reach(60)")
+    desk.wait("return desk.losses.time > 50 && desk.losses.answers.length >= 5")
+    answer = next(
+        a for a in desk.ask("return JSON.parse(JSON.stringify(desk.losses.answers))") if a["name"] == lost
+    )  # fmt: skip
+    desk.ask(
+        f"desk.live.back(60); desk.act('override', '{lost}.failed', true); desk.live.reach(60 + {AHEAD})"
+    )
+    table = repeated(desk, tmp_path)
+    rows = table.sel(time=slice(60.5, 60.0 + AHEAD))
+    off = np.hypot(
+        rows["vessel.x"] - rows["reference.x_d"], rows["vessel.y"] - rows["reference.y_d"]
+    )
+    assert answer["distance"] == pytest.approx(float(off.max()), rel=1e-6)
+
+
+def test_a_reader_runs_pauses_fails_and_undoes_by_the_pages_own_buttons(desk):
+    desk.ask("document.getElementById('scene-speed').value = 16")
+    desk.ask("document.getElementById('scene-speed').dispatchEvent(new Event('change'))")
+    desk.ask("document.getElementById('scene-play').click()")
+    desk.wait("return scene.time > 5")
+    port = '[aria-label="port: failed"]'
+    desk.ask(f"document.querySelector('{port}').click()")
+    desk.wait("return desk.live.value('port.thrust') !== undefined && scene.time > 12")
+    desk.ask("document.getElementById('scene-play').click()")
+    assert desk.ask(f"return document.querySelector('{port}').ariaPressed") == "true"
+    still = desk.ask("return desk.live.time.last")
+    desk.ask(f"document.querySelector('{port}').click()")
+    assert desk.ask(f"return document.querySelector('{port}').ariaPressed") == "false"
+    assert desk.ask("return desk.live.time.last") == still
+    assert desk.errors() == []
+    assert desk.requests() == []
+
+
+def test_a_wrong_number_is_refused_where_it_stands(desk):
+    desk.ask(
+        "const field = document.getElementById('input-environment.wind_speed'); field.value = 'strong';"
+        "field.dispatchEvent(new Event('change'))"
+    )
+    field = "document.getElementById('input-environment.wind_speed')"
+    assert desk.ask(f"return {field}.ariaInvalid") == "true"
+    assert "number" in desk.ask(f"return {field}.title")
+    assert "wind_speed" not in desk.ask(
+        "return desk.scenario().split('[[events]]').slice(1).join()"
+    )
+
+
+def test_a_run_that_fails_says_why_and_can_be_saved_and_taken_back(desk):
+    desk.ask(
+        "desk.live.reach(10); desk.act('override', 'vessel.tau_X_4', 1e300); desk.live.reach(40)"
+    )
+    said = desk.text("#failure")
+    assert "vessel" in said and "t =" in said
+    assert "tau_X_4" in desk.ask("return desk.scenario()")
+    desk.ask("desk.live.back(5); desk.live.reach(40)")
+    assert desk.ask("return desk.live.time.last") >= 40.0
+
+
+def test_the_page_is_small_and_soon_there(page_file, desk):
+    assert page_file.stat().st_size < 3e6
+    loaded, drawn = desk.seconds()
+    assert drawn < loaded + 5.0  # wide: a busy machine
+
+
+def test_a_component_without_native_code_is_named_and_nothing_is_written(tmp_path):
+    path = tmp_path / "page.html"
+    system, scenario, _ = system_and_scenario("allocation/four_corner_optimal", Reading(), {})
+    with pytest.raises(ShipcosimError, match="allocator: has no native code"):
+        export_page(system, scenario, path)
+    assert not path.exists()
