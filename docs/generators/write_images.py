@@ -27,9 +27,18 @@ PAGES = {
     "diagnosis": ["diagnose", "docs/examples/gunnerus_log.csv.gz"],
     "capability": ["capability"],
     "study": ["sweep", "studies/drift_off_small.toml"],
+    "live": ["export", "page", "scenarios/four_corner.toml"],
+}
+FILES = {"live": "four_corner.html"}
+ACTS = {  # what is done before the picture, and what must be there then
+    "live": (
+        "desk.live.reach(300); desk.act('override', 'port.failed', true); desk.live.reach(420);"
+        "scene.grown(desk.live.time.last); scene.go(desk.live.time.last)",
+        "return desk.losses.time === 420",
+    )
 }
 TIMES = {"four_corner": "#t=330"}  # s: under way, with set point and reference apart
-HEIGHTS = {"four_corner": 1140, "diagnosis": 1020, "capability": 1030, "study": 850}
+HEIGHTS = {"four_corner": 1140, "diagnosis": 1020, "capability": 1030, "study": 850, "live": 1500}
 SHIPCOSIM = Path(sys.executable).with_name("shipcosim")
 WIDTH = 1280
 SQUARE, CLEARLY = 20, 12  # px; of 255 shades of grey: a letter more or less is not
@@ -55,13 +64,19 @@ def browser(profile: Path) -> webdriver.Chrome:
     return driver
 
 
-def picture(driver: webdriver.Chrome, page: str, height: int) -> bytes:
-    """The top of a page as a small PNG, when every figure is drawn."""
+def picture(
+    driver: webdriver.Chrome, page: str, height: int, act: tuple[str, str] | None = None
+) -> bytes:
+    """The top of a page as a small PNG, when every figure is drawn; `act` is a script, and one to wait for."""
     size = {"width": WIDTH, "height": height, "deviceScaleFactor": 1, "mobile": False}
     driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     driver.get(page)
     while driver.execute_script("return document.body.dataset.drawn") != "all":
         time.sleep(0.1)
+    if act is not None:
+        driver.execute_script(act[0])
+        while not driver.execute_script(act[1]):
+            time.sleep(0.1)
     shot = base64.b64decode(
         driver.execute_cdp_cmd("Page.captureScreenshot", {"format": "png"})["data"]
     )
@@ -128,8 +143,9 @@ def of_page(name: str, folder: Path) -> bytes:
     try:
         return picture(
             driver,
-            f"{(folder / name / 'report.html').as_uri()}{TIMES.get(name, '')}",
+            f"{(folder / name / FILES.get(name, 'report.html')).as_uri()}{TIMES.get(name, '')}",
             HEIGHTS[name],
+            ACTS.get(name),
         )
     finally:
         driver.quit()

@@ -55,6 +55,7 @@ for _function in (
     init.init,
     build.build,
     run.run,
+    export.live,
     simulate.simulate,
     sweep.sweep,
     compare.compare,

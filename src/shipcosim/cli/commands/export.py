@@ -1,7 +1,7 @@
-"""The command `shipcosim export`: `export fmu`, `export osp` and `export page`."""
+"""Systems in other forms: `shipcosim export fmu`, `osp` and `page`; `shipcosim live` opens that page."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -93,32 +93,86 @@ def page(
 ) -> None:
     """Make one HTML file that runs the system itself: a desk to steer the ship and fail her units, without a network.
 
-    All components need native code, as for `--engine native`. Events of a scenario happen in the page, too; its
-    expectations are not judged. The first time takes about a minute.
+    All components need native code. Events of a scenario happen in the page, too; its expectations are not judged.
+    The first time takes about half a minute.
 
     Example: shipcosim export page four_corner --out results
     """
-    from shipcosim.calls.arguments import Reading, system_and_scenario
-    from shipcosim.cli.console import print_problems, progress_of, shown_path
+    from shipcosim.calls.arguments import Reading
+    from shipcosim.cli.console import shown_path
     from shipcosim.cli.requests import parsed_components
-    from shipcosim.report.live.export import export_page
-    from shipcosim.staging import set_file_aside
 
+    swapped = parsed_components(components or ())
     reading = Reading(
-        parameters=parameters or [],
-        components=parsed_components(components or ()),
-        fmus=fmus or [],
-        strict=strict,
+        parameters=parameters or [], components=swapped, fmus=fmus or [], strict=strict
     )
+    say(shown_path(_write_page(what, reading, stop_time, step_size, out, force=force)))
+
+
+def live(
+    what: SystemOrScenario,
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Folder that gets NAME.html.")
+    ] = Path("results", "live"),
+    stop_time: ScenariosStopTime = None,
+    step_size: ScenariosStepSize = None,
+    parameters: Parameters = None,
+    components: Components = None,
+    fmus: Fmus = None,
+    strict: Strict = False,
+    no_open: Annotated[
+        bool, typer.Option("--no-open", help="Write the page, but do not open the browser.")
+    ] = False,
+    debug: Debug = False,
+) -> None:
+    """Steer a ship live: open the page that runs the system itself, as `export page` writes it.
+
+    All components need native code; what has none is named.
+
+    Example: shipcosim live four_corner
+    """
+    import webbrowser
+
+    from shipcosim.calls.arguments import Reading
+    from shipcosim.cli.console import shown_path
+    from shipcosim.cli.requests import parsed_components
+
+    swapped = parsed_components(components or ())
+    reading = Reading(
+        parameters=parameters or [], components=swapped, fmus=fmus or [], strict=strict
+    )
+    path = _write_page(what, reading, stop_time, step_size, out, force=True)
+    say(shown_path(path))
+    if not no_open and not webbrowser.open(path.resolve().as_uri()):
+        say("No browser was found: open this file in one.")
+
+
+def _write_page(
+    what: str,
+    reading: Any,
+    stop_time: float | None,
+    step_size: float | None,
+    out: Path,
+    *,
+    force: bool,
+) -> Path:
+    """Write the page that runs a system or scenario; return its path. Times in s."""
+    from shipcosim.calls.arguments import system_and_scenario
+    from shipcosim.cli.console import print_problems, progress_of
+    from shipcosim.report.live import live_page
+    from shipcosim.staging import staged
+
     times = {"stop_time": stop_time, "step_size": step_size}
     keys = {name: time for name, time in times.items() if time is not None}
     system, scenario, remarks = system_and_scenario(what, reading, keys)
     print_problems([*system.deviations, *remarks])
-    target = out / f"{scenario.name or system.name}.html"
-    set_file_aside(target, force=force)
     with progress_of("Compiling") as progress:
-        export_page(system, scenario, target, progress)
-    say(shown_path(target))
+        html = live_page(system, scenario, progress)
+    # An earlier page is set aside at the end: where nothing could be made, it stays.
+    name = f"{scenario.name or system.name}.html"
+    with staged(out, force=force) as stage:
+        (stage / name).write_text(html, encoding="utf-8")
+    return out / name
 
 
 def osp(

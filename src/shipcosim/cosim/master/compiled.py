@@ -82,6 +82,67 @@ class _System(ctypes.Structure):
     ]
 
 
+def exchange_tables(
+    exchange: Exchange,
+    others: Sequence[Exchange],
+    external: Sequence[int] | np.ndarray,
+    inputs: Sequence[int] | np.ndarray,
+) -> dict[str, Any]:
+    """What does not change of an exchange, by the names of the structure in `native/loop.c`.
+
+    Parameters
+    ----------
+    exchange : Exchange
+    others : sequence of Exchange
+        All of the system, in the order of the loop.
+    external, inputs : sequence of int
+        Rows of the sources and of the inputs that are recorded beside all outputs.
+    """
+    # The loop takes connections in order of their period, as the Python exchange does.
+    single, sums, _ = exchange.numbered
+    due = sorted(single, key=lambda pair: pair[1].period)
+    # Mappings lie in sequence in two arrays, keys and values; each connection knows its first
+    # entry.
+    mappings = [connection.mapping for _, connection in due if connection.mapping is not None]
+    numbers = iter(range(len(mappings)))
+    kinds = [id(other) for other in others]
+    whole = {
+        "source": [connection.source for _, connection in due],
+        "target": [row for row, _ in due],
+        "period": [connection.period for _, connection in due],
+        "mapped": [-1 if connection.mapping is None else next(numbers) for _, connection in due],
+        "mapping_first": np.cumsum([0, *(len(mapping) for mapping in mappings)]),
+        "sum_row": [row for row, _ in sums],
+        "sum_first": [terms.start for _, terms in sums],
+        "sum_end": [terms.stop for _, terms in sums],
+        "change_row": [row for row, _, _ in exchange.type_changes],
+        "change_exchange": [kinds.index(id(other)) for _, other, _ in exchange.type_changes],
+        "change_source": [source for _, _, source in exchange.type_changes],
+        "external_columns": external,
+        "input_columns": inputs,
+    }
+    real = {
+        "factor": [connection.factor for _, connection in due],
+        "offset": [connection.offset for _, connection in due],
+        "mapping_from": [key for mapping in mappings for key in mapping],
+        "mapping_to": [value for mapping in mappings for value in mapping.values()],
+    }
+    counts = {
+        "n_sources": len(exchange.sources),
+        "n_outputs": len(exchange.outputs),
+        "n_inputs": len(exchange.inputs),
+        "n_transferred": len(exchange.transferred),
+        "n_connections": len(due),
+        "n_sums": len(sums),
+        "n_changes": len(exchange.type_changes),
+        "n_columns": len(exchange.outputs) + len(external) + len(inputs),
+        "n_external_columns": len(external),
+        "n_input_columns": len(inputs),
+    }
+    tables = {name: np.array(values, dtype=np.int64) for name, values in whole.items()}
+    return counts | tables | {name: np.array(values, float) for name, values in real.items()}
+
+
 class CompiledMaster(Master):
     """The master with a compiled loop, for the components that can be compiled.
 
@@ -303,59 +364,21 @@ class _CompiledLoop:
         return {name: step for name, step in found.items() if isinstance(step, CompiledStep)}
 
     def _exchange(self, kind: str, exchange: Exchange) -> _Exchange:
-        # The loop takes connections in order of their period, as the Python exchange does.
-        single, sums, _ = exchange.numbered
-        due = sorted(single, key=lambda pair: pair[1].period)
-        # Mappings lie in sequence in two arrays, keys and values; each connection knows its first
-        # entry.
-        mappings = [connection.mapping for _, connection in due if connection.mapping is not None]
-        firsts = np.cumsum([0, *(len(mapping) for mapping in mappings)])
-        numbers = iter(range(len(mappings)))
         recorder = self._recorders.by_kind[kind]
-        kinds = [id(other) for _, other in self._exchanges]
-        return _Exchange(
-            int(kind == "Real"),
-            len(exchange.sources),
-            len(exchange.outputs),
-            len(exchange.inputs),
-            len(exchange.transferred),
-            *map(
-                self._pointer,
-                (
-                    exchange.sources,
-                    exchange.modified_sources,
-                    exchange.transferred,
-                    exchange.inputs,
-                ),
-            ),
-            len(due),
-            self._whole(connection.source for _, connection in due),
-            self._whole(row for row, _ in due),
-            self._whole(connection.period for _, connection in due),
-            self._real(connection.factor for _, connection in due),
-            self._real(connection.offset for _, connection in due),
-            self._whole(
-                -1 if connection.mapping is None else next(numbers) for _, connection in due
-            ),
-            self._whole(firsts),
-            self._real(key for mapping in mappings for key in mapping),
-            self._real(value for mapping in mappings for value in mapping.values()),
-            len(sums),
-            self._whole(row for row, _ in sums),
-            self._whole(terms.start for _, terms in sums),
-            self._whole(terms.stop for _, terms in sums),
-            len(exchange.type_changes),
-            self._whole(row for row, _, _ in exchange.type_changes),
-            self._whole(kinds.index(id(other)) for _, other, _ in exchange.type_changes),
-            self._whole(source for _, _, source in exchange.type_changes),
-            rows=self._pointer(recorder.rows),
-            n_columns=recorder.rows.shape[1],
-            n_external_columns=len(recorder.external),
-            n_input_columns=len(recorder.inputs),
-            external_columns=self._whole(recorder.external),
-            input_columns=self._whole(recorder.inputs),
-            version=exchange.version,
-        )
+        others = [other for _, other in self._exchanges]
+        tables = exchange_tables(exchange, others, recorder.external, recorder.inputs)
+        tables |= {
+            "sources": exchange.sources,
+            "modified": exchange.modified_sources,
+            "transferred": exchange.transferred,
+            "inputs": exchange.inputs,
+            "rows": recorder.rows,
+        }
+        fields = {
+            name: self._pointer(value) if isinstance(value, np.ndarray) else value
+            for name, value in tables.items()
+        }
+        return _Exchange(is_real=int(kind == "Real"), version=exchange.version, **fields)
 
     def _component(self, component: ComponentInstance) -> _Component:
         # Without a compiled step the loop calls Python for this component.

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import subprocess
 import sys
 import zipfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cache as cache_in_memory
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -132,6 +134,13 @@ def _text_of(component: Component, instances: Instances) -> str:
     if instance is None:
         raise Untraceable("it is an FMU of another tool, without a model in C of this package")
     cls: Any = type(instance)
+    # The name of an FMU's module is unique to its content.
+    key = cls.__module__, cls.__qualname__, sorted(component.start.items()), _writer()
+    return _kept(key, "c", lambda: _written(cls, component).encode()).decode()
+
+
+def _written(cls: Any, component: Component) -> str:
+    """Record a component and write it as C."""
     package = cls.__module__.partition(".")[0]
     words = sys.modules[f"{package}.shipcosim.fmi.failures"].text_of
     with understood(package):
@@ -168,21 +177,36 @@ def _linked(sources: Sequence[tuple[str, str]]) -> bytes:
 
 
 def _object(source: str, prefix: str) -> bytes:
-    """Compile a text or read it from the cache. A cache that cannot be written keeps nothing."""
-    key = hashlib.sha256(repr((source, prefix, TARGET)).encode()).hexdigest()[:32]
-    path = cache() / "native" / f"{key}.wasm.o"
+    """Compile a text."""
+
+    def made() -> bytes:
+        with temporary_folder() as folder:
+            Path(folder, "all.c").write_text(source, encoding="utf-8")
+            named = [f"-DFMI2_FUNCTION_PREFIX={prefix}"] if prefix else []
+            _compile([*named, "-c", "all.c", "-o", "all.o"], folder)
+            return Path(folder, "all.o").read_bytes()
+
+    return _kept((source, prefix, TARGET), "wasm.o", made)
+
+
+def _kept(key: object, suffix: str, make: Callable[[], bytes]) -> bytes:
+    """Read what was made from the cache, or make it. A cache that cannot be written keeps nothing."""
+    digest = hashlib.sha256(repr(key).encode()).hexdigest()[:32]
+    path = cache() / "native" / f"{digest}.{suffix}"
     if path.is_file():
         return path.read_bytes()
-    with temporary_folder() as folder:
-        Path(folder, "all.c").write_text(source, encoding="utf-8")
-        named = [f"-DFMI2_FUNCTION_PREFIX={prefix}"] if prefix else []
-        _compile([*named, "-c", "all.c", "-o", "all.o"], folder)
-        content = Path(folder, "all.o").read_bytes()
-    try:
+    content = make()
+    with contextlib.suppress(OSError):
         replace_file(path, content)
-    except OSError:
-        pass
     return content
+
+
+@cache_in_memory
+def _writer() -> str:
+    """Hash of the package that writes C texts: another one writes others."""
+    root = Path(str(files("shipcosim.native")))
+    texts = [path.read_bytes() for path in sorted(root.rglob("*.[pch]*")) if path.suffix != ".pyc"]
+    return hashlib.sha256(b"\0".join(texts)).hexdigest()
 
 
 def _compile(arguments: Iterable[str], folder: str | Path) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from shipcosim.cosim.master.compiled import exchange_tables
 from shipcosim.cosim.master.instantiate import make_exchanges
 from shipcosim.cosim.master.plan import Plan, label
 from shipcosim.cosim.master.result import recorded_rows
@@ -120,12 +121,8 @@ class Wiring:
         self._lines = [f"DECLARED({prefix})" for prefix, _ in found]
         rows = [f'{{"{guid}", FUNCTIONS({prefix})}}' for prefix, guid in found]
         self._table("static const Fmu fmus[]", rows)
-        for number, (kind, exchange) in enumerate(self.exchanges.items()):
-            self._arrays_of(number, kind, exchange)
-        self._table(
-            "static Exchange exchanges[]",
-            [self._exchange(*one) for one in enumerate(self.exchanges.items())],
-        )
+        rows = [self._exchange(n, *pair) for n, pair in enumerate(self.exchanges.items())]
+        self._table("static Exchange exchanges[]", rows)
         self._external_values()
         values = [self._part_arrays(n, component) for n, component in enumerate(components)]
         order = [*found]
@@ -163,90 +160,42 @@ class Wiring:
         self._lines.append(f"static {const}{kind} {name}[] = {{{', '.join([*numbers, '0'])}}};")
         return name
 
-    def _arrays_of(self, number: int, kind: str, exchange: Exchange) -> None:
-        """Arrays of an exchange's values, of its modifiers and of its rows."""
+    def _exchange(self, number: int, kind: str, exchange: Exchange) -> str:
+        """One row of the table of exchanges."""
+        external, inputs = recorded_rows(self._plan, kind)
+        columns = [len(exchange.outputs) + row for row in external]
+        fields: dict[str, Any] = {"is_real": int(kind == "Real")}
+        tables = exchange_tables(exchange, [*self.exchanges.values()], columns, inputs)
+        for name, value in tables.items():
+            if isinstance(value, np.ndarray):
+                ctype = "double" if value.dtype.kind == "f" else "int64_t"
+                fields[name] = self._array(f"{name}_{number}", ctype, value.tolist())
+            else:
+                fields[name] = value
+        fields |= self._buffers(number, kind, exchange, int(tables["n_columns"]))
+        return f"{{{', '.join(f'.{name} = {value}' for name, value in fields.items())}}}"
+
+    def _buffers(
+        self, number: int, kind: str, exchange: Exchange, n_columns: int
+    ) -> dict[str, str]:
+        """Arrays of an exchange's values, of its rows, and of its modifiers: there is room for one a value."""
+        n_rows = MOST_STEPS // self.steps_per_row + 2
         ctype = "double" if kind == "Real" else "int32_t"
-        n_inputs = len(exchange.inputs)
+        n_sources, n_inputs = len(exchange.sources), len(exchange.inputs)
         sizes = {
-            "sources": len(exchange.sources),
-            "modified": len(exchange.sources),
-            "transferred": len(exchange.transferred),
-            "inputs": n_inputs,
-            "rows": (MOST_STEPS // self.steps_per_row + 2) * self._n_columns(kind, exchange),
+            "sources": (ctype, n_sources),
+            "modified": (ctype, n_sources),
+            "transferred": (ctype, len(exchange.transferred)),
+            "inputs": (ctype, n_inputs),
+            "rows": (ctype, n_rows * n_columns),
         }
-        for name, size in sizes.items():
-            self._lines.append(f"static {ctype} {name}_{number}[{size + 1}];")
-        # Room for a modifier of every value.
-        for side, size in (("output", len(exchange.sources)), ("input", n_inputs)):
-            self._lines.append(f"static int64_t {side}_row_{number}[{size + 1}];")
-            for part in ("scale", "shift"):
-                self._lines.append(f"static double {side}_{part}_{number}[{size + 1}];")
-
-    def _n_columns(self, kind: str, exchange: Exchange) -> int:
-        external, inputs = recorded_rows(self._plan, kind)
-        return len(exchange.outputs) + len(external) + len(inputs)
-
-    def _exchange(self, number: int, pair: tuple[str, Exchange]) -> str:
-        """One row of the table of exchanges, in the order of the structure in `native/loop.c`."""
-        kind, exchange = pair
-        single, sums, _ = exchange.numbered
-        due = sorted(single, key=lambda one: one[1].period)
-        mappings = [connection.mapping for _, connection in due if connection.mapping is not None]
-        firsts = np.cumsum([0, *(len(mapping) for mapping in mappings)])
-        numbers = iter(range(len(mappings)))
-        others = [id(other) for other in self.exchanges.values()]
-        external, inputs = recorded_rows(self._plan, kind)
-
-        def whole(name: str, values: Iterable[Any]) -> str:
-            return self._array(f"{name}_{number}", "int64_t", values)
-
-        def real(name: str, values: Iterable[Any]) -> str:
-            return self._array(f"{name}_{number}", "double", values)
-
-        fields = [
-            int(kind == "Real"),
-            *(
-                len(array)
-                for array in (
-                    exchange.sources,
-                    exchange.outputs,
-                    exchange.inputs,
-                    exchange.transferred,
-                )
-            ),
-            *(f"{name}_{number}" for name in ("sources", "modified", "transferred", "inputs")),
-            len(due),
-            whole("source", (connection.source for _, connection in due)),
-            whole("target", (row for row, _ in due)),
-            whole("period", (connection.period for _, connection in due)),
-            real("factor", (connection.factor for _, connection in due)),
-            real("offset", (connection.offset for _, connection in due)),
-            whole("mapped", (-1 if c.mapping is None else next(numbers) for _, c in due)),
-            whole("mapping_first", firsts),
-            real("mapping_from", (key for mapping in mappings for key in mapping)),
-            real("mapping_to", (value for mapping in mappings for value in mapping.values())),
-            len(sums),
-            whole("sum_row", (row for row, _ in sums)),
-            whole("sum_first", (terms.start for _, terms in sums)),
-            whole("sum_end", (terms.stop for _, terms in sums)),
-            len(exchange.type_changes),
-            whole("change_row", (row for row, _, _ in exchange.type_changes)),
-            whole("change_exchange", (others.index(id(o)) for _, o, _ in exchange.type_changes)),
-            whole("change_source", (source for _, _, source in exchange.type_changes)),
-            0,
-            0,
-            *(f"{side}_row_{number}" for side in ("output", "input")),
-            *(f"{s}_{part}_{number}" for s in ("output", "input") for part in ("scale", "shift")),
-            0,
-            f"rows_{number}",
-            self._n_columns(kind, exchange),
-            len(external),
-            len(inputs),
-            whole("external_columns", (len(exchange.outputs) + row for row in external)),
-            whole("input_columns", inputs),
-            0,
+        for side, size in (("output", n_sources), ("input", n_inputs)):
+            sizes |= {f"{side}_row": ("int64_t", size)}
+            sizes |= {f"{side}_{part}": ("double", size) for part in ("scale", "shift")}
+        self._lines += [
+            f"static {kind} {name}_{number}[{size + 1}];" for name, (kind, size) in sizes.items()
         ]
-        return f"{{{', '.join(map(str, fields))}}}"
+        return {name: f"{name}_{number}" for name in sizes}
 
     def _external_values(self) -> None:
         """A function that gives values from outside their start values again."""

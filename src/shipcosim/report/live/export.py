@@ -15,10 +15,8 @@ FIRST_ROWS = 3
 """Rows of the run from which the scene is made: which signals belong to one ship shows where they move."""
 
 
-def export_page(
-    system: System, scenario: Scenario, path: AnyPath, progress: CountProgress | None = None
-) -> None:
-    """Write a page that runs a system itself.
+def live_page(system: System, scenario: Scenario, progress: CountProgress | None = None) -> str:
+    """The page that runs a system itself, as HTML.
 
     Parameters
     ----------
@@ -26,16 +24,14 @@ def export_page(
         Checked.
     scenario : Scenario
         Its start values and events; its expectations are not judged.
-    path : path
-        HTML file; it is there completely or not at all.
     progress : callable, optional
-        Called with (components compiled, in all).
+        Called with (components written as C, in all).
 
     Raises
     ------
     ShipcosimError
         With every component that has no native code, and why; there is no compiler; system and scenario do not fit;
-        nothing in it is a ship; or the file cannot be written.
+        or nothing in it is a ship.
     """
     system = with_values(system, scenario.set, str(scenario.path or "scenario"))
     raise_errors(check_scenario(scenario, system))
@@ -45,4 +41,24 @@ def export_page(
     interval = scenario.output_interval or scenario.step_size
     until = min(FIRST_ROWS * interval, scenario.stop_time)
     table = simulate(system, scenario, RunOptions(until=until))
-    write_file(path, render_live(module, table, numbers, scenario).encode())
+    return render_live(module, table, numbers, scenario)
+
+
+def export_page(
+    system: System, scenario: Scenario, path: AnyPath, progress: CountProgress | None = None
+) -> None:
+    """Write that page; it is there completely or not at all.
+
+    Parameters
+    ----------
+    system, scenario, progress
+        As of `live_page`.
+    path : path
+        HTML file.
+
+    Raises
+    ------
+    ShipcosimError
+        As of `live_page`; or the file cannot be written.
+    """
+    write_file(path, live_page(system, scenario, progress).encode())
