@@ -121,6 +121,14 @@ def test_a_reader_runs_pauses_fails_and_undoes_by_the_pages_own_buttons(desk):
     assert desk.requests() == []
 
 
+def test_as_fast_as_it_goes_from_the_start_and_back_within_bounds(desk):
+    desk.ask("scene.setSpeed(Infinity); scene.play()")
+    desk.wait("return desk.live.time.last > 1500")
+    desk.ask("scene.pause(); desk.live.back(1234.5)")
+    assert desk.ask("return desk.live.time.last") == 1234.5
+    assert desk.ask("return desk.live.states()") <= 81
+
+
 def test_a_wrong_number_is_refused_where_it_stands(desk):
     desk.ask(
         "const field = document.getElementById('input-environment.wind_speed'); field.value = 'strong';"

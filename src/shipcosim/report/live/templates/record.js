@@ -55,14 +55,14 @@ report.live = await (async () => {
 
   // ---- what was done, and states to go back to
 
-  const EVERY = 5, RECENT = 60, OLDER = 30;  // s between states: of the last minute, and before it
+  const EVERY = 5, RECENT = 60, MOST = 80;  // s between states, s of them that are all kept, and their number: 3 MB each
   let done = about.events.slice(), states = [], starts = {}, failure = "";
 
   function remember() {
     const now = engine.seconds(engine.step());
     if (states.length && now - states[states.length - 1].time < EVERY - 1e-9) return;
     states.push({ time: now, rows: time.length, bytes: engine.state() });
-    states = states.filter((state, k) => k === 0 || now - state.time <= RECENT || Math.floor(state.time / OLDER) !== Math.floor(states[k - 1].time / OLDER));
+    if (states.length > MOST) states = states.filter(({ time }, k) => now - time <= RECENT || k % 2 === 0);  // the older ones farther apart
   }
 
   function rowsDue(to) {  // steps until the row at or after a time exists
@@ -141,7 +141,7 @@ report.live = await (async () => {
     },
     get done() { return done.filter(([step, , , , byHand]) => byHand || step < engine.step()); },
     get starts() { return starts; },
-    signal: (name) => about.signals[name],
+    states: () => states.length,
   };
   self.reset();
   return self;

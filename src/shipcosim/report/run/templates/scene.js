@@ -154,7 +154,7 @@ const scene = (() => {
   let last = 0;
   function step(now) {
     if (!self.playing) return;
-    const due = self.time + (Math.min(now - last, 250) / 1000) * self.speed;
+    const due = self.time + (Math.min(Math.max(now - last, 1), 250) / 1000) * self.speed;
     if (live) self.grown(live.reach(due));
     self.time = Math.min(due, end);
     last = now;
