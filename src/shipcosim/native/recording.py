@@ -134,6 +134,7 @@ class Recording:
     def __init__(self, example: Sequence[float], choices: Set[int] = frozenset()):
         self.memory = example
         self._choices = choices
+        self._arguments: dict[int, tuple[Symbol, ...]] = {}
         self.tables: list[np.ndarray] = []
         self.calls: list[Call] = []
         self.loops: list[RecordedLoop] = []
@@ -248,7 +249,7 @@ class Recording:
         if condition.number in self._answers:
             return self._answers[condition.number]
         # A question on fixed whole numbers alone does not fork: the code is for this answer.
-        if self._is_choice(condition):
+        if self.is_choice(condition):
             return bool(self.guarded(condition))
         # Count the asking line, to name it if there are too many ways.
         frame = sys._getframe(2)
@@ -274,11 +275,15 @@ class Recording:
         self.block = following
         return answer
 
-    def _is_choice(self, condition):
+    def is_choice(self, condition):
         """True if a condition depends only on whole numbers that are part of the code."""
         for one in condition.sources():
             if one.op == "load":
                 if one.operands[0] not in self._choices:
+                    return False
+            # A kept result follows from the arguments of its call.
+            elif one.op == "kept":
+                if not all(map(self.is_choice, self._arguments[one.operands[0]])):
                     return False
             elif one.op not in EXAMPLES:
                 return False
@@ -328,7 +333,9 @@ class Recording:
         number = self._call_numbers[key]
         # The call is a value, so C makes it before its results are used.
         result = self.calls[number].result
-        self.value("call", "d", number, *(one for one in given.numbers if isinstance(one, Symbol)))
+        symbols = tuple(one for one in given.numbers if isinstance(one, Symbol))
+        self._arguments[number] = symbols
+        self.value("call", "d", number, *symbols)
         flat = Flat(result)
         kept = [
             self.value("kept", leaf.kind, number, place) for place, leaf in enumerate(flat.leaves)

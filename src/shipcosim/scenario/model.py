@@ -301,11 +301,11 @@ class Scenario(Part):
 
     @property
     def project(self) -> Path:
-        """Folder of the project around the scenario's own folder, else the one above it."""
+        """Folder of the project that the scenario lies in, else the one above the scenario's own folder."""
         if self._path is None:
             return Path.cwd()
-        above = self._path.resolve().parents[1:] or self._path.resolve().parents
-        return library.project_of(above[0]) or above[0]
+        own = self._path.resolve().parent
+        return library.project_of(own) or own.parent
 
     @property
     def system_path(self) -> Path:

@@ -11,7 +11,7 @@ Plain floats have an implementation of their own, some ten times as fast; a test
 
 from typing import NamedTuple
 
-from shipcosim.models.core.maths import Arithmetic, clip, maximum, minimum, where
+from shipcosim.models.core.maths import Arithmetic, clip, maximum, minimum, repeat, where
 
 ROUNDS = 30
 """Most steps of the active-set method; each adds a bound or drops one. Of twelve commands few need more than ten."""
@@ -199,51 +199,63 @@ def multipliers_of(request: tuple, slack: tuple, rows: list[tuple]) -> tuple:
 
 
 def _solve_many(request, commands, slack, start):
-    """`solve` for arrays or tensors, each element separately."""
+    """`solve` for arrays or tensors, each element separately; recorded as one loop."""
     # A zero of the common shape and type: bounds and flags broadcast with it.
     zero = sum(0.0 * value for command in commands for value in command) + 0.0 * request[0]
-    x = [
+    x = tuple(
         clip(zero + at, zero + c.low, zero + c.high) for at, c in zip(start, commands, strict=True)
-    ]
+    )
     ends = zip(x, commands, strict=True)
-    side = [where(at == c.high, zero + 1.0, where(at == c.low, zero - 1.0, zero)) for at, c in ends]
-    multipliers = (zero, zero, zero)
+    side = tuple(
+        where(at == c.high, zero + 1.0, where(at == c.low, zero - 1.0, zero)) for at, c in ends
+    )
+    never = zero > 1.0
+    begin = 0.0, x, side, (never,) * len(x), never, (zero, zero, zero)
+    _, x, _, _, _, multipliers = repeat(
+        lambda now: _goes_on(now[0] < ROUNDS, now[4]),
+        lambda now: _round(request, commands, slack, zero, *now),
+        begin,
+    )
+    return list(x), multipliers
+
+
+def _goes_on(more, done):
+    """Whether there is another round: not where all elements are done."""
+    return more & (done == False) if hasattr(done, "maths") else more and not bool(done.all())  # noqa: E712
+
+
+def _round(request, commands, slack, zero, count, x, side, freed, done, multipliers):
+    """The state of `_solve_many` after one more round."""
+    found = _multipliers(request, commands, slack, x, side)
     # Elements that are done keep their multipliers; the others go on.
-    done = zero > 1.0
-    freed = [zero > 1.0] * len(x)
-    for _ in range(ROUNDS):
-        found = _multipliers(request, commands, slack, x, side)
-        multipliers = tuple(
-            where(done, old, new) for old, new in zip(multipliers, found, strict=True)
-        )
-        # Optimum of the free commands, loss of each bound, and how far each command may go.
-        best, loss, steps = _towards(commands, found, x, side)
-        # Smallest allowed step and largest loss, over all commands.
-        share = zero + 1.0
-        worst = zero
-        for step, lost in zip(steps, loss, strict=True):
-            share = minimum(share, step)
-            worst = maximum(worst, lost)
-        # A whole step without a loss is the optimum: the element is done.
-        whole = share >= 1.0
-        done = done | (whole & (worst <= 0.0))
-        # Add the bounds that were hit, or free the command with the largest loss.
-        for i, (command, new, old, step, lost) in enumerate(
-            zip(commands, best, x, steps, loss, strict=True)
-        ):
-            over = new > command.high
-            hit = (step <= share) & ~whole
-            drop = whole & (worst > 0.0) & (lost >= worst)
-            # A command that was freed hits its bound again by rounding alone: stop here.
-            done = done | (hit & freed[i] & (share <= 0.0))
-            bound = where(over, zero + command.high, zero + command.low)
-            x[i] = where(hit, bound, old + share * (new - old))
-            side[i] = where(hit, where(over, zero + 1.0, zero - 1.0), where(drop, zero, side[i]))
-            freed[i] = drop
-        # Stop as soon as every element is done.
-        if bool(done.all()):
-            break
-    return x, multipliers
+    multipliers = tuple(where(done, old, new) for old, new in zip(multipliers, found, strict=True))
+    # Optimum of the free commands, loss of each bound, and how far each command may go.
+    best, loss, steps = _towards(commands, found, x, side)
+    # Smallest allowed step and largest loss, over all commands.
+    share = zero + 1.0
+    worst = zero
+    for step, lost in zip(steps, loss, strict=True):
+        share = minimum(share, step)
+        worst = maximum(worst, lost)
+    # A whole step without a loss is the optimum: the element is done.
+    whole = share >= 1.0
+    part = share < 1.0
+    done = done | (whole & (worst <= 0.0))
+    # Add the bounds that were hit, or free the command with the largest loss.
+    after = []
+    for i, (command, new, old, step, lost) in enumerate(
+        zip(commands, best, x, steps, loss, strict=True)
+    ):
+        over = new > command.high
+        hit = (step <= share) & part
+        drop = whole & (worst > 0.0) & (lost >= worst)
+        # A command that was freed hits its bound again by rounding alone: stop here.
+        done = done | (hit & freed[i] & (share <= 0.0))
+        bound = where(over, zero + command.high, zero + command.low)
+        kept = where(hit, where(over, zero + 1.0, zero - 1.0), where(drop, zero, side[i]))
+        after.append((where(hit, bound, old + share * (new - old)), kept, drop))
+    x, side, freed = zip(*after, strict=True)
+    return count + 1.0, x, side, freed, done, multipliers
 
 
 def _multipliers(request, commands, slack, x, side):

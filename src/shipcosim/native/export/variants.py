@@ -138,6 +138,8 @@ def _recorded(cls, given, names, step_size, decided) -> Variant:
     choices = {
         number for number, (leaf, place) in pairs if leaf.path[0] in unchanging or place in settled
     }
+    if decided:
+        choices |= _derived(flat, recording)
     shape = Shape(
         _widest(flat, root),
         numbers,
@@ -148,6 +150,7 @@ def _recorded(cls, given, names, step_size, decided) -> Variant:
 
     # The step is recorded on the state that the start left.
     step = trace(clone, shape, 0.0, step_size, numbers, ExportRecording)
+    _refuse_changing_choices(step, flat)
     # At the end of each way the start writes its state to the same places.
     for end in ends(root):
         if isinstance(end.result, Flat):
@@ -162,6 +165,27 @@ def _recorded(cls, given, names, step_size, decided) -> Variant:
         names,
         size,
     )
+
+
+def _derived(flat: Flat, recording: Recording) -> set[int]:
+    """Numbers of the state that the start computes from parameters alone, such as a design."""
+    return {
+        number
+        for number, value in enumerate(flat.numbers)
+        if isinstance(value, Symbol) and recording.is_choice(value)
+    }
+
+
+def _refuse_changing_choices(step: Step, flat: Flat) -> None:
+    """Refuse code that relies on a number of the state which its own steps change."""
+    sources = (one for symbol in step.recording.relied_on for one in symbol.sources())
+    relied = {one.operands[0] for one in sources if one.op == "load"}
+    for end in ends(step.root):
+        for place, _ in end.result if isinstance(end.result, list) else ():
+            if place in relied:
+                raise Untraceable(
+                    f"it decides by {text_of(flat.leaves[place].path)}, which changes"
+                )
 
 
 def _recorded_start(cls, fixed, recording):
