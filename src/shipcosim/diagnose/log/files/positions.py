@@ -91,8 +91,11 @@ def degrees_of_texts(cells: np.ndarray, largest: float) -> np.ndarray | None:
     for row, cell in enumerate(cells):
         if cell is None:
             continue
-        match = _TEXT.fullmatch(str(cell).replace(",", " "))
-        if match is None:
+        # A comma is the decimal sign where no point is, and stands between cells of NMEA elsewhere.
+        text = str(cell)
+        is_decimal = "." not in text and re.search(r"[°º].*\d,\d|\d,\d{3}", text)
+        match = _TEXT.fullmatch(text.replace(",", "." if is_decimal else " "))
+        if match is None or any(float(match[part] or 0.0) >= 60.0 for part in ("minutes", "seconds")):
             return None
         degrees = float(match["degrees"])
         # A number beyond all degrees is in degrees and minutes without a separator.

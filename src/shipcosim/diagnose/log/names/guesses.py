@@ -98,7 +98,14 @@ def guesses_of(column: str, log: LogColumns, thrusters: Thrusters | None) -> lis
         found = _of_thruster(column, drive, stated, thrusters)
         if found[0].role or meaning_of(words).role is None:
             return found
-    return [_by_meaning(column, words, stated, values)]
+    # A number in a name counts sensors of a kind; with several of them each is a guess.
+    found = _by_meaning(column, words, stated, values)
+    bare = tuple(word for word in words if not word.isdigit())
+    if found.is_guess and bare != words:
+        again = _by_meaning(column, bare, stated, values)
+        if again.role not in ("", "time") and not again.is_guess:
+            return [again]
+    return [found]
 
 
 def _is_empty(values):

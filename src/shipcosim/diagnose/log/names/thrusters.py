@@ -6,11 +6,13 @@ from functools import cache
 
 import numpy as np
 
+from shipcosim.diagnose.log.names.units import unit_for
 from shipcosim.diagnose.log.names.vocabulary import vocabulary, words_of
 from shipcosim.diagnose.numerics import finite
 
 _PWM = (850.0, 2150.0)  # us, pulse widths of servos and speed controllers
 _SURE = {"rpm", "azimuth", "thrust", "rudder", "force"}  # words that hardly say anything else
+_ELSEWHERE = {"port", "starboard", "stern", "centre"}
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,9 @@ def drive_of(words: tuple[str, ...], unit: str, values: np.ndarray) -> Drive | N
         return None
     generic = set(vocabulary()["thruster"]["generic"]["words"])
     # Quantity and place; the name must clearly be one of a thruster.
+    whole = rest
     quantity, word, rest = _quantity(rest)
+    word = quantity if quantity in whole else word
     place = frozenset(_places().get(w, w) for w in rest if w not in generic)
     is_named = len(rest) > len(place) or word in _SURE or bool(set(rest) & set(_places()))
     is_named = is_named or bool(quantity and rest and all(w.isdigit() for w in rest))
@@ -77,6 +81,8 @@ def drive_of(words: tuple[str, ...], unit: str, values: np.ndarray) -> Drive | N
         return None
     # Unit and values decide between pulses, per cent and others.
     quantity, doubt = _by_values(quantity, word, unit.strip().lower(), values)
+    if quantity == "azimuth" and "rudder" in whole:
+        doubt = "a rudder's angle may be counted the other way"
     return Drive(quantity, place, kind, doubt)
 
 
@@ -112,17 +118,16 @@ def thrusters_named(
         return main or list(thrusters), "" if len(
             thrusters
         ) == 1 else "one value for all of these is assumed"
+    # A number alone is counted by each maker in an order of its own.
     near = [name for name, words in placed.items() if words and (words < place or place < words)]
-    if len(near) == 1:
-        return near, ""
-    if (
-        len(place) == 1
-        and (number := next(iter(place))).isdigit()
-        and 0 < int(number) <= len(thrusters)
-    ):
+    is_number = all(word.isdigit() for word in place)
+    if len(near) == 1 and not is_number:
+        more = place - placed[near[0]] & _ELSEWHERE
+        return near, f"it says more than '{near[0]}': {', '.join(sorted(more))}" if more else ""
+    if is_number and len(place) == 1 and 0 < (number := int(next(iter(place)))) <= len(thrusters):
         return [
-            list(thrusters)[int(number) - 1]
-        ], f"they are counted in the order of the system: {', '.join(thrusters)}"
+            list(thrusters)[number - 1]
+        ], f"a number alone may count otherwise; they are counted in the order of the system: {', '.join(thrusters)}"
     if place & {"bow"}:
         across = [name for name, words in placed.items() if "tunnel" in words]
         if len(across) == 1:
@@ -152,7 +157,8 @@ def _phrases() -> list[tuple[tuple[str, ...], str]]:
     phrases = sorted(
         (words_of(phrase), quantity) for quantity in quantities for phrase in told[quantity]
     )
-    return sorted(phrases, key=lambda pair: -len(pair[0]))
+    # The word azimuth also names the thruster: beside another quantity it is none.
+    return sorted(phrases, key=lambda pair: (-len(pair[0]), pair == (("azimuth",), "azimuth")))
 
 
 def _quantity(words):
@@ -173,6 +179,8 @@ def _by_values(quantity, word, unit, values):
         return "percent", ""
     if unit in ("us", "µs", "pwm"):
         return "pwm", ""
+    if quantity == "" and unit_for(unit, "rpm") == "rpm":
+        return "rpm", ""
     inside = len(known) and known.min() >= _PWM[0] and known.max() <= _PWM[1]
     if quantity == "" and inside:
         return "pwm", ""
