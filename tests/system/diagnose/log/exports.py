@@ -59,9 +59,7 @@ def _stamps(form, cut=None):
 
 
 def _minutes(role, sides):
-    return [
-        f"{int(v)}°{60.0 * (v % 1.0):07.4f}'{sides}".replace(".", ",") for v in motion()[role]
-    ]
+    return [f"{int(v)}°{60.0 * (v % 1.0):07.4f}'{sides}".replace(".", ",") for v in motion()[role]]
 
 
 _TEXTS = {
@@ -78,7 +76,14 @@ _TEXTS = {
     "count": lambda: [str(t) for t in range(COUNT)],
     "zero": lambda: ["0.0"] * COUNT,
 }
-_FACTORS = {"kn": 1.0 / KNOT, "rad": np.pi / 180.0, "/min": 60.0, "Hz": 1.0 / 60.0, "": 1.0, "-": -1.0}
+_FACTORS = {
+    "kn": 1.0 / KNOT,
+    "rad": np.pi / 180.0,
+    "/min": 60.0,
+    "Hz": 1.0 / 60.0,
+    "": 1.0,
+    "-": -1.0,
+}
 
 
 def texts_of(source, decimal="."):
@@ -203,7 +208,17 @@ TABLES = {
         rate of turn | yaw_rate | yaw_rate
         relative wind speed | wind_speed | wind_speed
         relative wind direction | wind_from | wind_from""",
-        {"units": ["s", "degrees_north", "degrees_east", "degree", "degree s-1", "m s-1", "degree"]},
+        {
+            "units": [
+                "s",
+                "degrees_north",
+                "degrees_east",
+                "degree",
+                "degree s-1",
+                "m s-1",
+                "degree",
+            ]
+        },
     ),
     "two header rows in brackets, tabs": (
         """Time | time | time
@@ -358,6 +373,33 @@ TABLES = {
         Wind Direction 1 (deg) | wind_from | ?wind_from
         Thruster 1 Force (kN) | port_rpm |
         Power Consumption (kW) | port_rpm |""",
+        {},
+    ),
+    "places within other places": (
+        """time | time | time
+        heading | heading | heading
+        BT PS rpm | bow1_rpm | ?port_rpm
+        BT SB rpm | bow2_rpm | ?starboard_rpm
+        Tunnel Thruster Aft rpm | bow2_rpm |
+        ME PORT SPEED | port_rpm | ?port_rpm
+        Starboard pump rpm | starboard_rpm |
+        Radar Target Course | heading |
+        AIS heading | course_over_ground |
+        Gyro deviation | yaw_rate |""",
+        {},
+    ),
+    "set points in other languages": (
+        """Zeit | iso | time
+        Kreiselkompass | heading | heading
+        Sollkurs | course_over_ground |
+        船首方位設定 | course_over_ground |
+        Settpunkt kurs | course_over_ground |
+        Fahrt durchs Wasser [kn] | surge |
+        対水速力[kn] | surge |
+        Hovedpropell BB turtall | port_rpm | port_rpm
+        Drehzahl SB | starboard_rpm | starboard_rpm
+        Bugstrahlruder 2 Drehzahl | bow2_rpm | bow2_rpm
+        バウスラスタ1回転数 | bow1_rpm | bow1_rpm""",
         {},
     ),
     "set points alone": (

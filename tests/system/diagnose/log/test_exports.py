@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from diagnose.log.exports import SHIP, TABLES, _plain, motion, table
 
+from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.names.proposal import propose
 from shipcosim.diagnose.log.reader import columns_of
-from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.values import values_of
 
 TURNS = ("heading", "course_over_ground", "wind_from", "true_wind_from", "azimuth")
@@ -19,9 +19,13 @@ def wrong_channels(path, expected, asked):
     proposal = propose(log, SHIP)
     sure = proposal.channels()
     proposed = {guess.role for guess in proposal.used}
-    wrong = [f"{role} from '{sure[role].column}' in silence" for role in sorted(set(sure) - expected)]
+    wrong = [
+        f"{role} from '{sure[role].column}' in silence" for role in sorted(set(sure) - expected)
+    ]
     wrong += [f"{role} is missing" for role in sorted(expected - proposed)]
-    wrong += [f"{role} is asked, and could be sure" for role in sorted(expected & proposed - set(sure))]
+    wrong += [
+        f"{role} is asked, and could be sure" for role in sorted(expected & proposed - set(sure))
+    ]
     wrong += [f"{role} is not even asked" for role in sorted(asked - proposed)]
     for role in sorted(set(sure) & expected - {"time"}):
         off = values_of(sure[role], role, log, FileLayout())[0] - truth[role]

@@ -20,8 +20,7 @@ _BY_NAME = {
     ".numbers": ("a spreadsheet of Numbers", _SHEET),
     ".mat": ("a file of MATLAB", _MATLAB),
     ".bag": ("a bag of ROS", _ROS),
-    ".db3": ("a bag of ROS 2", _ROS),
-    ".mcap": ("a bag of ROS 2", _ROS),
+    ".sqlite": ("a database of SQLite", "Write its table as .csv."),
     ".ulg": ("a log of PX4", "Convert it: `ulog2csv FILE`."),
     ".bin": (
         "a binary log, as of ArduPilot",
@@ -52,10 +51,9 @@ _BY_CONTENT = (
     (b"MATLAB 7.3 MAT-file", ".mat"),
     (b"\x89HDF\r\n\x1a\n", ".h5"),
     (b"#ROSBAG", ".bag"),
-    (b"\x89MCAP0", ".mcap"),
     (b"ULog\x01", ".ulg"),
     (b"TDSm", ".tdms"),
-    (b"SQLite format 3\x00", ".db3"),
+    (b"SQLite format 3\x00", ".sqlite"),
     (b"ARROW1", ".feather"),
 )
 _ZIPPED = (

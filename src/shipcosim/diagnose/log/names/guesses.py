@@ -209,6 +209,8 @@ def _of_thruster(
             )
             continue
         why = doubt or drive.doubt
+        if not why and "rpm" in wanted and "rudder" in words_of(column):
+            why = "a rudder's angle turns the ship the other way than an azimuth thruster's"
         channel = Channel(column=column)
         said = ("a command; there is no feedback",) if drive.kind == "command" else ()
         found.append(

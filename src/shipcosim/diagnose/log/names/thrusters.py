@@ -12,7 +12,7 @@ from shipcosim.diagnose.numerics import finite
 
 _PWM = (850.0, 2150.0)  # us, pulse widths of servos and speed controllers
 _SURE = {"rpm", "azimuth", "thrust", "rudder", "force"}  # words that hardly say anything else
-_ELSEWHERE = {"port", "starboard", "stern", "centre"}
+_ELSEWHERE = {"bow", "port", "starboard", "stern", "centre"}
 
 
 @dataclass(frozen=True)
@@ -81,8 +81,6 @@ def drive_of(words: tuple[str, ...], unit: str, values: np.ndarray) -> Drive | N
         return None
     # Unit and values decide between pulses, per cent and others.
     quantity, doubt = _by_values(quantity, word, unit.strip().lower(), values)
-    if quantity == "azimuth" and "rudder" in whole:
-        doubt = "a rudder's angle may be counted the other way"
     return Drive(quantity, place, kind, doubt)
 
 
@@ -122,12 +120,14 @@ def thrusters_named(
     near = [name for name, words in placed.items() if words and (words < place or place < words)]
     is_number = all(word.isdigit() for word in place)
     if len(near) == 1 and not is_number:
-        more = place - placed[near[0]] & _ELSEWHERE
+        more = (place - placed[near[0]]) & _ELSEWHERE
+        more -= {"bow"} if "tunnel" in placed[near[0]] else set()
         return near, f"it says more than '{near[0]}': {', '.join(sorted(more))}" if more else ""
     if is_number and len(place) == 1 and 0 < (number := int(next(iter(place)))) <= len(thrusters):
-        return [
-            list(thrusters)[number - 1]
-        ], f"a number alone may count otherwise; they are counted in the order of the system: {', '.join(thrusters)}"
+        return (
+            [list(thrusters)[number - 1]],
+            f"a number alone may count otherwise; they are counted in the order of the system: {', '.join(thrusters)}",
+        )
     if place & {"bow"}:
         across = [name for name, words in placed.items() if "tunnel" in words]
         if len(across) == 1:
