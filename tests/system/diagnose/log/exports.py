@@ -402,6 +402,29 @@ TABLES = {
         バウスラスタ1回転数 | bow1_rpm | bow1_rpm""",
         {},
     ),
+    "groups above names and units": (
+        """Time | slashes | time
+        Heading | heading | heading
+        RPM | port_rpm | port_rpm
+        Angle | port_azimuth | port_azimuth
+        RPM | starboard_rpm | starboard_rpm
+        Angle | starboard_azimuth | starboard_azimuth""",
+        {
+            "units": ["", "deg", "rpm", "deg", "rpm", "deg"],
+            "before": [",Gyro,Az PS,,Az SB,"],
+        },
+    ),
+    "topics in one table": (
+        """__time | secs | time
+        /gps/fix/latitude | latitude | latitude
+        /gps/fix/longitude | longitude | longitude
+        /imu/angular_velocity/z | yaw_rate:rad | ?yaw_rate
+        /odom/pose/pose/position/x | east |
+        /cmd_vel/linear/x | surge |
+        /thruster/port/rpm/data | port_rpm | port_rpm
+        /thruster/starboard/cmd/data | starboard_rpm |""",
+        {},
+    ),
     "set points alone": (
         """time | time | time
         heading | heading | heading

@@ -35,6 +35,14 @@ def wrong_channels(path, expected, asked):
     return wrong
 
 
+@pytest.mark.parametrize("encoding", ["cp932", "euc_jp", "utf-16"])
+def test_japanese_is_read_in_its_encodings(encoding, tmp_path):
+    columns = _plain(TABLES["Japanese"][0])
+    path = tmp_path / "log.csv"
+    path.write_text(table(columns), encoding=encoding)
+    assert wrong_channels(path, {role for *_, role in columns}, set()) == []
+
+
 @pytest.mark.parametrize("kind", TABLES)
 def test_an_exported_table_has_its_channels(kind, tmp_path):
     columns, form = TABLES[kind]

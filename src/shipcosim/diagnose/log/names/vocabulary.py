@@ -51,13 +51,13 @@ def words_of(name: str) -> tuple[str, ...]:
     same = vocabulary()["words"]["same"]
     if not name.isascii():
         parts = vocabulary()["words"]["parts"]
-        name = _parts().sub(lambda found: f" {parts[found[0]]} ", name)
+        name = word_parts().sub(lambda found: f" {parts[found[0]]} ", name)
     found = [word.lower() for part in _HUMP.split(name) for word in _WORDS.findall(part)]
     return tuple(part for word in found for part in same.get(word, word).split())
 
 
 @cache
-def _parts() -> re.Pattern[str]:
+def word_parts() -> re.Pattern[str]:
     """Parts of words in scripts without blanks, the longest first."""
     parts = sorted(vocabulary()["words"]["parts"], key=len, reverse=True)
     return re.compile("|".join(parts))
