@@ -127,6 +127,25 @@ def test_messages_in_json_are_read_in_their_units(units, tmp_path):
     assert max(off(log, role) for role in ("heading", "north", "east")) < 0.01
 
 
+@pytest.mark.parametrize("unit", ["deg", "rad"])
+def test_the_text_of_an_analyzer_is_read(unit, tmp_path):
+    size = np.pi / 180.0 if unit == "rad" else 1.0
+    lines = []
+    for t in range(COUNT):
+        head = f"2024-03-14-09:{26 + t // 60:02d}:{t % 60:02d}.000 2   3 255"
+        told = f"SID = 1; Heading = {size * TRUTH['heading'][t]:.6f} {unit}; Reference = True"
+        lines.append(f"{head} 127250 Vessel Heading:  {told}")
+        told = f"SID = 1; Rate = {size * TRUTH['yaw_rate'][t]:.7f} {unit}/s"
+        lines.append(f"{head} 127251 Rate of Turn:  {told}")
+        place = [f"{TRUTH[role][t]:.7f}" for role in ("latitude", "longitude")]
+        told = f"Latitude = {place[0]} deg; Longitude = {place[1]} deg"
+        lines.append(f"{head} 129025 Position, Rapid Update:  {told}")
+    path = tmp_path / "boat.txt"
+    path.write_text("\n".join(lines) + "\n")
+    log = read_log(path)
+    assert max(off(log, role) for role in ("heading", "yaw_rate", "north", "east")) < 0.02
+
+
 def test_angles_of_messages_without_units_are_asked_where_they_may_be_radians(tmp_path):
     path = tmp_path / "boat.json"
     path.write_text("\n".join(list(messages("si"))[1:]) + "\n")

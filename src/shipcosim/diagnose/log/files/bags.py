@@ -1,4 +1,4 @@
-"""Bags of ROS 2 and files of MCAP as tables, one for each topic."""
+"""Bags of ROS and files of MCAP as tables, one for each topic."""
 
 from __future__ import annotations
 
@@ -11,12 +11,15 @@ import numpy as np
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.errors import error_at
 
+_TABLES = (
+    "Or write its topics as tables: PlotJuggler, or `rostopic echo -b FILE -p TOPIC > log.csv`."
+)
 _DEEPEST = 6  # levels of a message
 
 
 def is_bag(path: Path) -> bool:
-    """Whether a path is a bag of ROS 2 by its name: .mcap, .db3, or a folder with metadata.yaml."""
-    return path.suffix.lower() in (".mcap", ".db3") or (path / "metadata.yaml").is_file()
+    """Whether a path is a bag of ROS by its name: .bag, .mcap, .db3, or a folder with metadata.yaml."""
+    return path.suffix.lower() in (".mcap", ".db3", ".bag") or (path / "metadata.yaml").is_file()
 
 
 def tables_of_bag(path: Path) -> dict[str, LogColumns]:
@@ -31,8 +34,8 @@ def tables_of_bag(path: Path) -> dict[str, LogColumns]:
         from rosbags.highlevel import AnyReader
         from rosbags.typesys import Stores, get_typestore
     except ImportError as error:
-        remedy = "Install it by `pip install 'shipcosim[ros]'`, or write its topics as .csv."
-        raise error_at(str(path), "bags of ROS 2 need rosbags.", remedy) from error
+        remedy = "Install it by `pip install 'shipcosim[ros]'`."
+        raise error_at(str(path), "bags of ROS need rosbags.", f"{remedy} {_TABLES}") from error
     rows: dict[str, list[dict[str, float]]] = {}
     try:
         store = get_typestore(Stores.ROS2_HUMBLE)
@@ -42,7 +45,9 @@ def tables_of_bag(path: Path) -> dict[str, LogColumns]:
                 row = {"time": 1e-9 * stamp} | dict(_numbers(message, "", 0))
                 rows.setdefault(connection.topic.strip("/").replace("/", "."), []).append(row)
     except Exception as error:  # rosbags raises what its readers and formats do
-        raise error_at(str(path), f"is no bag of ROS 2 that can be read: {error}.") from error
+        raise error_at(
+            str(path), f"is no bag of ROS 1 or ROS 2 that can be read: {error}.", _TABLES
+        ) from error
     tables = {topic: _table(path, told) for topic, told in rows.items() if len(told[0]) > 1}
     if not tables:
         raise error_at(str(path), "is a bag without numbers.", "Record the topics of the ship.")

@@ -42,19 +42,17 @@ def joined(
         If a table has no time, times are of several kinds, or may count from different starts.
     """
     first = next(iter(tables))
-    clocks = {}
-    for name, channel in times.items():
-        if channel is None:
-            found = f"table '{name}' has no time."
-            raise error_at(str(path), found, "Take it out of the folder, or name its time 'time'.")
-        clocks[name] = channel.columns
+    if None in times.values():
+        found = f"table '{next(name for name in times if times[name] is None)}' has no time."
+        raise error_at(str(path), found, "Take it out of the folder, or name its time 'time'.")
+    clocks = {name: channel.columns for name, channel in times.items() if channel}
     # All clocks must be of one kind, and count from a common start: a date or the time of day.
     kinds = {name: _kind(table, times[name]) for name, table in tables.items()}
     other = next((name for name in tables if kinds[name] != kinds[first]), None)
     if other is not None:
         found = f"the times of '{first}' and '{other}' are written in different ways."
         raise error_at(str(path), found, "Write the same kind of time in all tables.")
-    values = [tables[first].values[name] for name in clocks[first][:1]][0]
+    values = tables[first].values[clocks[first][0]]
     if len(tables) > 1 and values.dtype.kind == "f" and epoch_unit(values) is None:
         found = f"the times of '{first}' and the other tables may count from different starts."
         raise error_at(str(path), found, "Write times since 1970, or one table with one time.")

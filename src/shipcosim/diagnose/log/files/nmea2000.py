@@ -1,4 +1,5 @@
-"""Messages of NMEA 2000 as CANboat writes them, one a line, as tables: raw (CSV of bytes), or read (JSON).
+"""Messages of NMEA 2000 as CANboat writes them, one a line, as tables: raw (CSV of bytes), or read
+(JSON, or the text of its analyzer).
 
 Reference: CANboat, github.com/canboat/canboat: its list of messages (PGN) and the forms of its logs.
 """
@@ -22,6 +23,9 @@ _RAW = re.compile(
     _STAMP
     + r",\d+,(?P<pgn>\d+),(?P<source>\d+),\d+,\d+,(?P<bytes>[0-9a-fA-F]{2}(?:,[0-9a-fA-F]{2})*)\s*"
 )
+_TOLD = re.compile(
+    _STAMP + r"\s+\d+\s+(?P<source>\d+)\s+\d+\s+(?P<pgn>\d+)\s+[^:]+:\s*(?P<fields>.*)"
+)
 _REFERENCES = {0: "True", 1: "Magnetic"}
 _WINDS = {0: "True (ground referenced to North)", 1: "Magnetic", 2: "Apparent"}
 _RAW_FIELDS = {
@@ -43,7 +47,10 @@ def is_messages(path: Path) -> bool:
     with path.open("rb") as file:
         head = file.read(4096).decode("latin-1").splitlines()
     lines = [line for line in head[:20] if line.strip() and not line.startswith("#")]
-    return any(_RAW.fullmatch(line) or line[:1] == "{" and '"pgn":' in line for line in lines[:2])
+    return any(
+        _RAW.fullmatch(line) or _TOLD.fullmatch(line) or line[:1] == "{" and '"pgn":' in line
+        for line in lines[:2]
+    )
 
 
 def tables_of_messages(path: Path) -> dict[str, LogColumns]:
@@ -60,7 +67,10 @@ def tables_of_messages(path: Path) -> dict[str, LogColumns]:
     in_si = None
     for line in text_of(path)[0].splitlines():
         try:
-            if not line.startswith("{"):
+            if found_text := _TOLD.fullmatch(line):
+                told = _of_text(found_text)
+                is_si = " rad" in line
+            elif not line.startswith("{"):
                 told = _raw(line)
                 is_si = True
             elif '"pgn"' in line:
@@ -85,11 +95,10 @@ def tables_of_messages(path: Path) -> dict[str, LogColumns]:
     said += [
         f"Messages not read: {', '.join(f'{k} ({n})' for k, n in sorted(unread.items()))}."
     ] * bool(unread)
-    tables = {
+    return {
         f"PGN {pgn}": _table(path, rows, said if k == 0 else [])
         for k, (pgn, rows) in enumerate(found.items())
     }
-    return tables
 
 
 def _seconds(stamp):
@@ -128,6 +137,18 @@ def _read(message):
     pgn = int(message["pgn"])
     fields = message["fields"] if pgn in _RAW_FIELDS else None
     return pgn, _seconds(message["timestamp"]), int(message.get("src", 0)), fields
+
+
+def _of_text(match):
+    """PGN, time, source and fields of a line of text: ``Heading = 45.0 deg; Reference = True``."""
+    pgn = int(match["pgn"])
+    pairs = [part.split("=") for part in match["fields"].split(";") if part.count("=") == 1]
+    fields = {}
+    for name, text in pairs:
+        number = re.fullmatch(r"\s*([+-]?\d+(?:\.\d+)?)(?:\s+(?:deg|rad)?(?:m?/s)?)?\s*", text)
+        fields[name.strip()] = float(number[1]) if number else text.strip()
+    time = _seconds(f"{match['day']}T{match['clock']}")
+    return pgn, time, int(match["source"]), fields if pgn in _RAW_FIELDS else None
 
 
 def _columns(fields, in_si):

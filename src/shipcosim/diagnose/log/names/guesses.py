@@ -7,7 +7,7 @@ import numpy as np
 
 from shipcosim.diagnose.log.channels import Channel
 from shipcosim.diagnose.log.files.table import LogColumns
-from shipcosim.diagnose.log.names.thrusters import Drive, drive_of, thrusters_named
+from shipcosim.diagnose.log.names.thrusters import OF_A_MAP, Drive, drive_of, thrusters_named
 from shipcosim.diagnose.log.names.units import unit_after, unit_for
 from shipcosim.diagnose.log.names.vocabulary import meaning_of, words_of
 from shipcosim.diagnose.log.roles import ROLES, role_of
@@ -222,15 +222,7 @@ def _of_thruster(
 
 def _of_a_map(column, stated, thrusters):
     """A guess without a role for a thruster's channel in per cent or pulses, None for others."""
-    quantity = {
-        "%": "percent",
-        "pct": "percent",
-        "percent": "percent",
-        "us": "pwm",
-        "µs": "pwm",
-        "pwm": "pwm",
-    }
-    kind = quantity.get(stated.strip().lower())
+    kind = OF_A_MAP.get(stated.strip().lower())
     if kind is None or column in ROLES:
         return None
     return Guess(column, why=_needs_a_map(column, kind, column.rpartition("_")[0], thrusters))

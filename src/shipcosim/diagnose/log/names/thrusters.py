@@ -11,6 +11,9 @@ from shipcosim.diagnose.log.names.vocabulary import vocabulary, words_of
 from shipcosim.diagnose.numerics import finite
 
 _PWM = (850.0, 2150.0)  # us, pulse widths of servos and speed controllers
+OF_A_MAP = {"%": "percent", "pct": "percent", "percent": "percent"}
+OF_A_MAP |= {"us": "pwm", "µs": "pwm", "pwm": "pwm"}
+"""Units that become a speed by a map only, and what they are of."""
 _SURE = {"rpm", "azimuth", "thrust", "rudder", "force"}  # words that hardly say anything else
 _ELSEWHERE = {"bow", "port", "starboard", "stern", "centre"}
 
@@ -175,10 +178,8 @@ def _by_values(quantity, word, unit, values):
     """The quantity by its unit and its numbers besides."""
     # A stated unit decides; without a quantity the range of the values does.
     known = finite(values) if values.dtype.kind == "f" else np.empty(0)
-    if unit in ("%", "pct", "percent"):
-        return "percent", ""
-    if unit in ("us", "µs", "pwm"):
-        return "pwm", ""
+    if unit in OF_A_MAP:
+        return OF_A_MAP[unit], ""
     if quantity == "" and unit_for(unit, "rpm") == "rpm":
         return "rpm", ""
     inside = len(known) and known.min() >= _PWM[0] and known.max() <= _PWM[1]
@@ -186,20 +187,5 @@ def _by_values(quantity, word, unit, values):
         return "pwm", ""
     if quantity == "" and len(known) and np.abs(known).max() <= 100.0:
         return "percent", ""
-    is_sure = word in _SURE or unit in (
-        "rpm",
-        "1/min",
-        "deg",
-        "°",
-        "rad",
-        "n",
-        "kn",
-        "rev/s",
-        "rps",
-        "1/s",
-    )
-    return quantity, "" if is_sure or quantity in (
-        "",
-        "pwm",
-        "percent",
-    ) else f"'{word}' may be something else"
+    is_sure = word in _SURE or unit or quantity in ("", "pwm", "percent")
+    return quantity, "" if is_sure else f"'{word}' may be something else"
