@@ -414,6 +414,23 @@ TABLES = {
             "before": [",Gyro,Az PS,,Az SB,"],
         },
     ),
+    "degrees and minutes in columns of their own": (
+        """time | time | time
+        heading | heading | heading
+        Lat deg | latitude | ?latitude
+        Lat min | latitude |
+        Lon deg | longitude | ?longitude
+        Lon min | longitude |""",
+        {},
+    ),
+    "a water current beside the course": (
+        """time | time | time
+        COG | course_over_ground | course_over_ground
+        Current Speed [kn] | speed_over_ground:kn | ?speed_over_ground
+        Current Direction [deg] | heading |
+        heading | heading | heading""",
+        {},
+    ),
     "topics in one table": (
         """__time | secs | time
         /gps/fix/latitude | latitude | latitude
