@@ -161,7 +161,8 @@ ONLY_DOOR = {
     "matplotlib": {"report.notebook"},
     "typer": {"cli"},
     "pytest": {"pytest_plugin"},
-    "scipy": {"sweep"},  # 143 MB: an extra
+    "scipy": {"diagnose.log.files.matlab", "sweep"},  # 143 MB: an extra
+    "rosbags": {"diagnose.log.files.bags"},
     "SALib": {"sweep"},
     "optuna": {"sweep"},
     "distributed": {"sweep.workers"},

@@ -396,8 +396,11 @@ def check_inputs(
         *((log, "file of measured data") for log in logs),
         (channels, "channel file"),
     ):
-        if isinstance(path, (str, os.PathLike)) and not Path(path).is_file():
-            names = library.names("example") if what == "file of measured data" else ()
+        is_log = what == "file of measured data"
+        if isinstance(path, (str, os.PathLike)) and not (
+            Path(path).is_file() or is_log and Path(path).is_dir()
+        ):
+            names = library.names("example") if is_log else ()
             remedy = suggestion(str(path), names) if names else "Give the path of one."
             problems.append(Problem(str(path), f"There is no such {what}.", remedy))
     if causes is not None and not Path(causes).is_dir():

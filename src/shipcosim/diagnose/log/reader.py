@@ -13,8 +13,11 @@ import numpy as np
 from shipcosim.angles import TURN, wrap_series
 from shipcosim.diagnose.log.channels import Channel, ChannelFile, read_channels
 from shipcosim.diagnose.log.degree_size import metres_per_degree
+from shipcosim.diagnose.log.files.bags import is_bag, tables_of_bag
 from shipcosim.diagnose.log.files.file_layout import FileLayout
+from shipcosim.diagnose.log.files.joined_tables import joined, tables_in
 from shipcosim.diagnose.log.files.long_format import brought_together, spread
+from shipcosim.diagnose.log.files.nmea2000 import is_messages, tables_of_messages
 from shipcosim.diagnose.log.files.table import LogColumns, read_file
 from shipcosim.diagnose.log.files.times import epoch_unit
 from shipcosim.diagnose.log.names.guesses import Thrusters
@@ -58,7 +61,8 @@ def read_log(
     Parameters
     ----------
     log : path or xarray.Dataset
-        Text of any dialect, also compressed (.csv, .txt, .csv.gz, ...), .xlsx, .nc or .parquet; or such a table, over
+        Text of any dialect, also compressed (.csv, .txt, .csv.gz, ...), .xlsx, .nc, .parquet or .mat; a
+        folder of tables, a bag of ROS 2, messages of NMEA; or such a table, over
         `time`, with the units of its columns as ``units``.
     channels : path or ChannelFile, optional
         Channel file (see `read_channels`); without one columns whose names have one meaning are used.
@@ -101,7 +105,7 @@ def read_log(
     # Bring rows of one time together, and derive surge, sway and the local position.
     time, _ = signals.pop("time")
     _check_time(columns.source, time)
-    time, signals, more = brought_together(time, signals)
+    time, signals, more = brought_together(time, signals, columns.joined)
     said += more + _over_the_earth(signals)
     if "latitude" in signals:
         attributes |= _local_position(columns.source, signals, said)
@@ -128,10 +132,34 @@ def columns_of(log: str | os.PathLike, form: FileLayout | None = None) -> LogCol
     Parameters
     ----------
     log : path
+        A file, or a folder of tables that are joined by their times.
     form : FileLayout, optional
         What was said of the file.
     """
-    return spread(read_file(Path(log), form), form or FileLayout())
+    path = Path(log)
+    # A bag or a folder holds several tables, with a clock in each.
+    if is_bag(path) or is_messages(path):
+        tables = tables_of_bag(path) if is_bag(path) else tables_of_messages(path)
+        return joined(path, tables, dict.fromkeys(tables, Channel(column="time")))
+    files = tables_in(path)
+    if not files:
+        return spread(read_file(path, form), form or FileLayout())
+    tables = {file.name.split(".")[0]: columns_of(file, form) for file in files}
+    times = {
+        name: next((g.channel for g in propose(table, form=form).used if g.role == "time"), None)
+        for name, table in tables.items()
+    }
+    return joined(path, tables, times)
+
+
+def _digest(path: Path) -> str:
+    """Fingerprint of a file, or of all files in a folder."""
+    files = sorted(path.iterdir()) if path.is_dir() else [path]
+    total = hashlib.sha256()
+    for file in files:
+        if file.is_file():
+            total.update(file.read_bytes())
+    return total.hexdigest()
 
 
 def _source_of(log, form):
@@ -139,7 +167,7 @@ def _source_of(log, form):
         columns = columns_of(log, form)
         return _Source(
             columns,
-            {"source": str(log), "sha256": hashlib.sha256(Path(log).read_bytes()).hexdigest()},
+            {"source": str(log), "sha256": _digest(Path(log))},
         )
     values = {"time": np.asarray(log["time"].values, float)}
     values |= {str(name): np.asarray(v.values) for name, v in log.data_vars.items()}

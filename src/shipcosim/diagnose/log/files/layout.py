@@ -135,9 +135,24 @@ def _header(lines, above, separator, width, is_unit):
             below = i
             continue
         if sum(map(is_figure, told)) < 0.5 * len(told):
-            return i, units, row
+            return i, units, _with_groups(row, lines[i - 1] if i else "", separator)
         break
     return 0, (), None
+
+
+def _with_groups(row, above, separator):
+    """Names that stand there twice, with the groups in the row above them where all their groups differ."""
+    groups = cells_in(above, separator)
+    if len(groups) != len(row) or separator == " " or len(set(row)) == len(row):
+        return row
+    # A group stands over its first column, and over those after it that have none.
+    for i in range(1, len(groups)):
+        groups[i] = groups[i] or groups[i - 1]
+    names = [
+        f"{group} {name}".strip() if row.count(name) > 1 else name
+        for group, name in zip(groups, row, strict=True)
+    ]
+    return names if len(set(names)) == len(names) else row
 
 
 def _is_row_of_units(row, is_unit):

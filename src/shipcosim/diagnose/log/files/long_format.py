@@ -133,7 +133,7 @@ def _wide(log, names, value, clock, unit):
 
 
 def brought_together(
-    time: np.ndarray, signals: dict[str, tuple[np.ndarray, str]]
+    time: np.ndarray, signals: dict[str, tuple[np.ndarray, str]], joined: bool = False
 ) -> tuple[np.ndarray, dict[str, tuple[np.ndarray, str]], list[str]]:
     """Channels that no row has together at the times of one of them; others as they are.
 
@@ -143,6 +143,8 @@ def brought_together(
         [s]
     signals : dict of str to ((n,) array, str)
         Values, NaN in rows of other sensors, and units by role.
+    joined : bool
+        Whether the rows are those of several tables.
 
     Returns
     -------
@@ -153,7 +155,7 @@ def brought_together(
     is_finite = {name: np.isfinite(values) for name, (values, _) in signals.items()}
     there = {name: rows for name, rows in is_finite.items() if rows.any()}
     counts = np.sum(list(there.values()), axis=0) if there else np.zeros(len(time))
-    if len(there) < 3 or (counts > 0.5 * len(there)).mean() > _ALONE:
+    if not there or not joined and (len(there) < 3 or (counts > 0.5 * len(there)).mean() > _ALONE):
         return time, signals, []
     # Times of one channel, preferably the heading, are the common clock.
     base = next(

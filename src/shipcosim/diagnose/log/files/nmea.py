@@ -106,6 +106,23 @@ def _heading(f: list[str]) -> Values:
     return {"heading": _of(f[1])}
 
 
+def _rpm(f: list[str]) -> Values:
+    """Speed of a shaft or an engine. Odd numbers are to starboard, even ones to port, 0 is on the centre line."""
+    if f[5] != "A":
+        return {}
+    sides = {"0": "centre", "1": "starboard", "2": "port"}
+    what = f"{sides.get(f[2], '')} shaft" if f[1] == "S" else "engine"
+    number = "" if f[1] == "S" and f[2] in sides else f" {int(f[2])}"
+    return {f"{what}{number} rpm".strip(): _of(f[3])}
+
+
+def _rsa(f: list[str]) -> Values:
+    """Angles of the rudders, positive to starboard; the first is the starboard one, or the only one."""
+    first = "starboard rudder angle" if f[3] else "rudder angle"
+    found = {first: _of(f[1])} if f[2] == "A" else {}
+    return found | ({"port rudder angle": _of(f[3])} if f[3] and f[4] == "A" else {})
+
+
 _KINDS: Mapping[str, Callable[[list[str]], Values]] = {
     "GGA": _gga,
     "RMC": _rmc,
@@ -116,6 +133,8 @@ _KINDS: Mapping[str, Callable[[list[str]], Values]] = {
     "THS": lambda f: _heading(f) if f[2:3] != ["V"] else {},
     "ROT": _rot,
     "MWV": _mwv,
+    "RPM": _rpm,
+    "RSA": _rsa,
 }
 """What is read, preferred sources first."""
 _UNITS = {
@@ -128,6 +147,9 @@ _UNITS = {
     "yaw_rate": "deg/min",
     "wind_speed": "m/s",
     "wind_from": "deg",
+    **{f"{side} shaft rpm": "rpm" for side in ("centre", "starboard", "port")},
+    **{f"{what} {n} rpm": "rpm" for what in ("shaft", "engine") for n in range(9)},
+    **{f"{side}rudder angle": "deg" for side in ("", "starboard ", "port ")},
 }
 
 

@@ -12,8 +12,8 @@ MINUTES = "ddmm.mmmm"
 """Spelling of the unit of latitudes and longitudes in NMEA 0183: degrees times 100 plus minutes."""
 HEMISPHERES = {"latitude": {"N": 1.0, "S": -1.0}, "longitude": {"E": 1.0, "W": -1.0}}
 _TEXT = re.compile(
-    r"\s*(?P<before>[NSEWnsew])?\s*(?P<degrees>[+-]?\d+(?:\.\d+)?)\s*[°ºd*]?\s*"
-    r"(?:(?P<minutes>\d+(?:\.\d+)?)\s*['′’m]?\s*(?:(?P<seconds>\d+(?:\.\d+)?)\s*(?:\"|″|''|s)?\s*)?)?"
+    r"\s*(?P<before>[NSEWnsew])?\s*(?P<degrees>[+-]?\d+(?:\.\d+)?)\s*[°ºd*-]?\s*"
+    r"(?:(?P<minutes>\d+(?:\.\d+)?)\s*['′’´m]?\s*(?:(?P<seconds>\d+(?:\.\d+)?)\s*(?:\"|″|''|s)?\s*)?)?"
     r"(?P<after>[NSEWnsew])?\s*"
 )
 
@@ -91,8 +91,15 @@ def degrees_of_texts(cells: np.ndarray, largest: float) -> np.ndarray | None:
     for row, cell in enumerate(cells):
         if cell is None:
             continue
-        match = _TEXT.fullmatch(str(cell).replace(",", " "))
-        if match is None:
+        # A comma is the decimal sign where no point is, and stands between cells of NMEA elsewhere.
+        text = str(cell)
+        is_decimal = "." not in text and re.search(r"[°º ].*\d,\d|\d,\d{3}", text)
+        if not is_decimal and re.fullmatch(r"\D*\d{1,3},\d{1,2}\D*", text):
+            return None  # 62,33 N can be 62.33 or 62 degrees and 33 minutes
+        match = _TEXT.fullmatch(text.replace(",", "." if is_decimal else " "))
+        if match is None or any(
+            float(match[part] or 0.0) >= 60.0 for part in ("minutes", "seconds")
+        ):
             return None
         degrees = float(match["degrees"])
         # A number beyond all degrees is in degrees and minutes without a separator.

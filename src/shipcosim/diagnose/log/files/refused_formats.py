@@ -11,7 +11,6 @@ _MATLAB = (
     "Write a table with a column for each channel: in MATLAB `writetable(struct2table(S), 'log.csv')`, in Python "
     "`scipy.io.loadmat` and pandas."
 )
-_ROS = "Write its topics as tables: `rosbags-dataframe`, PlotJuggler, or `rostopic echo -b FILE -p TOPIC > log.csv`."
 _HDF5 = "Write it as .nc with a dimension `time`, or as .csv: `pandas.read_hdf(FILE).to_csv('log.csv')`."
 _BY_NAME = {
     ".xls": ("a workbook of Excel before 2007", _SHEET),
@@ -19,9 +18,7 @@ _BY_NAME = {
     ".ods": ("a spreadsheet of LibreOffice", _SHEET),
     ".numbers": ("a spreadsheet of Numbers", _SHEET),
     ".mat": ("a file of MATLAB", _MATLAB),
-    ".bag": ("a bag of ROS", _ROS),
-    ".db3": ("a bag of ROS 2", _ROS),
-    ".mcap": ("a bag of ROS 2", _ROS),
+    ".sqlite": ("a database of SQLite", "Write its table as .csv."),
     ".ulg": ("a log of PX4", "Convert it: `ulog2csv FILE`."),
     ".bin": (
         "a binary log, as of ArduPilot",
@@ -51,11 +48,9 @@ _BY_CONTENT = (
     (b"MATLAB 5.0 MAT-file", ".mat"),
     (b"MATLAB 7.3 MAT-file", ".mat"),
     (b"\x89HDF\r\n\x1a\n", ".h5"),
-    (b"#ROSBAG", ".bag"),
-    (b"\x89MCAP0", ".mcap"),
     (b"ULog\x01", ".ulg"),
     (b"TDSm", ".tdms"),
-    (b"SQLite format 3\x00", ".db3"),
+    (b"SQLite format 3\x00", ".sqlite"),
     (b"ARROW1", ".feather"),
 )
 _ZIPPED = (

@@ -14,6 +14,7 @@ from shipcosim.diagnose.log.files.cells import numbers_of, with_unit, without_fi
 from shipcosim.diagnose.log.files.excel import is_workbook, text_of_sheet
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.layout import Layout, layout_of
+from shipcosim.diagnose.log.files.matlab import columns_of_matlab, is_matlab
 from shipcosim.diagnose.log.files.nmea import columns_of_sentences, holds_sentences
 from shipcosim.diagnose.log.files.refused_formats import refuse_foreign
 from shipcosim.diagnose.log.files.text import text_of
@@ -43,6 +44,8 @@ class LogColumns:
         How the file was read, where that is not plain, and what of it was left out.
     doubled : tuple of str
         Names that several columns have.
+    joined : bool
+        Whether rows of several tables stand below each other, each with the columns of its own.
     """
 
     source: str
@@ -50,6 +53,7 @@ class LogColumns:
     units: dict[str, str]
     remarks: tuple[str, ...] = ()
     doubled: tuple[str, ...] = field(default=())
+    joined: bool = False
 
 
 def read_file(path: Path, form: FileLayout | None = None) -> LogColumns:
@@ -58,7 +62,7 @@ def read_file(path: Path, form: FileLayout | None = None) -> LogColumns:
     Parameters
     ----------
     path : Path
-        Text of any dialect or sentences of NMEA, also compressed by gzip; .xlsx; .nc; .parquet.
+        Text of any dialect or sentences of NMEA, also compressed by gzip; .xlsx; .nc; .parquet; .mat.
     form : FileLayout, optional
         What was said of it.
 
@@ -73,7 +77,7 @@ def read_file(path: Path, form: FileLayout | None = None) -> LogColumns:
 
 def _read(path: Path, form: FileLayout) -> LogColumns:
     if path.is_dir():
-        raise error_at(str(path), "is a folder, no table.", "Name the file of a log.")
+        raise error_at(str(path), "is a folder without tables.", "Name the file of a log.")
     if not path.is_file():
         raise error_at(str(path), "there is no such file.")
     if path.suffix.lower() in (".nc", ".parquet"):
@@ -82,6 +86,8 @@ def _read(path: Path, form: FileLayout) -> LogColumns:
         columns = read_columns(path)
         values = {name: values for name, (values, _) in columns.items()}
         return LogColumns(str(path), values, {name: unit for name, (_, unit) in columns.items()})
+    if is_matlab(path):
+        return LogColumns(str(path), *columns_of_matlab(path))
     refuse_foreign(path)
     if is_workbook(path):
         text, said = text_of_sheet(path, form.sheet)

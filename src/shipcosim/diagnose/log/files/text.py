@@ -6,6 +6,7 @@ import codecs
 import zlib
 from pathlib import Path
 
+from shipcosim.diagnose.log.names.vocabulary import word_parts
 from shipcosim.errors import error_at
 from shipcosim.series import unpacked_bytes
 
@@ -24,7 +25,8 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
     path : Path
         Text, or such compressed by gzip, whatever its name ends in.
     encoding : str, optional
-        Of the text; else by its byte order mark, UTF-8, UTF-16 where every other byte is zero, Windows-1252.
+        Of the text; else by its byte order mark, UTF-8, UTF-16 where every other byte is zero, Shift-JIS or EUC-JP where
+        these give words of logs, Windows-1252.
 
     Raises
     ------
@@ -70,8 +72,12 @@ def _encoding_of(content: bytes) -> str:
         return "utf-8"
     except UnicodeDecodeError:
         pass
-    try:
-        content.decode("cp1252")
-        return "cp1252"
-    except UnicodeDecodeError:
-        return "latin-1"
+    # Japanese text is only believed where it has words of logs, as other encodings decode too.
+    for name in ("cp932", "euc_jp", "cp1252"):
+        try:
+            text = content.decode(name)
+        except UnicodeDecodeError:
+            continue
+        if name == "cp1252" or word_parts().search(text):
+            return name
+    return "latin-1"

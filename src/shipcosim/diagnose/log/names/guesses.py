@@ -7,7 +7,7 @@ import numpy as np
 
 from shipcosim.diagnose.log.channels import Channel
 from shipcosim.diagnose.log.files.table import LogColumns
-from shipcosim.diagnose.log.names.thrusters import Drive, drive_of, thrusters_named
+from shipcosim.diagnose.log.names.thrusters import OF_A_MAP, Drive, drive_of, thrusters_named
 from shipcosim.diagnose.log.names.units import unit_after, unit_for
 from shipcosim.diagnose.log.names.vocabulary import meaning_of, words_of
 from shipcosim.diagnose.log.roles import ROLES, role_of
@@ -98,7 +98,14 @@ def guesses_of(column: str, log: LogColumns, thrusters: Thrusters | None) -> lis
         found = _of_thruster(column, drive, stated, thrusters)
         if found[0].role or meaning_of(words).role is None:
             return found
-    return [_by_meaning(column, words, stated, values)]
+    # A number in a name counts sensors of a kind; with several of them each is a guess.
+    found = _by_meaning(column, words, stated, values)
+    bare = tuple(word for word in words if not word.isdigit())
+    if found.is_guess and bare != words:
+        again = _by_meaning(column, bare, stated, values)
+        if again.role not in ("", "time") and not again.is_guess:
+            return [again]
+    return [found]
 
 
 def _is_empty(values):
@@ -202,6 +209,8 @@ def _of_thruster(
             )
             continue
         why = doubt or drive.doubt
+        if not why and "rpm" in wanted and "rudder" in words_of(column):
+            why = "a rudder's angle turns the ship the other way than an azimuth thruster's"
         channel = Channel(column=column)
         said = ("a command; there is no feedback",) if drive.kind == "command" else ()
         found.append(
@@ -213,15 +222,7 @@ def _of_thruster(
 
 def _of_a_map(column, stated, thrusters):
     """A guess without a role for a thruster's channel in per cent or pulses, None for others."""
-    quantity = {
-        "%": "percent",
-        "pct": "percent",
-        "percent": "percent",
-        "us": "pwm",
-        "µs": "pwm",
-        "pwm": "pwm",
-    }
-    kind = quantity.get(stated.strip().lower())
+    kind = OF_A_MAP.get(stated.strip().lower())
     if kind is None or column in ROLES:
         return None
     return Guess(column, why=_needs_a_map(column, kind, column.rpartition("_")[0], thrusters))

@@ -235,6 +235,15 @@ def _with_hemispheres(chosen, log, left):
         if role not in chosen:
             continue
         guess = chosen[role]
+        # Whole degrees beside a column of minutes are only a part of a position.
+        minutes = [
+            n
+            for n in order
+            if {role, "min"} <= set(words_of(n)) or {role, "minutes"} <= set(words_of(n))
+        ]
+        if minutes and guess.rank != EXACT and guess.column not in minutes:
+            why = f"its minutes may stand in '{minutes[0]}'"
+            guess = chosen[role] = replace(guess, rank=GUESS, why=why)
         after = order[order.index(guess.column) + 1 :][:1]
         named = [
             name

@@ -6,11 +6,16 @@ from functools import cache
 
 import numpy as np
 
+from shipcosim.diagnose.log.names.units import unit_for
 from shipcosim.diagnose.log.names.vocabulary import vocabulary, words_of
 from shipcosim.diagnose.numerics import finite
 
 _PWM = (850.0, 2150.0)  # us, pulse widths of servos and speed controllers
+OF_A_MAP = {"%": "percent", "pct": "percent", "percent": "percent"}
+OF_A_MAP |= {"us": "pwm", "µs": "pwm", "pwm": "pwm"}
+"""Units that become a speed by a map only, and what they are of."""
 _SURE = {"rpm", "azimuth", "thrust", "rudder", "force"}  # words that hardly say anything else
+_ELSEWHERE = {"bow", "port", "starboard", "stern", "centre"}
 
 
 @dataclass(frozen=True)
@@ -66,7 +71,9 @@ def drive_of(words: tuple[str, ...], unit: str, values: np.ndarray) -> Drive | N
         return None
     generic = set(vocabulary()["thruster"]["generic"]["words"])
     # Quantity and place; the name must clearly be one of a thruster.
+    whole = rest
     quantity, word, rest = _quantity(rest)
+    word = quantity if quantity in whole else word
     place = frozenset(_places().get(w, w) for w in rest if w not in generic)
     is_named = len(rest) > len(place) or word in _SURE or bool(set(rest) & set(_places()))
     is_named = is_named or bool(quantity and rest and all(w.isdigit() for w in rest))
@@ -112,17 +119,18 @@ def thrusters_named(
         return main or list(thrusters), "" if len(
             thrusters
         ) == 1 else "one value for all of these is assumed"
+    # A number alone is counted by each maker in an order of its own.
     near = [name for name, words in placed.items() if words and (words < place or place < words)]
-    if len(near) == 1:
-        return near, ""
-    if (
-        len(place) == 1
-        and (number := next(iter(place))).isdigit()
-        and 0 < int(number) <= len(thrusters)
-    ):
-        return [
-            list(thrusters)[int(number) - 1]
-        ], f"they are counted in the order of the system: {', '.join(thrusters)}"
+    is_number = all(word.isdigit() for word in place)
+    if len(near) == 1 and not is_number:
+        more = (place - placed[near[0]]) & _ELSEWHERE
+        more -= {"bow"} if "tunnel" in placed[near[0]] else set()
+        return near, f"it says more than '{near[0]}': {', '.join(sorted(more))}" if more else ""
+    if is_number and len(place) == 1 and 0 < (number := int(next(iter(place)))) <= len(thrusters):
+        return (
+            [list(thrusters)[number - 1]],
+            f"a number alone may count otherwise; they are counted in the order of the system: {', '.join(thrusters)}",
+        )
     if place & {"bow"}:
         across = [name for name, words in placed.items() if "tunnel" in words]
         if len(across) == 1:
@@ -152,7 +160,8 @@ def _phrases() -> list[tuple[tuple[str, ...], str]]:
     phrases = sorted(
         (words_of(phrase), quantity) for quantity in quantities for phrase in told[quantity]
     )
-    return sorted(phrases, key=lambda pair: -len(pair[0]))
+    # The word azimuth also names the thruster: beside another quantity it is none.
+    return sorted(phrases, key=lambda pair: (-len(pair[0]), pair == (("azimuth",), "azimuth")))
 
 
 def _quantity(words):
@@ -169,29 +178,14 @@ def _by_values(quantity, word, unit, values):
     """The quantity by its unit and its numbers besides."""
     # A stated unit decides; without a quantity the range of the values does.
     known = finite(values) if values.dtype.kind == "f" else np.empty(0)
-    if unit in ("%", "pct", "percent"):
-        return "percent", ""
-    if unit in ("us", "µs", "pwm"):
-        return "pwm", ""
+    if unit in OF_A_MAP:
+        return OF_A_MAP[unit], ""
+    if quantity == "" and unit_for(unit, "rpm") == "rpm":
+        return "rpm", ""
     inside = len(known) and known.min() >= _PWM[0] and known.max() <= _PWM[1]
     if quantity == "" and inside:
         return "pwm", ""
     if quantity == "" and len(known) and np.abs(known).max() <= 100.0:
         return "percent", ""
-    is_sure = word in _SURE or unit in (
-        "rpm",
-        "1/min",
-        "deg",
-        "°",
-        "rad",
-        "n",
-        "kn",
-        "rev/s",
-        "rps",
-        "1/s",
-    )
-    return quantity, "" if is_sure or quantity in (
-        "",
-        "pwm",
-        "percent",
-    ) else f"'{word}' may be something else"
+    is_sure = word in _SURE or unit or quantity in ("", "pwm", "percent")
+    return quantity, "" if is_sure else f"'{word}' may be something else"

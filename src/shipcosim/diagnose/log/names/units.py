@@ -119,7 +119,8 @@ def unit_after(words: tuple[str, ...], target: str) -> tuple[tuple[str, ...], st
 
 
 def _plain(text: str) -> str:
-    return re.sub(r"\s+", "", text).lower()
+    # Times by CF say since when after their unit.
+    return re.sub(r"\s+since\s.*|\s+", "", text).lower()
 
 
 @cache

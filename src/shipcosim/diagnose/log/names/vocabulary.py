@@ -47,9 +47,20 @@ def words_of(name: str) -> tuple[str, ...]:
     >>> words_of("thr1_stbd")
     ('thruster', '1', 'starboard')
     """
+    # Scripts without blanks first, then words by their separators and capitals.
     same = vocabulary()["words"]["same"]
+    if not name.isascii():
+        parts = vocabulary()["words"]["parts"]
+        name = word_parts().sub(lambda found: f" {parts[found[0]]} ", name)
     found = [word.lower() for part in _HUMP.split(name) for word in _WORDS.findall(part)]
-    return tuple(same.get(word, word) for word in found)
+    return tuple(part for word in found for part in same.get(word, word).split())
+
+
+@cache
+def word_parts() -> re.Pattern[str]:
+    """Parts of words in scripts without blanks, the longest first."""
+    parts = sorted(vocabulary()["words"]["parts"], key=len, reverse=True)
+    return re.compile("|".join(parts))
 
 
 def meaning_of(words: tuple[str, ...]) -> Meaning:

@@ -1,0 +1,72 @@
+"""Bags of ROS and files of MCAP as tables, one for each topic."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from shipcosim.diagnose.log.files.table import LogColumns
+from shipcosim.errors import error_at
+
+_TABLES = (
+    "Or write its topics as tables: PlotJuggler, or `rostopic echo -b FILE -p TOPIC > log.csv`."
+)
+_DEEPEST = 6  # levels of a message
+
+
+def is_bag(path: Path) -> bool:
+    """Whether a path is a bag of ROS by its name: .bag, .mcap, .db3, or a folder with metadata.yaml."""
+    return path.suffix.lower() in (".mcap", ".db3", ".bag") or (path / "metadata.yaml").is_file()
+
+
+def tables_of_bag(path: Path) -> dict[str, LogColumns]:
+    """Numbers of each topic's messages by the time at which they were recorded, in seconds since 1970.
+
+    Raises
+    ------
+    ShipcosimError
+        If rosbags is missing, or the bag cannot be read or holds no numbers.
+    """
+    try:
+        from rosbags.highlevel import AnyReader
+        from rosbags.typesys import Stores, get_typestore
+    except ImportError as error:
+        remedy = "Install it by `pip install 'shipcosim[ros]'`."
+        raise error_at(str(path), "bags of ROS need rosbags.", f"{remedy} {_TABLES}") from error
+    rows: dict[str, list[dict[str, float]]] = {}
+    try:
+        store = get_typestore(Stores.ROS2_HUMBLE)
+        with AnyReader([path], default_typestore=store) as reader:
+            for connection, stamp, raw in reader.messages():
+                message = reader.deserialize(raw, connection.msgtype)
+                row = {"time": 1e-9 * stamp} | dict(_numbers(message, "", 0))
+                rows.setdefault(connection.topic.strip("/").replace("/", "."), []).append(row)
+    except Exception as error:  # rosbags raises what its readers and formats do
+        raise error_at(
+            str(path), f"is no bag of ROS 1 or ROS 2 that can be read: {error}.", _TABLES
+        ) from error
+    tables = {topic: _table(path, told) for topic, told in rows.items() if len(told[0]) > 1}
+    if not tables:
+        raise error_at(str(path), "is a bag without numbers.", "Record the topics of the ship.")
+    return tables
+
+
+def _numbers(message: Any, before: str, depth: int) -> Iterator[tuple[str, float]]:
+    """Names and values of all numbers of a message; those of headers and lists are left out."""
+    for name, value in vars(message).items():
+        if name in ("header", "__msgtype__"):
+            continue
+        label = f"{before}.{name}" if before else name
+        if isinstance(value, (bool, int, float, np.number)):
+            yield label, float(value)
+        elif hasattr(value, "__msgtype__") and depth < _DEEPEST:
+            yield from _numbers(value, label, depth + 1)
+
+
+def _table(path, rows):
+    names = list(rows[0])
+    values = {name: np.array([row.get(name, np.nan) for row in rows]) for name in names}
+    return LogColumns(str(path), values, {name: "s" if name == "time" else "" for name in names})

@@ -1,0 +1,105 @@
+"""Several tables of one log, such as exported topics, below each other in one table, to be joined by their times."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from shipcosim.diagnose.log.channels import Channel
+from shipcosim.diagnose.log.files.table import LogColumns
+from shipcosim.diagnose.log.files.times import epoch_unit
+from shipcosim.diagnose.log.names.vocabulary import vocabulary, words_of
+from shipcosim.errors import error_at
+
+_TABLES = (".csv", ".txt", ".tsv", ".dat", ".csv.gz", ".xlsx", ".parquet")
+
+
+def tables_in(path: Path) -> list[Path]:
+    """Files of tables in a folder, by name; none of a path that is no folder."""
+    files = sorted(path.iterdir()) if path.is_dir() else []
+    return [file for file in files if file.is_file() and file.name.lower().endswith(_TABLES)]
+
+
+def joined(
+    path: Path, tables: Mapping[str, LogColumns], times: Mapping[str, Channel | None]
+) -> LogColumns:
+    """Rows of several tables in one, with the columns of time in common.
+
+    Parameters
+    ----------
+    path : Path
+        The folder or file, for messages.
+    tables : mapping of str to LogColumns
+        By name of the file or topic.
+    times : mapping of str to Channel or None
+        Time of each table.
+
+    Raises
+    ------
+    ShipcosimError
+        If a table has no time, times are of several kinds, or may count from different starts.
+    """
+    first = next(iter(tables))
+    if None in times.values():
+        found = f"table '{next(name for name in times if times[name] is None)}' has no time."
+        raise error_at(str(path), found, "Take it out of the folder, or name its time 'time'.")
+    clocks = {name: channel.columns for name, channel in times.items() if channel}
+    # All clocks must be of one kind, and count from a common start: a date or the time of day.
+    kinds = {name: _kind(table, times[name]) for name, table in tables.items()}
+    other = next((name for name in tables if kinds[name] != kinds[first]), None)
+    if other is not None:
+        found = f"the times of '{first}' and '{other}' are written in different ways."
+        raise error_at(str(path), found, "Write the same kind of time in all tables.")
+    values = tables[first].values[clocks[first][0]]
+    if len(tables) > 1 and values.dtype.kind == "f" and epoch_unit(values) is None:
+        found = f"the times of '{first}' and the other tables may count from different starts."
+        raise error_at(str(path), found, "Write times since 1970, or one table with one time.")
+    return _below_each_other(path, tables, clocks)
+
+
+def _kind(table, channel):
+    """Types and units of the columns of a time."""
+    columns = [(table.values[name].dtype.kind, table.units[name]) for name in channel.columns]
+    epoch = epoch_unit(table.values[channel.column]) if columns[0][0] == "f" else None
+    return channel.unit, tuple(columns), epoch
+
+
+def _below_each_other(path, tables, clocks):
+    first = next(iter(tables))
+    lengths = [len(table.values[clocks[name][0]]) for name, table in tables.items()]
+    ends = np.cumsum(lengths)
+    values = {}
+    units = {}
+    # The columns of time stand in all rows.
+    for i, clock in enumerate(clocks[first]):
+        parts = [table.values[clocks[name][i]] for name, table in tables.items()]
+        values[clock] = np.concatenate(parts)
+        units[clock] = tables[first].units[clock]
+    # Any other column stands in the rows of its table, and is empty elsewhere.
+    names = [column for table in tables.values() for column in table.values]
+    for (name, table), end, count in zip(tables.items(), ends, lengths, strict=True):
+        for column, cells in table.values.items():
+            if column in clocks[name]:
+                continue
+            label = f"{name}.{column}" if _needs_table(name, column, names) else column
+            is_text = cells.dtype.kind not in "fiub"
+            values[label] = np.full(
+                ends[-1], None if is_text else np.nan, object if is_text else float
+            )
+            values[label][end - count : end] = cells
+            units[label] = table.units[column]
+    said = [f"Tables joined by time: {', '.join(tables)}."]
+    said += [f"{name}: {remark}" for name, table in tables.items() for remark in table.remarks]
+    doubled = tuple(one for table in tables.values() for one in table.doubled)
+    return LogColumns(str(path), values, units, tuple(said), doubled, joined=True)
+
+
+def _needs_table(name, column, names):
+    """Whether a column needs its table's name: where it says nothing alone, or the table is one of set points."""
+    told = vocabulary()["words"]
+    fillers = set(told["filler"])
+    says_little = all(word in fillers or len(word) == 1 for word in words_of(column))
+    of_others = {*told["command"], *told["other"]} & set(words_of(name))
+    return names.count(column) > 1 or says_little or bool(of_others)

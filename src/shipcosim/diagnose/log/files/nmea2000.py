@@ -1,0 +1,200 @@
+"""Messages of NMEA 2000 as CANboat writes them, one a line, as tables: raw (CSV of bytes), or read
+(JSON, or the text of its analyzer).
+
+Reference: CANboat, github.com/canboat/canboat: its list of messages (PGN) and the forms of its logs.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import struct
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+
+from shipcosim.diagnose.log.files.table import LogColumns
+from shipcosim.diagnose.log.files.text import text_of
+from shipcosim.errors import error_at
+
+_STAMP = r"(?P<day>\d{4}-\d\d-\d\d)[-TZ ](?P<clock>\d\d:\d\d:\d\d(?:[.,]\d+)?)Z?"
+_RAW = re.compile(
+    _STAMP
+    + r",\d+,(?P<pgn>\d+),(?P<source>\d+),\d+,\d+,(?P<bytes>[0-9a-fA-F]{2}(?:,[0-9a-fA-F]{2})*)\s*"
+)
+_TOLD = re.compile(
+    _STAMP + r"\s+\d+\s+(?P<source>\d+)\s+\d+\s+(?P<pgn>\d+)\s+[^:]+:\s*(?P<fields>.*)"
+)
+_REFERENCES = {0: "True", 1: "Magnetic"}
+_WINDS = {0: "True (ground referenced to North)", 1: "Magnetic", 2: "Apparent"}
+_RAW_FIELDS = {
+    127250: ("<xHhhB", {"Heading": (0, 1e-4), "Reference": (3, _REFERENCES)}),
+    127251: ("<xi", {"Rate": (0, 1e-6 / 32.0)}),
+    129025: ("<ii", {"Latitude": (0, 1e-7), "Longitude": (1, 1e-7)}),
+    129026: ("<xBHH", {"COG Reference": (0, _REFERENCES), "COG": (1, 1e-4), "SOG": (2, 1e-2)}),
+    130306: ("<xHHB", {"Wind Speed": (0, 1e-2), "Wind Angle": (1, 1e-4), "Reference": (2, _WINDS)}),
+}
+"""Layout of the bytes, and of each field its place and its resolution in SI units (positions in degrees)."""
+_NOTHING = {"H": 0xFFFF, "i": 0x7FFFFFFF}
+_ANGLES = ("Heading", "COG", "Wind Angle")
+
+
+def is_messages(path: Path) -> bool:
+    """Whether a file holds messages of NMEA 2000 by its first lines."""
+    if not path.is_file():
+        return False
+    with path.open("rb") as file:
+        head = file.read(4096).decode("latin-1").splitlines()
+    lines = [line for line in head[:20] if line.strip() and not line.startswith("#")]
+    return any(
+        _RAW.fullmatch(line) or _TOLD.fullmatch(line) or line[:1] == "{" and '"pgn":' in line
+        for line in lines[:2]
+    )
+
+
+def tables_of_messages(path: Path) -> dict[str, LogColumns]:
+    """A table for each kind of message that is read, by the time of its lines in seconds since 1970.
+
+    Raises
+    ------
+    ShipcosimError
+        If no message is read.
+    """
+    found: dict[int, list[tuple[float, int, dict]]] = {}
+    unread: Counter[int] = Counter()
+    damaged = 0
+    in_si = None
+    for line in text_of(path)[0].splitlines():
+        try:
+            if found_text := _TOLD.fullmatch(line):
+                told = _of_text(found_text)
+                is_si = " rad" in line
+            elif not line.startswith("{"):
+                told = _raw(line)
+                is_si = True
+            elif '"pgn"' in line:
+                told = _read(json.loads(line))
+                is_si = in_si
+            else:
+                # The first line of JSON says the units: std has degrees, si radians.
+                in_si = {"si": True, "std": False}.get(json.loads(line).get("units"))
+                continue
+        except (ValueError, KeyError, AttributeError, struct.error):
+            damaged += bool(line.strip()) and not line.startswith("#")
+            continue
+        pgn, time, source, fields = told
+        if fields is None:
+            unread[pgn] += 1
+            continue
+        found.setdefault(pgn, []).append((time, source, _columns(fields, is_si)))
+    if not found:
+        remedy = f"Read are {', '.join(map(str, _RAW_FIELDS))}."
+        raise error_at(str(path), "holds messages of NMEA 2000, and none gives a channel.", remedy)
+    said = [f"{damaged} lines that are no message left out."] if damaged else []
+    said += [
+        f"Messages not read: {', '.join(f'{k} ({n})' for k, n in sorted(unread.items()))}."
+    ] * bool(unread)
+    return {
+        f"PGN {pgn}": _table(path, rows, said if k == 0 else [])
+        for k, (pgn, rows) in enumerate(found.items())
+    }
+
+
+def _seconds(stamp):
+    match = re.fullmatch(_STAMP, stamp)
+    if match is None:
+        raise ValueError(stamp)
+    moment = np.datetime64(f"{match['day']}T{match['clock'].replace(',', '.')}", "ns")
+    return float(moment.astype("int64")) * 1e-9
+
+
+def _raw(line):
+    """PGN, time, source and fields of a line of bytes; None for fields that are not read."""
+    match = _RAW.fullmatch(line)
+    if match is None:
+        raise ValueError(line)
+    pgn = int(match["pgn"])
+    time = _seconds(f"{match['day']}T{match['clock']}")
+    if pgn not in _RAW_FIELDS:
+        return pgn, time, int(match["source"]), None
+    form, places = _RAW_FIELDS[pgn]
+    content = bytes.fromhex(match["bytes"].replace(",", ""))
+    values = struct.unpack(form, content[: struct.calcsize(form)])
+    codes = form.replace("x", "")[1:]
+    fields = {}
+    for name, (place, size) in places.items():
+        if isinstance(size, dict):
+            # References are the lowest two bits, of winds the lowest three.
+            fields[name] = size.get(values[place] & (7 if size is _WINDS else 3), "unknown")
+        elif values[place] != _NOTHING[codes[place]]:
+            fields[name] = size * values[place]
+    return pgn, time, int(match["source"]), fields
+
+
+def _read(message):
+    """PGN, time, source and fields of a message in JSON."""
+    pgn = int(message["pgn"])
+    fields = message["fields"] if pgn in _RAW_FIELDS else None
+    return pgn, _seconds(message["timestamp"]), int(message.get("src", 0)), fields
+
+
+def _of_text(match):
+    """PGN, time, source and fields of a line of text: ``Heading = 45.0 deg; Reference = True``."""
+    pgn = int(match["pgn"])
+    pairs = [part.split("=") for part in match["fields"].split(";") if part.count("=") == 1]
+    fields = {}
+    for name, text in pairs:
+        number = re.fullmatch(r"\s*([+-]?\d+(?:\.\d+)?)(?:\s+(?:deg|rad)?(?:m?/s)?)?\s*", text)
+        fields[name.strip()] = float(number[1]) if number else text.strip()
+    time = _seconds(f"{match['day']}T{match['clock']}")
+    return pgn, time, int(match["source"]), fields if pgn in _RAW_FIELDS else None
+
+
+def _columns(fields, in_si):
+    """Values by name and unit; the name says what an angle or a wind is counted from."""
+    reference = fields.get("COG Reference", fields.get("Reference", "unknown"))
+    reference = reference.get("name", "unknown") if isinstance(reference, dict) else reference
+    angle = {True: "rad", False: "deg", None: ""}[in_si]
+    found = {}
+    for name in (
+        "Heading",
+        "COG",
+        "SOG",
+        "Rate",
+        "Latitude",
+        "Longitude",
+        "Wind Speed",
+        "Wind Angle",
+    ):
+        if not isinstance(fields.get(name), (int, float)):
+            continue
+        label = {"Rate": "rate of turn"}.get(name, name)
+        unit = "m/s" if name in ("SOG", "Wind Speed") else "deg"
+        if name in _ANGLES or name == "Rate":
+            unit = f"{angle}/s" * bool(angle) if name == "Rate" else angle
+        if name.startswith("Wind"):
+            # Winds over ground count from north; any other reference stays in the name.
+            is_true = reference == _WINDS[0]
+            quantity = "direction" if is_true and name == "Wind Angle" else name.split()[1].lower()
+            label = f"{'true' if is_true else reference.lower()} wind {quantity}"
+            label = label if is_true or reference == "Apparent" else f"other {label}"
+        elif name in ("Heading", "COG"):
+            label = f"{name} {reference}"
+        found[label, unit] = float(fields[name])
+    return found
+
+
+def _table(path, rows, said):
+    """One kind of message from the device that sends the most of them."""
+    counts = Counter(source for _, source, _ in rows)
+    used = counts.most_common(1)[0][0]
+    others = [str(source) for source in counts if source != used]
+    if others:
+        said = [*said, f"from device {used} (not {', '.join(others)})."]
+    rows = [(time, values) for time, source, values in rows if source == used]
+    names = dict(key for _, values in rows for key in values)
+    columns = {"time": np.array([time for time, _ in rows])}
+    for key in names.items():
+        columns[key[0]] = np.array([values.get(key, np.nan) for _, values in rows])
+    return LogColumns(str(path), columns, {"time": "s"} | names, tuple(said))

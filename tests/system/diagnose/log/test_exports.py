@@ -1,0 +1,55 @@
+"""Tables that tools of ships export open with the right channels; a doubt is asked, and no channel is wrong."""
+
+import numpy as np
+import pytest
+from diagnose.log.exports import SHIP, TABLES, _plain, motion, table
+
+from shipcosim.diagnose.log.files.file_layout import FileLayout
+from shipcosim.diagnose.log.names.proposal import propose
+from shipcosim.diagnose.log.reader import columns_of
+from shipcosim.diagnose.log.values import values_of
+
+TURNS = ("heading", "course_over_ground", "wind_from", "true_wind_from", "azimuth")
+
+
+def wrong_channels(path, expected, asked):
+    """What is wrong of a file's channels: silently wrong ones, and those that are missing or not asked."""
+    log = columns_of(path)
+    truth = motion()
+    proposal = propose(log, SHIP)
+    sure = proposal.channels()
+    proposed = {guess.role for guess in proposal.used}
+    wrong = [
+        f"{role} from '{sure[role].column}' in silence" for role in sorted(set(sure) - expected)
+    ]
+    wrong += [f"{role} is missing" for role in sorted(expected - proposed)]
+    wrong += [
+        f"{role} is asked, and could be sure" for role in sorted(expected & proposed - set(sure))
+    ]
+    wrong += [f"{role} is not even asked" for role in sorted(asked - proposed)]
+    for role in sorted(set(sure) & expected - {"time"}):
+        off = values_of(sure[role], role, log, FileLayout())[0] - truth[role]
+        off = (off + 180.0) % 360.0 - 180.0 if role.endswith(TURNS) else off
+        if np.abs(off).max() > 1e-3:
+            wrong.append(f"{role} is off by {np.abs(off).max():.3g}")
+    return wrong
+
+
+@pytest.mark.parametrize("encoding", ["cp932", "euc_jp", "utf-16"])
+def test_japanese_is_read_in_its_encodings(encoding, tmp_path):
+    columns = _plain(TABLES["Japanese"][0])
+    path = tmp_path / "log.csv"
+    path.write_text(table(columns), encoding=encoding)
+    assert wrong_channels(path, {role for *_, role in columns}, set()) == []
+
+
+@pytest.mark.parametrize("kind", TABLES)
+def test_an_exported_table_has_its_channels(kind, tmp_path):
+    columns, form = TABLES[kind]
+    columns = _plain(columns)
+    path = tmp_path / "log.csv"
+    path.write_text(table(columns, **form), encoding="utf-8")
+    roles = {column[2] for column in columns if len(column) > 2 and column[2]}
+    asked = {role.removeprefix("?") for role in roles if role.startswith("?")}
+    expected = {role for role in roles if not role.startswith("?")}
+    assert wrong_channels(path, expected, asked - expected) == []
