@@ -275,7 +275,7 @@ class Recording:
         self.block = following
         return answer
 
-    def is_choice(self, condition):
+    def is_choice(self, condition: Symbol) -> bool:
         """True if a condition depends only on whole numbers that are part of the code."""
         for one in condition.sources():
             if one.op == "load":
