@@ -23,21 +23,29 @@ from shipcosim.angles import wrap_series  # noqa: E402
 from shipcosim.cosim import simulate, system_of  # noqa: E402
 from shipcosim.interfaces.predictor import HORIZONS  # noqa: E402
 from shipcosim.learn.prediction.worlds import KNOWN, TRUTH, draw, scenario  # noqa: E402
-from shipcosim.models.core.kinematics import to_body, to_ned  # noqa: E402
 from shipcosim.models.core.motion import Motion  # noqa: E402
+from shipcosim.models.environment.wave_loads import drift_table  # noqa: E402
+from shipcosim.models.environment.wave_motion import wave_response  # noqa: E402
+from shipcosim.models.environment.waves import components  # noqa: E402
 
 STEP = 0.5
 """Of the integration. [s] With the future known it leaves errors of centimetres: a test holds that."""
-DRIFT_TIME = 60
-"""Rows over which the mean wave drift is taken. [s] Assumed: some periods of slow drift."""
+HEADINGS = np.linspace(-np.pi, np.pi, 37)
+"""At which the mean wave drift is worked out. [rad]"""
+SPACING = 3.0
+"""Of the times before the loss over which it is the mean. [s] Not a multiple of the wave periods, 4 to 7 s."""
+WAVES = ("wave_height", "wave_period", "wave_from", "wave_peak_enhancement", "wave_seed")
 SURROUNDINGS = (
     *(
         f"environment.{name}"
         for name in ("wind_north", "wind_east", "current_north", "current_east")
     ),
+    *(f"environment.{name}" for name in WAVES),
     *("environment.wind_speed_mean", "environment.wind_from_mean"),
     *(f"vessel.tau_{load}_{axis}" for load in ("thrusters", "drift") for axis in "XYN"),
 )
+Measures = dict[str, list[dict[str, np.ndarray]]]
+"""By predictor: what was measured, a world after another."""
 RIVALS = (
     "constant velocity",
     "kinetic of the thesis",
@@ -116,6 +124,7 @@ def errors(
         North, east, heading. [m, m, rad]
     """
     ship = true_ship(seed)
+    drift = mean_drift(ship, sea)
     lost = int(np.flatnonzero(sea["time"] == sea["lost_at"])[0])
     found = []
     for row in range(lost + max(starts) + 1):
@@ -123,9 +132,25 @@ def errors(
         if row == 0:
             ship.settle()
         if row - lost in starts:
-            found.append(_missed(copy(ship), sea, row, future))
+            found.append(_missed(copy(ship), sea, row, drift, future))
         ship.remember(1.0)
     return np.array(found)
+
+
+def mean_drift(ship, sea: dict[str, np.ndarray]) -> np.ndarray:
+    """Mean wave drift of the sea before the loss by heading, (3, headings), in body axes at rest. [N, N, N.m]"""
+    values = [float(sea[f"environment.{name}"][0]) for name in WAVES]
+    wave, table, hull = components(*values), drift_table(ship.drift.drift_table), ship.hull
+    size = {"length": hull.length, "breadth": hull.breadth, "draught": hull.draught}
+    times = np.arange(0.0, float(sea["lost_at"]), SPACING)
+    loads = [
+        [
+            wave_response(time, 0.0, 0.0, psi, 0.0, 0.0, wave, table, **size)[0]
+            for time in times.tolist()
+        ]
+        for psi in HEADINGS.tolist()
+    ]
+    return np.mean(loads, axis=1).T
 
 
 def _place(ship, sea, row):
@@ -136,16 +161,11 @@ def _place(ship, sea, row):
     ship.water = ship.current_north, ship.current_east
 
 
-def _missed(ship, sea, row, future):
+def _missed(ship, sea, row, drift, future):
     """Integrate the true ship from a row on, and compare her at the horizons."""
     # Mean wind of the moment, towards north and east.
     speed, source = (sea[f"environment.wind_{name}_mean"][row] for name in ("speed", "from"))
     wind = -speed * np.cos(source), -speed * np.sin(source)
-    # Mean wave drift of the last minute: a force fixed to the earth, and a moment.
-    past = slice(max(0, row + 1 - DRIFT_TIME), row + 1)
-    drift = [sea[f"vessel.tau_drift_{axis}"][past] for axis in "XYN"]
-    north, east = (np.mean(one) for one in to_ned(sea["truth"][past, 2], *drift[:2]))
-    moment = np.mean(drift[2])
     # The sea of the ship is calm: her wave drift comes from here.
     ship.wave_height = 0.0
     off = []
@@ -158,7 +178,7 @@ def _missed(ship, sea, row, future):
             )
             load = [_at(sea[f"vessel.tau_drift_{axis}"], ahead) for axis in "XYN"]
         else:
-            load = [*to_body(ship.state.psi, north, east), moment]
+            load = [np.interp(ship.state.psi, HEADINGS, one) for one in drift]
         ship.wind_north, ship.wind_east = (float(one) for one in wind)
         # Thrust runs down as it truly does: after the loss that is no choice of anybody.
         thrust = [_at(sea[f"vessel.tau_thrusters_{axis}"], ahead) for axis in "XYN"]
@@ -193,7 +213,7 @@ def closable(rival: np.ndarray, ours: np.ndarray, oracle: np.ndarray) -> tuple[f
     return tuple(map(float, pages.interval(rival - ours, rival - oracle)))
 
 
-def page(found: dict[str, list[dict[str, np.ndarray]]]) -> str:
+def page(found: Measures) -> str:
     """Errors of all predictors and of the oracle, and the share of the closable, 60 s ahead."""
     text = ""
     for first in pages.FIRST:
@@ -214,17 +234,63 @@ def page(found: dict[str, list[dict[str, np.ndarray]]]) -> str:
     return text
 
 
+def worst_tenth(found: Measures) -> str:
+    """Place of ours against kinetic 60 s ahead, in each tenth of the starts by what the kinetic one misses."""
+    off = {name: np.array([one["errors"] for one in found[name]]) for name in ("kinetic", "ours")}
+    place = {
+        name: np.hypot(one[:, :, -1, 0], one[:, :, -1, 1]).ravel() for name, one in off.items()
+    }
+    tenths = np.array_split(np.argsort(place["kinetic"]), 10)
+    cells = [
+        f"{100.0 * (place['ours'][rows].mean() / place['kinetic'][rows].mean() - 1.0):+.0f} %"
+        for rows in tenths
+    ]
+    head = ("tenth of starts", *(str(k) for k in range(1, 11)))
+    return pages.table(head, [("ours against kinetic, place", *cells)])
+
+
+STILL = 0.1
+"""Speed over ground at the loss below which a ship counts as still. [m/s] Assumed: DP holds her within it."""
+
+
+def coverage(found: Measures, speeds: np.ndarray) -> str:
+    """Share of truths within the regions of 90 %, by class of start; `speeds` (worlds,) at the loss. [m/s]"""
+    rows = []
+    classes = {"still": speeds < STILL, "moving": speeds >= STILL}
+    for name in ("kinetic", "ours"):
+        off = np.array([one["errors"] for one in found[name]])
+        size = np.array([one["regions"] for one in found[name]])
+        misses = np.stack([np.hypot(off[..., 0], off[..., 1]), np.abs(off[..., 2])], axis=-1)
+        for label, worlds in classes.items():
+            for first, starts in (("1 to 5", slice(0, 5)), ("6 to 20", slice(5, 20))):
+                within = (misses <= size)[worlds][:, starts].mean(axis=1)
+                share, low, high = (100.0 * one for one in pages.interval(within))
+                cells = [
+                    f"{share[k, a]:.0f} % ({low[k, a]:.0f} to {high[k, a]:.0f})"
+                    for a in range(2)
+                    for k in range(len(HORIZONS))
+                ]
+                rows.append((name, f"{label}, {worlds.sum()} worlds", first, *cells))
+    head = [f"{what}, {end:.0f} s" for what in ("place", "heading") for end in HORIZONS]
+    return pages.table(("regions of", "at the loss", "starts", *head), rows)
+
+
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", default="9601:9625", help="FROM:TO of worlds")
     parser.add_argument("--into", type=Path, default=measuring.FOLDER, help="records and measures")
     options = parser.parse_args(arguments)
     found = {name: [] for name in (*RIVALS, "oracle")}
+    speeds = []
     for seed in range(*map(int, options.seeds.split(":"))):
         found["oracle"].append(measured(seed, options.into))
+        sea = sailed(seed, options.into)
+        speeds.append(np.hypot(*sea["truth"][sea["time"] == sea["lost_at"], 3:5][0]))
         for name in RIVALS:
             found[name].append(measuring.measured(name, seed, 1.0, options.into))
     print(page(found))
+    print(worst_tenth(found))
+    print(coverage(found, np.array(speeds)))
 
 
 if __name__ == "__main__":
