@@ -140,7 +140,9 @@ def errors(
 def mean_drift(ship, sea: dict[str, np.ndarray]) -> np.ndarray:
     """Mean wave drift of the sea before the loss by heading, (3, headings), in body axes at rest. [N, N, N.m]"""
     values = [float(sea[f"environment.{name}"][0]) for name in WAVES]
-    wave, table, hull = components(*values), drift_table(ship.drift.drift_table), ship.hull
+    wave = components(*values[:-1], round(values[-1]))
+    table = drift_table(ship.drift.drift_table)
+    hull = ship.hull
     size = {"length": hull.length, "breadth": hull.breadth, "draught": hull.draught}
     times = np.arange(0.0, float(sea["lost_at"]), SPACING)
     loads = [
@@ -210,7 +212,8 @@ def measured(seed: int, folder: Path = measuring.FOLDER) -> dict[str, np.ndarray
 
 def closable(rival: np.ndarray, ours: np.ndarray, oracle: np.ndarray) -> tuple[float, float, float]:
     """Share of the closable, (rival - ours) / (rival - oracle), and its 95 % interval over worlds; (worlds,) each."""
-    return tuple(map(float, pages.interval(rival - ours, rival - oracle)))
+    share, low, high = pages.interval(rival - ours, rival - oracle)
+    return float(share), float(low), float(high)
 
 
 def page(found: Measures) -> str:
