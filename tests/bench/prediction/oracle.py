@@ -140,7 +140,8 @@ def errors(
 def mean_drift(ship, sea: dict[str, np.ndarray]) -> np.ndarray:
     """Mean wave drift of the sea before the loss by heading, (3, headings), in body axes at rest. [N, N, N.m]"""
     values = [float(sea[f"environment.{name}"][0]) for name in WAVES]
-    wave = components(*values[:-1], round(values[-1]))
+    height, period, source, enhancement, wave_seed = values
+    wave = components(height, period, source, enhancement, round(wave_seed))
     table = drift_table(ship.drift.drift_table)
     hull = ship.hull
     size = {"length": hull.length, "breadth": hull.breadth, "draught": hull.draught}
