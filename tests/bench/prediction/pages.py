@@ -8,6 +8,7 @@ from prediction.rivals import ROOT
 from shipcosim.interfaces.predictor import HORIZONS
 
 PAGE = ROOT / "docs" / "generated" / "drift_prediction.md"
+THESIS = "kinetic of the thesis"  # the rival of paper IV: wind and thrust, no bias, no current
 FIRST = (5, 20)  # predictions after the loss
 DRAWS = 2000
 AXES = {"north": 1.0, "east": 1.0, "yaw": 180.0 / np.pi}  # factor to what is printed
@@ -88,16 +89,16 @@ def reached(measures: Measures) -> str:
             )
         seconds = 1e3 * float(np.median([one["seconds"] for one in measures["ours"][1.0]]))
         rows.append(("ours: one step below 5 ms", f"{seconds:.1f} ms", _met(seconds < 5.0)))
-    if "paper IV" in measures:
-        change = 100.0 * (interval(*_pair(measures, "paper IV", 5))[0] - 1.0)
+    # The thesis' figures are against its own kinetic predictor: so are ours of its scheme.
+    if {"paper IV", THESIS} <= set(measures):
+        change = 100.0 * (interval(*_pair(measures, "paper IV", 5, THESIS))[0] - 1.0)
         said = ", ".join(f"{word} {v:+.0f} %" for word, v in zip(AXES, change[-1], strict=False))
-        rows.append(
-            ("paper IV's scheme, first 5 starts, 60 s: the thesis has -67, -45, -51 %", said, "")
-        )
+        goal = f"paper IV's scheme against {THESIS}, first 5 starts, 60 s: -67, -45, -51 %"
+        rows.append((goal, said, _met(bool((change[-1, :3] <= [-67.0, -45.0, -51.0]).all()))))
     if not rows:
         return ""
     return "## What is to be reached\n\n" + table(
-        ("to reach, against the kinetic predictor", "measured", ""), rows
+        ("to reach, against `kinetic` where no other rival is named", "measured", ""), rows
     )
 
 
@@ -195,8 +196,8 @@ def steps(measures: Measures) -> str:
     )
 
 
-def _pair(measures, name, first):
-    return by_world(measures[name][1.0], first), by_world(measures["kinetic"][1.0], first)
+def _pair(measures, name, first, rival="kinetic"):
+    return by_world(measures[name][1.0], first), by_world(measures[rival][1.0], first)
 
 
 def _coverage(worlds, first):

@@ -59,6 +59,14 @@ class WithoutCurrent(fmu_class("predictor")):
         return super().predict(state._replace(**held, thrust_error=NONE), known)
 
 
+class KineticOfTheThesis(fmu_class("predictor")):
+    """The kinetic predictor of the thesis: wind and thrust, no bias, no current."""
+
+    def predict(self, state, known):
+        none = dict.fromkeys(HELD, 0.0)
+        return super().predict(state._replace(**none, thrust_error=NONE), known)
+
+
 HELD = ("current_north", "current_east", "force_north", "force_east", "moment")
 
 
@@ -191,6 +199,7 @@ def _learned(variant):
 PREDICTORS = {
     "constant velocity": lambda: equipped(ConstantVelocity),
     "Kalman filter": lambda: equipped(LinearKalman),
+    "kinetic of the thesis": lambda: equipped(KineticOfTheThesis),
     "kinetic without current": lambda: equipped(WithoutCurrent),
     "kinetic": lambda: equipped(fmu_class("predictor")),
     "paper IV": _learned("paper-iv"),
