@@ -166,6 +166,13 @@ def _write_page(
     keys = {name: time for name, time in times.items() if time is not None}
     system, scenario, remarks = system_and_scenario(what, reading, keys)
     print_problems([*system.deviations, *remarks])
+    # What the command line changed belongs to the scenario that the page saves.
+    given = {
+        "system": scenario.system or what,
+        "parameters": [*scenario.parameters, *map(str, reading.parameters)],
+        "components": {**scenario.components, **{k: str(v) for k, v in reading.components.items()}},
+    }
+    scenario = scenario.model_copy(update=given)
     with progress_of("Compiling") as progress:
         html = live_page(system, scenario, progress)
     # An earlier page is set aside at the end: where nothing could be made, it stays.

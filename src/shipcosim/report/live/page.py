@@ -61,6 +61,8 @@ def render_live(module: Module, table: Dataset, scenario: Scenario, written: Sce
     ShipcosimError
         Nothing in the system has a position and a heading.
     """
+    if not written.system:
+        written = written.model_copy(update={"system": module.plan.system.name})
     run = make_run(table, goes_on=True)
     if run is None:
         found = "Nothing in it has a position and a heading, so there is no ship to show."
@@ -145,12 +147,9 @@ def _description(module: Module, scenario: Scenario, written: Scenario) -> JsonO
 
 def _header(written: Scenario) -> JsonObject:
     """Keys of the scenario's file, for the one that the page saves."""
-    keys = ("description", "system", "parameters", "step_size", "output_interval")
+    keys = ("description", "system", "parameters", "components", "step_size", "output_interval")
     header = {key: getattr(written, key) for key in keys}
-    return {key: value for key, value in header.items() if value} | {
-        "set": {name: value for name, value in written.set.items()},
-        "stop_time": written.stop_time,
-    }
+    return {key: value for key, value in header.items() if value} | {"set": written.set}
 
 
 def _signals(module: Module) -> Iterator[tuple[str, JsonObject]]:

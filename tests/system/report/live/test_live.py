@@ -16,9 +16,9 @@ AHEAD = 120.0  # s, of the forecast of losses
 
 @pytest.fixture(scope="module")
 def page_file(tmp_path_factory):
-    """The four corners as a page."""
+    """The four corners as a page, with a component swapped."""
     path = tmp_path_factory.mktemp("live") / "four_corner.html"
-    system, scenario, _ = system_and_scenario("four_corner", Reading(), {})
+    system, scenario, _ = system_and_scenario("allocation/four_corner_extended", Reading(), {})
     export_page(system, scenario, path)
     return path
 
