@@ -144,7 +144,7 @@ def columns_of(log: str | os.PathLike, form: FileLayout | None = None) -> LogCol
     files = tables_in(path)
     if not files:
         return spread(read_file(path, form), form or FileLayout())
-    tables = {file.name.split(".")[0]: columns_of(file, form) for file in files}
+    tables = {name: columns_of(file, form) for name, file in files.items()}
     times = {
         name: next((g.channel for g in propose(table, form=form).used if g.role == "time"), None)
         for name, table in tables.items()

@@ -41,6 +41,14 @@ def test_topics_in_several_files_are_joined_by_time(clock, tmp_path):
     assert "Tables joined by time: gps, gyro" in " ".join(log.attrs["column_remarks"])
 
 
+@pytest.mark.parametrize("names", [("run.gps.csv", "run.gyro.csv"), ("run.csv", "run.txt")])
+def test_tables_whose_names_begin_alike_are_all_read(names, tmp_path):
+    folder = folder_of(tmp_path / "run", "ns")
+    for old, new in zip(("gps.csv", "gyro.csv"), names, strict=True):
+        (folder / old).rename(folder / new)
+    assert {"heading", "north", "east"} <= set(read_log(folder))
+
+
 def test_tables_that_may_start_at_different_times_are_refused(tmp_path):
     with pytest.raises(ShipcosimError, match="may count from different starts"):
         read_log(folder_of(tmp_path / "run", "time"))

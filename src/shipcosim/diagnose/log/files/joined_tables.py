@@ -16,10 +16,20 @@ from shipcosim.errors import error_at
 _TABLES = (".csv", ".txt", ".tsv", ".dat", ".csv.gz", ".xlsx", ".parquet")
 
 
-def tables_in(path: Path) -> list[Path]:
-    """Files of tables in a folder, by name; none of a path that is no folder."""
+def tables_in(path: Path) -> dict[str, Path]:
+    """Files of tables in a folder, by their names; none of a path that is no folder."""
     files = sorted(path.iterdir()) if path.is_dir() else []
-    return [file for file in files if file.is_file() and file.name.lower().endswith(_TABLES)]
+    tables = [file for file in files if file.is_file() and file.name.lower().endswith(_TABLES)]
+    names = [_without_ending(file.name) for file in tables]
+    # Two files that differ in their ending alone keep it.
+    return {
+        file.name if names.count(name) > 1 else name: file
+        for file, name in zip(tables, names, strict=True)
+    }
+
+
+def _without_ending(name: str) -> str:
+    return name[: -len(next(ending for ending in _TABLES if name.lower().endswith(ending)))]
 
 
 def joined(
