@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import hashlib
 import importlib.util
@@ -9,13 +10,13 @@ import os
 import subprocess
 import sys
 import sysconfig
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from shipcosim.errors import error_at
 from shipcosim.library import cache
-from shipcosim.temporary import temporary_folder
+from shipcosim.temporary import replace_file, temporary_folder
 
 OPTIONS = ("-shared", "-O1", "-g0", "-s", "-fPIC", "-std=c11", "-fvisibility=hidden")
 EXACT = "-ffp-contract=off"  # no fused operations: what Python computes, to the last bit
@@ -90,13 +91,39 @@ def is_intact(path: Path) -> bool:
         return False
 
 
+def run_compiler(arguments: Sequence[str], folder: Path | str, goal: str = "") -> None:
+    """Call the compiler in a folder; `goal` says in errors what for.
+
+    Raises
+    ------
+    ShipcosimError
+        There is no compiler, or it fails.
+    """
+    check_installed()
+    command = [sys.executable, "-m", "ziglang", "cc", *arguments]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise error_at(f"compiler{goal}", f"fails: {done.stderr.strip()[:1000]}")
+
+
+def kept(key: object, suffix: str, make: Callable[[], bytes]) -> bytes:
+    """Read from the cache what was made for a key, or make it. A cache that cannot be written keeps nothing."""
+    digest = hashlib.sha256(repr(key).encode()).hexdigest()[:32]
+    path = cache() / "native" / f"{digest}{suffix}"
+    if path.is_file():
+        return path.read_bytes()
+    content = make()
+    with contextlib.suppress(OSError):
+        replace_file(path, content)
+    return content
+
+
 def _compiled(source: str) -> Path:
     # The cached file belongs to source, options and platform: a change of one gives another name.
     key = repr((source, OPTIONS, EXACT, sysconfig.get_platform()))
     path = cache() / "native" / f"{hashlib.sha256(key.encode()).hexdigest()[:32]}{SUFFIX}"
     if is_intact(path):
         return path
-    check_installed()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         # Compile into a temporary folder, then rename: another process never sees half a file.
@@ -104,21 +131,7 @@ def _compiled(source: str) -> Path:
             text = Path(folder, "step.c")
             made = Path(folder, path.name)
             text.write_text(source, encoding="utf-8")
-            command = [
-                sys.executable,
-                "-m",
-                "ziglang",
-                "cc",
-                *OPTIONS,
-                EXACT,
-                str(text),
-                "-o",
-                str(made),
-                "-lm",
-            ]
-            done = subprocess.run(command, capture_output=True, text=True, check=False)
-            if done.returncode:
-                raise error_at("compiler", f"fails: {done.stderr.strip()[:1000]}")
+            run_compiler([*OPTIONS, EXACT, text.name, "-o", made.name, "-lm"], folder)
             keep_digest(made, path)
             os.replace(made, path)
     except OSError as error:

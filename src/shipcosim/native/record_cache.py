@@ -95,7 +95,7 @@ def key_of(fmu: Any, shape: Shape) -> str:
 @lru_cache(maxsize=256)
 def _key(module, name, flat):
     # Another version, another shape or another code writer gives another key.
-    parts = module, name, shipcosim.__version__, flat.structure, flat.leaves, _OWN_CODE
+    parts = module, name, shipcosim.__version__, flat.structure, flat.leaves, OWN_CODE
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
 
@@ -165,9 +165,11 @@ def _path(key) -> Path:
 
 
 def _own_code() -> str:
-    """Hash of this package, which writes the C text."""
-    texts = [path.read_bytes() for path in sorted(Path(__file__).parent.glob("*.py"))]
+    """Hash of this package, which writes the C texts."""
+    files = sorted(Path(__file__).parent.rglob("*.[pch]*"))
+    texts = [path.read_bytes() for path in files if path.suffix in (".py", ".c", ".h")]
     return hashlib.sha256(b"\0".join(texts)).hexdigest()
 
 
-_OWN_CODE = _own_code()
+OWN_CODE = _own_code()
+"""What keys of the cache hold: another package writes other texts."""

@@ -129,7 +129,7 @@ def recorded(seed: int, folder: Path) -> dict[str, np.ndarray]:
     if not path.exists():
         what = scenario(acting(seed))
         table = simulate(system_of(what), what)
-        found = {name: np.asarray(table[_source(name)], float) for name in KNOWN}
+        found = {name: np.asarray(table[source_of(name)], float) for name in KNOWN}
         found |= {name: np.asarray(table[signal], float) for name, signal in WANTED.items()}
         truth = np.column_stack([np.asarray(table[f"vessel.{name}"], float) for name in TRUTH])
         measuring.save(path, time=np.asarray(table["time"], float), truth=truth, **found)
@@ -137,7 +137,8 @@ def recorded(seed: int, folder: Path) -> dict[str, np.ndarray]:
         return dict(kept)
 
 
-def _source(name):
+def source_of(name):
+    """Signal in a run that a predictor knows by a name."""
     if name.endswith("_allocated"):
         return f"allocator.{name.removesuffix('_allocated')}"
     return f"{'sensors' if name.endswith('_meas') else 'controller'}.{name}"

@@ -18,6 +18,7 @@ if __name__ == "__main__":  # as a test its folders are on the path already
     sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # prediction; ships
 
 from prediction import measuring, pages  # noqa: E402
+from prediction.acting import source_of  # noqa: E402
 from prediction.rivals import fmu_class  # noqa: E402
 from shipcosim.angles import wrap_series  # noqa: E402
 from shipcosim.cosim import simulate, system_of  # noqa: E402
@@ -65,19 +66,13 @@ def sailed(seed: int, folder: Path = measuring.FOLDER) -> dict[str, np.ndarray]:
         table = simulate(system_of(what), what)
         time = np.asarray(table["time"], float)
         truth = np.column_stack([np.asarray(table[f"vessel.{name}"], float) for name in TRUTH])
-        known = np.column_stack([np.asarray(table[_source(name)], float) for name in KNOWN])
+        known = np.column_stack([np.asarray(table[source_of(name)], float) for name in KNOWN])
         fields = {"seed": seed, "lost_at": world.lost_at, "time": time, "truth": truth}
         measuring.save(folder / f"record-{seed}-1.npz", known=known, **fields)
         values = {name: np.asarray(table[name], float) for name in SURROUNDINGS}
         measuring.save(path, **fields, **values)
     with np.load(path) as kept:
         return dict(kept)
-
-
-def _source(name):
-    if name.endswith("_allocated"):
-        return f"allocator.{name.removesuffix('_allocated')}"
-    return f"{'sensors' if name.endswith('_meas') else 'controller'}.{name}"
 
 
 def true_ship(seed: int):

@@ -293,4 +293,4 @@ def test_a_cache_that_is_spoilt_is_made_again(tmp_path, monkeypatch):
 
 
 def test_records_follow_the_code_that_writes_them():
-    assert record_cache._OWN_CODE == record_cache._own_code()
+    assert record_cache.OWN_CODE == record_cache._own_code()

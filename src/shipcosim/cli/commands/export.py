@@ -1,7 +1,7 @@
 """Systems in other forms: `shipcosim export fmu`, `osp` and `page`; `shipcosim live` opens that page."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -98,15 +98,10 @@ def page(
 
     Example: shipcosim export page four_corner --out results
     """
-    from shipcosim.calls.arguments import Reading
     from shipcosim.cli.console import shown_path
-    from shipcosim.cli.requests import parsed_components
 
-    swapped = parsed_components(components or ())
-    reading = Reading(
-        parameters=parameters or [], components=swapped, fmus=fmus or [], strict=strict
-    )
-    say(shown_path(_write_page(what, reading, stop_time, step_size, out, force=force)))
+    options = parameters, components, fmus, strict
+    say(shown_path(_write_page(what, options, stop_time, step_size, out, force=force)))
 
 
 def live(
@@ -133,15 +128,10 @@ def live(
     """
     import webbrowser
 
-    from shipcosim.calls.arguments import Reading
     from shipcosim.cli.console import shown_path
-    from shipcosim.cli.requests import parsed_components
 
-    swapped = parsed_components(components or ())
-    reading = Reading(
-        parameters=parameters or [], components=swapped, fmus=fmus or [], strict=strict
-    )
-    path = _write_page(what, reading, stop_time, step_size, out, force=True)
+    options = parameters, components, fmus, strict
+    path = _write_page(what, options, stop_time, step_size, out, force=True)
     say(shown_path(path))
     if not no_open and not webbrowser.open(path.resolve().as_uri()):
         say("No browser was found: open this file in one.")
@@ -149,7 +139,7 @@ def live(
 
 def _write_page(
     what: str,
-    reading: Any,
+    options: tuple[Parameters, Components, Fmus, Strict],
     stop_time: float | None,
     step_size: float | None,
     out: Path,
@@ -157,11 +147,17 @@ def _write_page(
     force: bool,
 ) -> Path:
     """Write the page that runs a system or scenario; return its path. Times in s."""
-    from shipcosim.calls.arguments import system_and_scenario
+    from shipcosim.calls.arguments import Reading, system_and_scenario
     from shipcosim.cli.console import print_problems, progress_of
+    from shipcosim.cli.requests import parsed_components
     from shipcosim.report.live import live_page
     from shipcosim.staging import staged
 
+    parameters, components, fmus, strict = options
+    swapped = parsed_components(components or ())
+    reading = Reading(
+        parameters=parameters or [], components=swapped, fmus=fmus or [], strict=strict
+    )
     times = {"stop_time": stop_time, "step_size": step_size}
     keys = {name: time for name, time in times.items() if time is not None}
     system, scenario, remarks = system_and_scenario(what, reading, keys)
@@ -169,8 +165,8 @@ def _write_page(
     # What the command line changed belongs to the scenario that the page saves.
     given = {
         "system": scenario.system or what,
-        "parameters": [*scenario.parameters, *map(str, reading.parameters)],
-        "components": {**scenario.components, **{k: str(v) for k, v in reading.components.items()}},
+        "parameters": [*scenario.parameters, *map(str, parameters or ())],
+        "components": {**scenario.components, **{k: str(v) for k, v in swapped.items()}},
     }
     scenario = scenario.model_copy(update=given)
     with progress_of("Compiling") as progress:

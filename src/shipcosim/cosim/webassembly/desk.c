@@ -205,13 +205,6 @@ EXPORT int desk_advance(int n)
     return status;
 }
 
-/* Record the present values as the last row. */
-EXPORT void desk_record(void)
-{
-    desk.n_rows = 0;
-    record(&desk);
-}
-
 /* Hold or shift a signal from now on: scale * value + shift. */
 EXPORT void desk_modify(int exchange, int is_input, int row, double scale, double shift)
 {
@@ -238,15 +231,6 @@ EXPORT void desk_give(int exchange, int row, double value)
     transfer_all(now);
 }
 
-/* Set a parameter while it runs. 0 where that went well. */
-EXPORT int desk_set(int part, unsigned reference, int kind, double value)
-{
-    Start s = {part, reference, kind, value, NULL};
-
-    words[0] = '\0';
-    return set_start(&s);
-}
-
 /* Change a number that the next start takes. */
 EXPORT void desk_change_start(int i, double value) { starts[i].number = value; }
 
@@ -254,5 +238,3 @@ EXPORT int64_t desk_step(void) { return now; }
 EXPORT int64_t desk_rows(void) { return desk.n_rows; }
 EXPORT const char *desk_words(void) { return words; }
 EXPORT const void *desk_table(int exchange) { return exchanges[exchange].rows; }
-EXPORT const void *desk_sources(int exchange) { return exchanges[exchange].modified; }
-EXPORT const void *desk_inputs(int exchange) { return exchanges[exchange].inputs; }

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import contextlib
-import hashlib
 import os
-import subprocess
 import sys
 import zipfile
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import cache as cache_in_memory
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -19,22 +15,23 @@ from typing import Any
 from shipcosim.cosim.master.plan import Plan, label, make_plan
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.cosim.webassembly.wiring import Wiring
-from shipcosim.errors import Problem, ShipcosimError, error_at
-from shipcosim.library import cache
-from shipcosim.native.compiler import EXACT, check_installed
+from shipcosim.errors import Problem, raise_errors
+from shipcosim.native.compiler import EXACT, check_installed, kept, run_compiler
 from shipcosim.native.export.functions import understood
 from shipcosim.native.export.text import source_of_model
 from shipcosim.native.export.variants import variant_of
+from shipcosim.native.record_cache import OWN_CODE
 from shipcosim.native.symbols import Untraceable
 from shipcosim.options import CountProgress
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import Component, System
-from shipcosim.temporary import replace_file, temporary_folder
+from shipcosim.temporary import temporary_folder
 
+GOAL = " for WebAssembly"
 TARGET = ("-target", "wasm32-wasi", "-Os", "-g0", "-std=c11", EXACT)
 CALLS = (
-    *("start", "advance", "record", "modify", "release", "give", "set", "change_start"),
-    *("step", "rows", "words", "table", "sources", "inputs"),
+    *("start", "advance", "modify", "release", "give", "change_start"),
+    *("step", "rows", "words", "table"),
 )
 """What a page calls, in `desk.c`."""
 
@@ -119,8 +116,7 @@ def _texts(system: System, progress: CountProgress | None) -> dict[str, str]:
                 problems.append(Problem(component.name, f"has no native code: {reason}.", REMEDY))
             if progress is not None:
                 progress(done, len(system.components))
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     return found
 
 
@@ -135,8 +131,8 @@ def _text_of(component: Component, instances: Instances) -> str:
         raise Untraceable("it is an FMU of another tool, without a model in C of this package")
     cls: Any = type(instance)
     # The name of an FMU's module is unique to its content.
-    key = cls.__module__, cls.__qualname__, sorted(component.start.items()), _writer()
-    return _kept(key, "c", lambda: _written(cls, component).encode()).decode()
+    key = cls.__module__, cls.__qualname__, sorted(component.start.items()), OWN_CODE
+    return kept(key, ".c", lambda: _written(cls, component).encode()).decode()
 
 
 def _written(cls: Any, component: Component) -> str:
@@ -172,7 +168,7 @@ def _linked(sources: Sequence[tuple[str, str]]) -> bytes:
         ]
         options += [f"-Wl,--export=desk_{name}" for name in CALLS]
         names = [f"{number}.o" for number in range(len(objects))]
-        _compile([*options, *names, "-o", "desk.wasm"], folder)
+        run_compiler([*TARGET, *options, *names, "-o", "desk.wasm"], folder, GOAL)
         return Path(folder, "desk.wasm").read_bytes()
 
 
@@ -183,34 +179,7 @@ def _object(source: str, prefix: str) -> bytes:
         with temporary_folder() as folder:
             Path(folder, "all.c").write_text(source, encoding="utf-8")
             named = [f"-DFMI2_FUNCTION_PREFIX={prefix}"] if prefix else []
-            _compile([*named, "-c", "all.c", "-o", "all.o"], folder)
+            run_compiler([*TARGET, *named, "-c", "all.c", "-o", "all.o"], folder, GOAL)
             return Path(folder, "all.o").read_bytes()
 
-    return _kept((source, prefix, TARGET), "wasm.o", made)
-
-
-def _kept(key: object, suffix: str, make: Callable[[], bytes]) -> bytes:
-    """Read what was made from the cache, or make it. A cache that cannot be written keeps nothing."""
-    digest = hashlib.sha256(repr(key).encode()).hexdigest()[:32]
-    path = cache() / "native" / f"{digest}.{suffix}"
-    if path.is_file():
-        return path.read_bytes()
-    content = make()
-    with contextlib.suppress(OSError):
-        replace_file(path, content)
-    return content
-
-
-@cache_in_memory
-def _writer() -> str:
-    """Hash of the package that writes C texts: another one writes others."""
-    root = Path(str(files("shipcosim.native")))
-    texts = [path.read_bytes() for path in sorted(root.rglob("*.[pch]*")) if path.suffix != ".pyc"]
-    return hashlib.sha256(b"\0".join(texts)).hexdigest()
-
-
-def _compile(arguments: Iterable[str], folder: str | Path) -> None:
-    command = [sys.executable, "-m", "ziglang", "cc", *TARGET, *arguments]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise error_at("compiler for WebAssembly", f"fails: {done.stderr.strip()[:1000]}")
+    return kept((source, prefix, TARGET), ".wasm.o", made)

@@ -14,7 +14,8 @@ from shipcosim.cosim.master.instantiate import make_exchanges
 from shipcosim.cosim.master.plan import Plan, label
 from shipcosim.cosim.master.result import recorded_rows
 from shipcosim.cosim.master.signals import Exchange
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, raise_errors
+from shipcosim.native.export.text import c_text
 from shipcosim.native.source import literal
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import Component
@@ -245,7 +246,7 @@ class Wiring:
             for side in (1, 0)
         ]  # fmt: skip
         arrays = f"part_{number}_inputs, part_{number}_outputs, NULL"
-        return f'{{fmus + {fmu}, "{component.name}", {int(feeds)}, {", ".join(counts)}, {arrays}}}'
+        return f"{{fmus + {fmu}, {c_text(component.name)}, {int(feeds)}, {', '.join(counts)}, {arrays}}}"
 
     def _component(self, number: int, component: Component, size: tuple[int, int]) -> str:
         """One row of the loop's components; the component itself is what its step gets as `kept`."""
@@ -285,16 +286,6 @@ class Wiring:
         self._table("static Start starts[]", [*rows, "{0, 0, 0, 0.0, NULL}"])
 
 
-def c_text(value: str) -> str:
-    """A text as a C literal."""
-    escaped = "".join(
-        c if c.isascii() and c.isprintable() and c not in '"\\?'
-        else "".join(f"\\{byte:03o}" for byte in c.encode())
-        for c in value
-    )  # fmt: skip
-    return f'"{escaped}"'
-
-
 def _check(plan: Plan) -> None:
     """Refuse what the loop in C does not exchange."""
     problems = [
@@ -309,5 +300,4 @@ def _check(plan: Plan) -> None:
         problems.append(
             Problem(plan.system.name, "It exchanges integers of 64 bits.", "Use those of 32 bits.")
         )
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)

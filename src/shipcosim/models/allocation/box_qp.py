@@ -221,7 +221,7 @@ def _solve_many(request, commands, slack, start):
 
 def _goes_on(more, done):
     """Whether there is another round: not where all elements are done."""
-    return more & (done == False) if hasattr(done, "maths") else more and not bool(done.all())  # noqa: E712
+    return more & ~done if hasattr(done, "maths") else more and not bool(done.all())
 
 
 def _round(request, commands, slack, zero, count, x, side, freed, done, multipliers):
@@ -239,7 +239,6 @@ def _round(request, commands, slack, zero, count, x, side, freed, done, multipli
         worst = maximum(worst, lost)
     # A whole step without a loss is the optimum: the element is done.
     whole = share >= 1.0
-    part = share < 1.0
     done = done | (whole & (worst <= 0.0))
     # Add the bounds that were hit, or free the command with the largest loss.
     after = []
@@ -247,7 +246,7 @@ def _round(request, commands, slack, zero, count, x, side, freed, done, multipli
         zip(commands, best, x, steps, loss, strict=True)
     ):
         over = new > command.high
-        hit = (step <= share) & part
+        hit = (step <= share) & ~whole
         drop = whole & (worst > 0.0) & (lost >= worst)
         # A command that was freed hits its bound again by rounding alone: stop here.
         done = done | (hit & freed[i] & (share <= 0.0))

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
-import hashlib
 import struct
-import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
-from shipcosim.library import cache
-from shipcosim.native.compiler import EXACT, check_installed
-from shipcosim.temporary import replace_file, temporary_folder
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.native.compiler import EXACT, kept, run_compiler
+from shipcosim.temporary import temporary_folder
 
 OPTIONS = ("-shared", "-O1", "-g0", "-s", "-fPIC", "-std=c11", "-fvisibility=hidden", EXACT)
 
@@ -79,45 +76,22 @@ def compiled(source: str, target: str) -> bytes:
     ShipcosimError
         There is no compiler, or it fails.
     """
-    check_installed()
-    made = [_compiled(source, triple, TARGETS[target].suffix) for triple in TARGETS[target].triples]
+    suffix = TARGETS[target].suffix
+    made = [
+        kept((source, triple, OPTIONS), suffix, partial(_from_compiler, source, triple, suffix))
+        for triple in TARGETS[target].triples
+    ]
     return made[0] if len(made) == 1 else _universal(made)
-
-
-def _compiled(source, triple, suffix) -> bytes:
-    """Compile a library or read it from the cache. A cache that cannot be written keeps nothing."""
-    key = hashlib.sha256(repr((source, triple, OPTIONS)).encode()).hexdigest()[:32]
-    path = cache() / "native" / f"{key}{suffix}"
-    if path.is_file():
-        return path.read_bytes()
-    library = _from_compiler(source, triple, suffix)
-    with contextlib.suppress(OSError):
-        replace_file(path, library)
-    return library
 
 
 def _from_compiler(source, triple, suffix) -> bytes:
     with temporary_folder() as folder:
-        text = Path(folder, "all.c")
+        Path(folder, "all.c").write_text(source, encoding="utf-8")
         library = Path(folder, f"all{suffix}")
-        text.write_text(source, encoding="utf-8")
-        command = [
-            sys.executable,
-            "-m",
-            "ziglang",
-            "cc",
-            "-target",
-            triple,
-            *OPTIONS,
-            "all.c",
-            "-o",
-            library.name,
-        ]
         # The mathematics of Windows is in its C runtime; elsewhere it is a library of its own.
-        command += [] if "windows" in triple else ["-lm"]
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise error_at(f"compiler for {triple}", f"fails: {done.stderr.strip()[:1000]}")
+        mathematics = [] if "windows" in triple else ["-lm"]
+        arguments = ["-target", triple, *OPTIONS, "all.c", "-o", library.name, *mathematics]
+        run_compiler(arguments, folder, f" for {triple}")
         return library.read_bytes()
 
 

@@ -60,8 +60,8 @@ def source_of_model(
         str(i) for i, v in enumerate(cls.variables) if v.causality == "output" and v.type == "Real"
     ]
     head = [
-        f"#define IDENTIFIER {_text(identifier)}",
-        f"#define GUID {_text(guid)}",
+        f"#define IDENTIFIER {c_text(identifier)}",
+        f"#define GUID {c_text(guid)}",
         # Sizes for the C runtime: one instance has room for the largest variant.
         f"enum {{ N_VARIABLES = {len(cls.variables)}, N_VARIANTS = {len(variants)}, N_OUTPUTS = {len(outputs)},",
         f"       MOST_MEMORY = {max(variant.size for variant in variants)}, MOST_KEPT = {max(kept)} }};",
@@ -250,13 +250,13 @@ def say(text: str, recording: Recording) -> str:
     said = []
     for words, how in parts(text):
         if not how:
-            said.append(f"say(o, {_text(words)});")
+            said.append(f"say(o, {c_text(words)});")
             continue
         symbol = recording.said[int(words)]
         # A value with a format goes to printf; integers are doubles in C, so `d` becomes `.0f`.
         if how != "r":
             said.append(
-                f"say_number(o, {operand(symbol)}, {_text('%' + how.replace('d', '.0f'))});"
+                f"say_number(o, {operand(symbol)}, {c_text('%' + how.replace('d', '.0f'))});"
             )
         elif symbol.kind == "i":
             said.append(f'say_number(o, {operand(symbol)}, "%.0f");')
@@ -271,14 +271,14 @@ def _variable(variable) -> str:
     # A missing bound is infinite, so that the runtime needs no special case.
     text = variable.type == "String"
     parts = [
-        _text(variable.name),
+        c_text(variable.name),
         TYPES[variable.type],
         variable.causality.upper(),
         str(int(variable.tunable)),
         str(int(variable.required)),
         *(literal(number) for number in (*variable.bounds, 0.0 if text else variable.start)),
-        _text(variable.unit),
-        _text(variable.start) if text else '""',
+        c_text(variable.unit),
+        c_text(variable.start) if text else '""',
     ]
     return f"    {{{', '.join(parts)}}},"
 
@@ -288,7 +288,7 @@ def _variant(cls, number, variant: Variant, kept: int) -> tuple[str, str]:
     references = {variable.name: reference for reference, variable in enumerate(cls.variables)}
     choices = [
         f"{{{references[name]}, {'0.0' if isinstance(value, str) else literal(value)}, "
-        f"{_text(value) if isinstance(value, str) else 'NULL'}}}"
+        f"{c_text(value) if isinstance(value, str) else 'NULL'}}}"
         for name, value in variant.fixed.items()
     ]
     table = (
@@ -298,7 +298,7 @@ def _variant(cls, number, variant: Variant, kept: int) -> tuple[str, str]:
     return table, f"    {{{row}}},"
 
 
-def _text(value: str) -> str:
+def c_text(value: str) -> str:
     """A text as a C literal, split into parts that every compiler accepts."""
     escapes = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r", "?": "\\?"}
     # Non-ASCII letters are written as octal bytes of UTF-8; `?` is escaped against trigraphs.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import degrees
 from typing import Any
 
 from xarray import Dataset
@@ -20,9 +21,6 @@ from shipcosim.report.theme.views import Fact, JsonObject, Outcome, Page, known_
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import Variable
 
-SIDES = ("output", "input", "external")
-"""Where a signal's value lies in an exchange."""
-
 PREDICTED = {"north": "x", "east": "y", "heading": "psi", "radius": "position_region"}
 """Outputs of a predictor for each part of a predicted track, as in `interfaces.MotionPredictor`."""
 
@@ -35,11 +33,9 @@ class LivePage(Page):
     ----------
     code : str
         WebAssembly, compressed and in letters.
-    remarks : tuple of str
     """
 
     code: str
-    remarks: tuple[str, ...]
 
 
 def render_live(module: Module, table: Dataset, scenario: Scenario, written: Scenario) -> str:
@@ -71,14 +67,12 @@ def render_live(module: Module, table: Dataset, scenario: Scenario, written: Sce
         title=written.description or f"Simulation of {module.plan.system.name}",
         facts=_facts(written),
         outcome=Outcome("", "", ""),
-        links=(),
         data={
             "live": _description(module, scenario, written),
             "scene": [_growing(run, module.plan)],
             "events": sorted({event.time for event in scenario.events}),
         },
         code=packed_bytes(module.code),
-        remarks=(),
     )
     return render_template("live/templates/live.html.jinja", page)
 
@@ -97,6 +91,7 @@ def _facts(written: Scenario) -> tuple[Fact, ...]:
 def _growing(run: Run, plan: Plan) -> JsonObject:
     """The scene without rows: what its columns are made of, and which tracks are predicted."""
     scene = vars(run) | {"time": [], "columns": {}}
+    outputs = {label(end) for end in plan.layouts["Real"].outputs}
     predicted = []
     for one in run.predicted:
         tracks: JsonObject = {key: one[key] for key in ("name", "horizons")}
@@ -105,11 +100,10 @@ def _growing(run: Run, plan: Plan) -> JsonObject:
             for horizon in one["horizons"]:
                 signal = f"{one['name']}.{connector}_{horizon}"
                 column = f"{signal} {part}"
-                is_known = _is_output(plan, signal)
-                factor = 57.29577951308232 if part == "heading" else 1.0
-                if is_known:
+                if signal in outputs:
+                    factor = degrees(1.0) if part == "heading" else 1.0
                     run.recipes[column] = Recipe(signal, factor)
-                tracks[part].append(column if is_known else None)
+                tracks[part].append(column if signal in outputs else None)
         made = f"{one['name']}.predicted_at"
         run.recipes[made] = Recipe(made)
         predicted.append(tracks | {"made": made})
@@ -117,10 +111,6 @@ def _growing(run: Run, plan: Plan) -> JsonObject:
         "predicted": predicted,
         "recipes": {name: recipe._asdict() for name, recipe in run.recipes.items()},
     }
-
-
-def _is_output(plan: Plan, signal: str) -> bool:
-    return any(label(end) == signal for end in plan.layouts["Real"].outputs)
 
 
 def _description(module: Module, scenario: Scenario, written: Scenario) -> JsonObject:

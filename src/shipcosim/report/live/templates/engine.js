@@ -53,7 +53,6 @@ function makeEngine(module, about) {
       for (const [place, value] of Object.entries(values)) calls.desk_change_start(+place, value);
       check(calls.desk_start());
     },
-    last: () => { calls.desk_record(); return rows(); },
     state: () => bytes().slice(from),
     restore: (state) => {
       const missing = from + state.length - bytes().length;
