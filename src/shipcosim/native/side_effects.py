@@ -3,6 +3,7 @@
 Other calls are refused: they would run at recording time only.
 """
 
+import gc
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -82,11 +83,17 @@ def only_arithmetic(code: str) -> Iterator[None]:
     # A profiler sees every call of a compiled function before it runs; Python code needs no check,
     # as it ends in such calls.
     before = sys.getprofile()
+    # The garbage collector would run finalizers here. What is refused in one of them is swallowed,
+    # and Python drops the profiler for the rest of the step.
+    collects = gc.isenabled()
+    gc.disable()
     sys.setprofile(watch)
     try:
         yield
     finally:
         sys.setprofile(before)
+        if collects:
+            gc.enable()
 
 
 @contextmanager

@@ -1,5 +1,6 @@
 """One step of a component in Python and compiled: the same numbers, or a reason why it stays in Python."""
 
+import gc
 import math
 import random
 import time as clock
@@ -184,7 +185,9 @@ def reason(body, **more):
         "y": Output("1", "out"),
         "start": more.pop("start", lambda self: None),
     }
-    cls = type("Odd", (Fmu,), names | {"step": body, "__doc__": "Odd."} | more)
+    # The cache keeps records by name: each test has its own class.
+    name = f"Odd_{body.__qualname__}"
+    cls = type(name, (Fmu,), names | {"step": body, "__doc__": "Odd."} | more)
     _, step = compiled(cls)
     assert isinstance(step, Untraceable)
     return str(step)
@@ -212,6 +215,29 @@ def test_what_is_no_arithmetic_is_not_called_and_named():
         self.y = self.x
 
     assert "it calls builtins.print" in reason(body_with_print)
+
+
+def test_what_the_garbage_collector_calls_hides_no_call_of_the_model():
+    class Closed:
+        def __init__(self):
+            self.itself = self
+
+        def __del__(self):
+            clock.perf_counter()
+
+    def body(self, t, h):
+        values = [[self.x] for _ in range(100)]
+        print("this must not be seen")
+        self.y = values[0][0]
+
+    threshold = gc.get_threshold()
+    gc.set_threshold(20)
+    left = [Closed() for _ in range(100)]
+    try:
+        del left
+        assert "it calls builtins.print" in reason(body)
+    finally:
+        gc.set_threshold(*threshold)
 
 
 def test_a_text_made_of_a_number_is_named():
