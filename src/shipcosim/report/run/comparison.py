@@ -13,8 +13,9 @@ from shipcosim.angles import wrap_series
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.report.run.derived import ERRORS, FROM_REFERENCE
 from shipcosim.report.run.details import Detail, parsed
+from shipcosim.report.run.moments import Moment
 from shipcosim.report.run.page import RunPage, drawn_data, drawn_rows, links, shown_table
-from shipcosim.report.run.panels import Panel, Section, make_sections
+from shipcosim.report.run.panels import Panel, Section, constants_as_words, make_sections
 from shipcosim.report.run.scene import make_run
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.numbers import plain
@@ -30,6 +31,8 @@ THE_LINE = (
     "ship − reference",
     "from the reference",
 )  # where a panel shows more than the run
+MOST_MOMENTS = 5  # differences to go to
+MOST_CHANGES = 8  # start values that differ, at the top of the page
 MOST_DIFFERENCES = 25  # signals in the table of differences
 SAME = 1e-9  # of a signal's range: a difference below it is rounding
 
@@ -227,18 +230,26 @@ def _page(pair: Pair, found: Sequence[Difference]) -> RunPage:
         for table, name, shift in zip(pair.tables, pair.names, (0.0, pair.shift), strict=True)
         if (run := make_run(table, (), name, shift)) is not None
     ]
-    sections = _sections(pair)
+    sections = constants_as_words(_sections(pair), merged)
     choice = [str(name) for name in merged.data_vars]
     facts = tuple(
         Fact(name, f"{parsed(table.attrs.get('scenario', '')) or 'run'}, {_span(table)}")
         for name, table in zip(pair.names, pair.tables, strict=True)
     )
+    # Where the two differ most by what people compare runs by.
+    moments = tuple(
+        Moment(d.time, f"{d.signal}: {plain(d.largest)} {d.unit} at {d.time:g} s")
+        for d in found[:MOST_MOMENTS]
+    )
+    data = drawn_data(drawn, choice, runs, sections, ())
+    if moments:
+        data["opens_at"] = moments[0].time
     return RunPage(
         title=f"{pair.names[0]} and {pair.names[1]}",
         facts=facts,
         outcome=_outcome(pair, found),
         links=links(runs, sections),
-        data=drawn_data(drawn, choice, runs, sections, ()),
+        data=data,
         remarks=tuple(_remarks(pair)),
         weather=(),
         expectations=(),
@@ -246,7 +257,10 @@ def _page(pair: Pair, found: Sequence[Difference]) -> RunPage:
         thinned=thinned,
         sections=sections,
         details=_details(pair),
+        changed=_changed(pair),
+        changed_title=f"Start values in {pair.names[0]} and {pair.names[1]}",
         figures_title="Differences",
+        moments=moments,
     )
 
 
@@ -376,15 +390,41 @@ def _table(found: Sequence[Difference]) -> Table:
     return Table(rows, ("Signal", "rms", "Largest", "At"), (1, 2, 3)) if rows else Table(())
 
 
+def _start_values(pair: Pair) -> Detail | None:
+    """Start values that differ."""
+    texts = (parsed(table.attrs.get("start_values", "{}")) for table in pair.tables)
+    values = [
+        {name: _in_units(name, value, pair) for name, value in text.items()}
+        for text in texts
+        if isinstance(text, dict)
+    ]
+    return _unlike("Start values that differ", pair, values) if len(values) == 2 else None
+
+
+def _in_units(name: str, value: Any, pair: Pair) -> str:
+    """A start value in the page's unit, where the runs hold a signal of that name."""
+    if not isinstance(value, float):
+        return str(value)
+    attributes = next((shown[name].attrs for shown in pair.shown if name in shown), {})
+    return f"{value * attributes.get('factor', 1.0):.6g} {attributes.get('units', '')}".rstrip()
+
+
+def _changed(pair: Pair) -> tuple[str, ...]:
+    """The first start values that differ, for the top of the page."""
+    detail = _start_values(pair)
+    rows = detail.table.rows if detail else ()
+    said = [f"{name} {first} and {second}" for name, first, second in rows[:MOST_CHANGES]]
+    more = len(rows) - len(said)
+    return (*said, f"{more} more under Parameters") if more else tuple(said)
+
+
 def _details(pair: Pair) -> tuple[Detail, ...]:
     """Entries that differ between the attributes of the runs: start values, events, versions."""
     # Start values have a table of their own.
     attributes = [
         {str(key): parsed(value) for key, value in table.attrs.items()} for table in pair.tables
     ]
-    found = [
-        _unlike("Start values that differ", pair, [_known(a, "start_values") for a in attributes])
-    ]
+    found = [_start_values(pair)]
     # Everything else that the tables say of their runs, without long lists.
     rest = [
         {k: v for k, v in a.items() if k not in ("start_values", "remarks", "fmus")}
@@ -392,11 +432,6 @@ def _details(pair: Pair) -> tuple[Detail, ...]:
     ]
     found.append(_unlike("Runs that differ", pair, rest))
     return tuple(detail for detail in found if detail is not None)
-
-
-def _known(attributes: Mapping[str, Any], key: str) -> Mapping[str, Any]:
-    value = attributes.get(key)
-    return value if isinstance(value, dict) else {}
 
 
 def _unlike(title: str, pair: Pair, contents: Sequence[Mapping[str, Any]]) -> Detail | None:

@@ -10,7 +10,8 @@ from shipcosim.report.run.derived import add_derived
 from shipcosim.report.run.details import Detail, details, parsed
 from shipcosim.report.run.expectations import Judged, judged, outcome
 from shipcosim.report.run.key_figures import key_figures
-from shipcosim.report.run.panels import Section, make_sections
+from shipcosim.report.run.moments import Moment, find_moments
+from shipcosim.report.run.panels import Section, constants_as_words, make_sections
 from shipcosim.report.run.predictions import make_predictions, summarise
 from shipcosim.report.run.remarks import remarks
 from shipcosim.report.run.roles import Roles, find_roles
@@ -59,6 +60,10 @@ class RunPage(Page):
         Tables to unfold.
     figures_title : str
         Heading of the key figures.
+    changed_title : str
+        What stands before `changed`.
+    moments : tuple of Moment
+        Buttons that lead there.
     """
 
     remarks: tuple[str, ...]
@@ -70,6 +75,8 @@ class RunPage(Page):
     details: tuple[Detail, ...]
     changed: tuple[str, ...] = ()
     figures_title: str = "Key figures"
+    changed_title: str = "Changed for this run"
+    moments: tuple[Moment, ...] = ()
 
 
 class Digest(NamedTuple):
@@ -150,23 +157,31 @@ def _page(
     # Scene and panels draw the same run.
     run = make_run(table, verdicts)
     runs = () if run is None else (run,)
-    sections = make_sections(shown, roles, verdicts)
+    sections = constants_as_words(make_sections(shown, roles, verdicts), shown)
     choice = [str(name) for name in table.data_vars if name in drawn]
     events = [event.time for event in scenario.events] if scenario else []
+    expected = judged(verdicts, shown)
+    moments = find_moments(verdicts, expected, scenario)
+    data = drawn_data(drawn, choice, runs, sections, events)
+    # The scene opens at the first moment after the start, else at the end of the run.
+    start = float(table["time"].values[0]) if table.sizes["time"] else 0.0
+    if later := [moment.time for moment in moments if moment.time > start]:
+        data["opens_at"] = later[0]
     return RunPage(
         title=_title(scenario, system),
         facts=_facts(table, scenario),
         outcome=outcome(table, verdicts),
         links=links(runs, sections),
-        data=drawn_data(drawn, choice, runs, sections, events),
+        data=data,
         remarks=tuple(remarks(table, shown, roles)),
         changed=tuple(parsed(table.attrs.get("changed", "[]"))),
         weather=weather(shown, roles),
-        expectations=judged(verdicts, shown),
+        expectations=expected,
         key_figures=key_figures(shown, roles, summarise(make_predictions(table))),
         thinned=thin,
         sections=sections,
         details=details(table, scenario, system),
+        moments=moments,
     )
 
 

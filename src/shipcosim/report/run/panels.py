@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from numpy.typing import NDArray
 from xarray import Dataset
 
 from shipcosim.report.run.bands import Band, bands_of, distance_bands
@@ -11,6 +12,7 @@ from shipcosim.report.run.roles import Roles
 from shipcosim.report.run.vessels import DrawnThruster, find_units, start_values
 from shipcosim.report.run.zones import Zone, angle_zones, thrust_zones
 from shipcosim.report.theme import palette
+from shipcosim.report.theme.display import is_constant
 from shipcosim.scenario import Verdict
 
 AXES = {"x": "North", "y": "East", "psi": "Heading"}
@@ -45,10 +47,11 @@ class Panel:
 
 @dataclass(frozen=True)
 class Section:
-    """Panels under one heading."""
+    """Panels under one heading, and what stays the same as sentences."""
 
     title: str
     panels: tuple[Panel, ...]
+    constant: tuple[str, ...] = ()
 
 
 def make_sections(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> tuple[Section, ...]:
@@ -87,6 +90,52 @@ def make_sections(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> 
         "Environment": _environment(shown, roles),
     }
     return tuple(Section(title, tuple(panels)) for title, panels in made.items() if panels)
+
+
+def constants_as_words(sections: Sequence[Section], shown: Dataset) -> tuple[Section, ...]:
+    """Sections in which panels without limits and without change have become words.
+
+    Parameters
+    ----------
+    sections : sequence of Section
+        With all panels.
+    shown : xarray.Dataset
+        Table in the page's units, which holds the signals of the panels.
+
+    Returns
+    -------
+    tuple of Section
+        In their order.
+    """
+    return tuple(_section(section, shown) for section in sections)
+
+
+def _section(section: Section, shown: Dataset) -> Section:
+    drawn = []
+    constant = []
+    for panel in section.panels:
+        values = {line.label: shown[line.signal].values for line in panel.lines}
+        if panel.bands or not all(is_constant(one) for one in values.values()):
+            drawn.append(panel)
+        elif panel.states:
+            constant.append(f"{panel.title}: {_set_of(values)}")
+        else:
+            constant.append(f"{panel.title} {_levels(values, panel.unit)}")
+    return Section(section.title, tuple(drawn), tuple(constant))
+
+
+def _set_of(values: Mapping[str, NDArray]) -> str:
+    """Names of the flags that are set: 'port failed', or 'none'."""
+    return ", ".join(name for name, flags in values.items() if flags[0]) or "none"
+
+
+def _levels(values: Mapping[str, NDArray], unit: str) -> str:
+    """Constant values with their unit: '0.3 m/s', or '0 kN commanded, 2 kN delivered'."""
+    levels = {name: f"{series[0]:.4g} {unit}".rstrip() for name, series in values.items()}
+    # Equal values need no names.
+    if len(set(levels.values())) == 1:
+        return next(iter(levels.values()))
+    return ", ".join(f"{level} {name}" for name, level in levels.items())
 
 
 def _panel(

@@ -43,6 +43,8 @@ def test_two_runs_give_two_outlines_each_in_its_colour(browse, tmp_path):
     assert hulls["calm"]["colour"] != hulls["windy"]["colour"]
     assert page.panels()["North [m]"] == ["calm", "windy"]
     assert "3.00 m apart" in page.text("#verdict")
+    # What stays the same in both is said with both values.
+    assert "Heading 0 deg calm, 10 deg windy" in page.text(".constant")
     assert page.errors() == []
 
 

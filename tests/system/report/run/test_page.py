@@ -81,9 +81,24 @@ def test_every_section_draws_its_curves(page):
     assert panels["Shaft speed, tunnel [rpm]"] == ["tunnel"]
     assert panels["Power [kW]"] == ["port", "starboard", "tunnel"]
     assert panels["Wind speed [m/s]"] == ["with gusts", "mean"]
-    assert {"Current speed [m/s]", "Current to [deg]", "Waves [m]", "At a limit, failed"} <= set(
-        panels
+    assert {"Waves [m]", "At a limit, failed"} <= set(panels)
+
+
+def test_what_stays_the_same_is_said_in_words(page):
+    assert "Current speed [m/s]" not in page.panels()
+    said = page.ask("return [...document.querySelectorAll('.constant')].map(p => p.textContent)")
+    assert any("Current speed 0.3 m/s; Current to 180 deg" in text for text in said), said
+
+
+def test_the_page_opens_where_the_run_failed_and_leads_to_each_moment(page, verdicts):
+    missed = [verdict for verdict in verdicts if not verdict.passed]
+    buttons = page.ask(
+        "return [...document.querySelectorAll('#moments button')].map(b => b.textContent)"
     )
+    assert [text.startswith("✗") for text in buttons] == [True] * len(missed) + [False] * 5
+    assert page.ask("return scene.time") == pytest.approx(missed[0].time)
+    page.ask("document.querySelector('#moments button:not(.failed)').click()")
+    assert page.ask("return scene.time") == 0.0
 
 
 def test_limits_are_drawn_in_their_windows_and_tell_pass_from_fail(page):

@@ -120,6 +120,15 @@
   addEventListener("scene-time", (event) => { now = event.detail; inView.forEach(cursor); });
   const tell = (name, t) => dispatchEvent(new CustomEvent(name, { detail: t }));
 
+  // ---- moments to go to
+
+  for (const button of document.querySelectorAll("#moments button")) {
+    button.addEventListener("click", () => {
+      tell("scene-go", +button.dataset.time);
+      document.getElementById("scene")?.scrollIntoView({ block: "nearest" });
+    });
+  }
+
   // ---- signals to choose from
 
   const chosen = new Set();

@@ -283,6 +283,7 @@ const scene = (() => {
 
   self.opened = () => {
     window.scene = self;  // for those who look from outside
+    if (data.opens_at !== undefined) self.go(data.opens_at);
     fromAddress();
     report.draw(section, () => { shades.clear(); self.paint(); }, true);
   };
