@@ -71,7 +71,7 @@ for _function in (
     app.command(epilog=EXIT_CODES)(guarded(_function))
 for _function in (export.fmu, export.osp, export.page):
     exporting.command(epilog=EXIT_CODES)(guarded(_function))
-for _function in (new.fmu, new.scenario, new_ship.ship, new.system):
+for _function in (new.fmu, new.parameters, new.scenario, new_ship.ship, new.system):
     making.command(epilog=EXIT_CODES)(guarded(_function))
 for _function in (train.allocator, train.drift, train.dead_reckoning, train.docking):
     training.command(epilog=EXIT_CODES)(guarded(_function))

@@ -3,7 +3,14 @@
 from shipcosim.ssp.check import check_file, check_system
 from shipcosim.ssp.edit.opening import new, read
 from shipcosim.ssp.edit.system_structure import SystemStructure
-from shipcosim.ssp.edit.write import pack, parameter, write_ssv
+from shipcosim.ssp.edit.write import (
+    mapping_text,
+    pack,
+    parameter,
+    parameters_of,
+    ssv_text,
+    write_ssv,
+)
 from shipcosim.ssp.fitting_values import fitting_values
 from shipcosim.ssp.flatten.connections import Connection
 from shipcosim.ssp.flatten.system import Component, Signal, System
@@ -40,6 +47,9 @@ __all__ = [
     "osp_file",
     "pack",
     "parameter",
+    "parameters_of",
+    "ssv_text",
+    "mapping_text",
     "read",
     "read_fmu",
     "read_log_config",

@@ -1,6 +1,7 @@
 """One FMU as a system: one component with the file's name; its inputs are system inputs."""
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from math import inf
 from pathlib import Path
 from urllib.parse import quote
@@ -8,13 +9,13 @@ from urllib.parse import quote
 import lxml.etree as etree
 
 from shipcosim.errors import Problem
-from shipcosim.ssp.flatten.assemble import assemble_package
+from shipcosim.ssp.flatten.assemble import assemble_package, parameter_sets
 from shipcosim.ssp.flatten.hierarchy import Swapped
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.fmu.reader import describe_fmu
 from shipcosim.ssp.read.package import Package
-from shipcosim.ssp.read.parameters import ParameterSets
+from shipcosim.ssp.read.parameters import ParameterSet, ParameterSets
 from shipcosim.ssp.xml.document import AnyPath, Document, Findings, qualified
 from shipcosim.ssp.xml.markup import add
 from shipcosim.ssp.xml.values import Value
@@ -47,7 +48,7 @@ def assemble_fmu(
     path : Path
         Of the FMU.
     parameters : path or ParameterSet, or iterable of them
-        With names as in the FMU behind the component's: ``"tank.level"``.
+        With names as in the FMU, alone or behind the component's: ``"tank.level"``.
     fmus : iterable of path
         Not needed.
     findings : Findings
@@ -62,7 +63,20 @@ def assemble_fmu(
     root = _structure(path, fmu)
     package = Package(path.parent, str(path.parent), f"{path.stem}.ssd", tuple(map(Path, fmus)))
     package.held[(package.folder / package.ssd).resolve()] = Document(str(path), root, path.parent)
-    return assemble_package(package, parameters, str(path), findings, swapped=swapped)
+    sets = [_for_component(one, path.stem, fmu) for one in parameter_sets(parameters, findings)]
+    return assemble_package(package, sets, str(path), findings, swapped=swapped)
+
+
+def _for_component(given: ParameterSet, name: str, fmu: FmuDescription) -> ParameterSet:
+    """The set with the component's name before each of the FMU's own names, except those of inputs."""
+    of_system = {v for v in fmu.named("input") if fmu.variables[v].kind in IN_TABLES}
+    values = (
+        replace(value, name=f"{name}.{value.name}")
+        if value.name in fmu.variables and value.name not in of_system
+        else value
+        for value in given.values
+    )
+    return replace(given, values=tuple(values))
 
 
 def settings_of_one(system: System, settings: Mapping[str, Value]) -> dict[str, Value]:

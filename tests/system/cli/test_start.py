@@ -4,10 +4,12 @@ import json
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from shipcosim import library
+from shipcosim.calls.arguments import Reading
 from shipcosim.cli.start.completion import LISTED
 from shipcosim.cli.start.files import (
     notebook,
@@ -17,7 +19,7 @@ from shipcosim.cli.start.files import (
     write_new,
 )
 from shipcosim.library import names
-from shipcosim.ssp import read_system
+from shipcosim.ssp import parameter, read_system, write_ssv
 
 
 @pytest.fixture
@@ -145,6 +147,58 @@ def test_new_scenario_and_copy_of_every_system_have_no_fault(call, empty, system
     assert call("check", "copy", "first").code == 0
 
 
+@pytest.mark.parametrize("system", sorted(names("system")))
+def test_parameters_of_every_system_are_written_as_they_are(call, empty, system):
+    assert call("new", "parameters", "own", "--from", system).code == 0
+    assert call("check", "own.ssv", "own.ssm").code == 0
+    before = Reading().system(system)
+    after = with_parameters(before.file, empty / "own.ssv")
+    assert values_of(after) == values_of(before)
+
+
+def test_parameters_of_every_fmu_are_written_as_they_are_and_taken_by_their_own_names(
+    call, empty, root
+):
+    fmus = sorted((root / "build" / "fmus").glob("*.fmu"))
+    assert len(fmus) > 30
+    taken = 0
+    for path in fmus:
+        assert call("new", "parameters", path.stem, "--from", str(path)).code == 0
+        before = read_system(path)
+        ssv = empty / f"{path.stem}.ssv"
+        assert values_of(read_system(path, parameters=ssv)) == values_of(before)
+        # The FMU's own names, without the component's before them, do as well.
+        ((name, component),) = before.components.items()
+        free = [
+            v.name
+            for v in component.variables.values()
+            if isinstance(values_of(before).get(f"{name}.{v.name}"), float)
+            and (v.minimum, v.maximum) == (None, None)
+        ]
+        if not free:
+            continue
+        changed = values_of(before) | {f"{name}.{free[0]}": 12.5}
+        unit = component.variables[free[0]].unit
+        write_ssv(ssv, "plain", [parameter(free[0], 12.5, unit)])
+        assert values_of(read_system(path, parameters=ssv)) == changed
+        taken += 1
+    assert taken > 20
+
+
+def with_parameters(file, ssv):
+    return read_system(file, parameters=ssv, fmus=library.fmus(Path(file)))
+
+
+def values_of(system):
+    """Start values of all parameters by their full names."""
+    return {
+        f"{component.name}.{variable.name}": component.start_value(variable.name)
+        for component in system.components.values()
+        for variable in component.variables.values()
+        if "arameter" in variable.causality
+    }
+
+
 def test_copied_parameter_set_has_the_new_name_and_the_old_values(root, empty):
     write_new(empty, system_files("ferry", "gunnerus_dp"))
     copied = (empty / "ssp" / "ferry" / "resources" / "ferry.ssv").read_text(encoding="utf-8")
@@ -163,6 +217,8 @@ def test_copied_parameter_set_has_the_new_name_and_the_old_values(root, empty):
         (["fmu", "2winch"], "cannot name an FMU"),
         (["fmu", "a/b"], "cannot name an FMU"),
         (["scenario", "../out"], "cannot name a scenario"),
+        (["parameters", "x/y"], "cannot name a parameter set"),
+        (["parameters", "x", "--from", "absent"], "There is no such system"),
         (["scenario", "x", "--system", "gunnerus"], "Did you mean 'gunnerus_dp'?"),
         (["system", "a b"], "cannot name a system"),
         (["system", "x", "--from", "absent"], "There is no such system"),

@@ -1,4 +1,4 @@
-"""The command `shipcosim new`: `new fmu`, `new scenario`, `new system`."""
+"""The command `shipcosim new`: `new fmu`, `new parameters`, `new scenario`, `new system`."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -27,6 +27,34 @@ def fmu(name: Name, debug: Debug = False) -> None:
         f"shipcosim simulate {name} --stop-time 10 --step-size 0.1 --set {name}.u=1",
         f"shipcosim check {name}      lists its variables",
         f'Its equations are in `step`. A system takes it as a component with source="resources/{name}.fmu".',
+    )
+
+
+def parameters(
+    name: Name,
+    origin: Annotated[
+        str,
+        typer.Option(
+            "--from",
+            metavar="SSP",
+            help="A system, or an FMU.",
+            autocompletion=names_of("system"),
+        ),
+    ] = "gunnerus_dp",
+    debug: Debug = False,
+) -> None:
+    """Make NAME.ssv and NAME.ssm: every parameter of a system or an FMU with its value, to change.
+
+    The mapping (SSM) is for sets that use other names.
+
+    Example: shipcosim new parameters heavy --from gunnerus_dp
+    """
+    from shipcosim.cli.start.files import parameter_files
+
+    _write(
+        parameter_files(name, origin),
+        f"shipcosim check {name}.ssv                            checks it after each change",
+        f"shipcosim simulate {origin} --parameters {name}.ssv   runs the system with it",
     )
 
 

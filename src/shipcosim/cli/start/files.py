@@ -168,6 +168,31 @@ def system_files(name: str, origin: str) -> Files:
     return {f"ssp/{name}/{STRUCTURE}": text} | copied
 
 
+def parameter_files(name: str, origin: str) -> Files:
+    """Parameter set and mapping of a system or an FMU, with the values that it has.
+
+    Parameters
+    ----------
+    name : str
+        Of both files.
+    origin : str
+        Path or name of a system or an FMU.
+
+    Raises
+    ------
+    ShipcosimError
+        If there is none, it cannot be read, or it has no parameters.
+    """
+    from shipcosim.calls.arguments import Reading
+    from shipcosim.ssp import mapping_text, parameters_of, ssv_text
+
+    _check_name(name, "parameter set")
+    values = parameters_of(Reading().system(origin))
+    if not values:
+        raise error_at(origin, "It has no parameters.", "Name a system or an FMU that has some.")
+    return {f"{name}.ssv": ssv_text(name, values), f"{name}.ssm": mapping_text(values)}
+
+
 def scenario_files(name: str, system: str | None) -> Files:
     """A scenario that runs as it is; of a ship that keeps her place, or else of whatever the system is.
 

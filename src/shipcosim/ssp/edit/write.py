@@ -10,6 +10,7 @@ import lxml.etree as etree
 from shipcosim.errors import ShipcosimError, error_at
 from shipcosim.ssp.edit.parameter_sets import write_value
 from shipcosim.ssp.flatten.assemble import assemble_package
+from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.read.package import open_package
 from shipcosim.ssp.read.parameters import ParameterValue
 from shipcosim.ssp.xml.archive import replaced, write_archive
@@ -61,6 +62,42 @@ def parameter(
     return ParameterValue(name, kind, value, defined, description, tolerance=tolerance)
 
 
+def parameters_of(system: System) -> list[ParameterValue]:
+    """Parameters of a system that can be set, with the values that they have now.
+
+    Parameters
+    ----------
+    system : System
+        Of a structure or of one FMU.
+
+    Returns
+    -------
+    list of ParameterValue
+        By component, in the order of its FMU; arrays and parameters without a start value are left out.
+    """
+    found = []
+    for component in system.components.values():
+        for variable in component.variables.values():
+            value = component.start_value(variable.name)
+            if variable.causality not in ("parameter", "structuralParameter") or value is None:
+                continue
+            if variable.dimensions:
+                continue
+            # An SSV holds an enumeration's value as the name of its item.
+            names = {number: item for item, number in variable.items.items()}
+            found.append(
+                ParameterValue(
+                    f"{component.name}.{variable.name}",
+                    variable.kind,
+                    names.get(value, value) if variable.kind == "Enumeration" else value,
+                    find_unit(variable.unit),
+                    variable.description,
+                    tolerance=component.tolerances.get(variable.name),
+                )
+            )
+    return found
+
+
 def write_ssv(path: AnyPath, name: str, values: Iterable[ParameterValue]) -> None:
     """Write a parameter set; complete or not at all.
 
@@ -78,11 +115,24 @@ def write_ssv(path: AnyPath, name: str, values: Iterable[ParameterValue]) -> Non
     ShipcosimError
         If it cannot be written.
     """
+    write_file(Path(path), ssv_text(name, values))
+
+
+def ssv_text(name: str, values: Iterable[ParameterValue]) -> bytes:
+    """Text of a parameter set; arguments as for `write_ssv`."""
     root = etree.Element(qualified("ssv:ParameterSet"), {"version": "1.0", "name": name})
     listed = ensure(root, "ssv:Parameters")
     for value in values:
         write_value(root, add(listed, "ssv:Parameter", name=value.name), value)
-    write_file(Path(path), to_bytes(root, "ssv", "ssc"))
+    return to_bytes(root, "ssv", "ssc")
+
+
+def mapping_text(values: Iterable[ParameterValue]) -> bytes:
+    """Text of a parameter mapping (SSM) from each of the values' names to itself, to change its source."""
+    root = etree.Element(qualified("ssm:ParameterMapping"), {"version": "1.0"})
+    for value in values:
+        add(root, "ssm:MappingEntry", source=value.name, target=value.name)
+    return to_bytes(root, "ssm", "ssc")
 
 
 def write_file(path: Path, data: bytes) -> None:
