@@ -159,6 +159,8 @@ LABEL_SLOPE_STD = 0.2
 """Largest standard deviation of a slope that decides."""
 SHORTEST_LABEL = 60.0
 """Shortest segment. [s] Assumed."""
+LABEL_STEPS = 3.0
+"""Steps of a coarse position or heading by which a label must change the way told. Assumed."""
 LABEL_REACH = 25
 """Rows on both sides in which an end of a segment is sought."""
 

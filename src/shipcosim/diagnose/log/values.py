@@ -27,6 +27,8 @@ CLOCK_NUMBER = "hhmmss"
 TEN_MILLIONTHS = "1e-7 deg"
 """Spelling of the unit of latitudes and longitudes that autopilots write as whole numbers."""
 LARGEST = {"latitude": 90.0, "longitude": 180.0}
+NOT_AVAILABLE = {"latitude": 91.0, "longitude": 181.0, "heading": 511.0, "speed_over_ground": 102.3}
+"""Numbers by which AIS says that there is no value. ITU-R M.1371-5, table 48. [deg, deg, deg, kn]"""
 _STEPS = (
     SHORTEST_STEP,
     90.0,
@@ -82,8 +84,21 @@ def values_of(
     except ShipcosimError as error:
         found = f"its unit '{unit}' is none that converts to {target}."
         raise WrongUnit(Problem("", found, "Correct it, or say it in a channel file.")) from error
+    values, said = _without_no_values(values, name, column)
     # -0.0 + 0.0 is 0.0, and the sign of a zero is all that is left of a rate in too large a unit
-    return factor * (channel.sign * values + (channel.offset or -0.0)) + (zero or -0.0), target, []
+    values = factor * (channel.sign * values + (channel.offset or -0.0)) + (zero or -0.0)
+    return values, target, said
+
+
+def _without_no_values(values, name, column):
+    """The values without numbers that stand for none, and what is to be said of them."""
+    rows = values == NOT_AVAILABLE.get(name)
+    if not rows.any():
+        return values, []
+    count = int(rows.sum())
+    number = f"{NOT_AVAILABLE[name]:g}"
+    said = f"'{column}' is {number} in {count} of its rows, by which AIS says that there is none: left out."
+    return np.where(rows, np.nan, values), [said]
 
 
 class WrongUnit(ShipcosimError):

@@ -184,3 +184,73 @@ def side_after_a_number(table, folder):
     for name, degrees, side in zip(("LAT", "LON"), on_earth(table), (" S", "W"), strict=True):
         columns[name] = [f"{-d:.8f}{side}" for d in degrees]
     return save(folder, lines(columns, ";"))
+
+
+def in_words(table, folder, latitude, longitude, names, separator=","):
+    """Positions on the earth and other headings; roles without a heading of their own keep theirs."""
+    columns = renamed(table, names, drop=("north", "east"))
+    for name, degrees in zip((latitude, longitude), on_earth(table), strict=True):
+        columns[name] = [f"{d:.8f}" for d in degrees]
+    return save(folder, lines(columns, separator))
+
+
+@strange
+def german_short_forms(table, folder):
+    names = {
+        "time": "Zeit [s]",
+        "heading": "Kurs rw [°]",
+        "port_rpm": "Drehzahl BB [U/min]",
+        "starboard_rpm": "Drehzahl StB [U/min]",
+    }
+    return in_words(table, folder, "Breite [°]", "Länge [°]", names, ";")
+
+
+@strange
+def dutch_words(table, folder):
+    names = {"time": "Tijd [s]", "heading": "Voorligging [graden]"}
+    names |= {"port_rpm": "Toerental bakboord", "starboard_rpm": "Toerental stuurboord"}
+    return in_words(table, folder, "Breedtegraad", "Lengtegraad", names)
+
+
+@strange
+def spanish_words(table, folder):
+    names = {"time": "Hora [s]", "heading": "Rumbo verdadero (°)"}
+    return in_words(table, folder, "Latitud (grados)", "Longitud (grados)", names)
+
+
+@strange
+def french_words(table, folder):
+    names = {"time": "Heure [s]", "heading": "Cap (°)"}
+    return in_words(table, folder, "Latitude (degrés)", "Longitude (degrés)", names)
+
+
+@strange
+def chinese_words(table, folder):
+    return in_words(table, folder, "纬度", "经度", {"time": "时间 [s]", "heading": "船首向(°)"})
+
+
+@strange
+def paths_and_radians_of_signal_k(table, folder):
+    drift = np.degrees(np.arctan2(table["sway"], table["surge"]))
+    told = {role: v for role, v in table.items() if role not in ("surge", "sway")}
+    told |= {
+        "heading": np.radians(table["heading"] % 360.0),
+        "yaw_rate": np.radians(table["yaw_rate"]),
+        "navigation.courseOverGroundTrue": np.radians((table["heading"] + drift) % 360.0),
+        "navigation.speedOverGround": np.hypot(table["surge"], table["sway"]),
+    }
+    names = {"heading": "navigation.headingTrue", "yaw_rate": "navigation.rateOfTurn"}
+    place = ("navigation.position.latitude", "navigation.position.longitude")
+    return in_words(told, folder, *place, names)
+
+
+@strange
+def days_under_the_name_of_a_clock(table, folder):
+    texts = [f"{44861.998263889 + t / 86400.0:.10f}" for t in table["time"]]
+    return save(folder, lines(with_time(table, "Utc", texts)))
+
+
+@strange
+def milliseconds_under_a_short_name(table, folder):
+    texts = [f"{1666915050000 + 1000.0 * t:.0f}" for t in table["time"]]
+    return save(folder, lines(with_time(table, "ts_ms", texts)))

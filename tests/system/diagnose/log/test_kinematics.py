@@ -10,6 +10,7 @@ from shipcosim.diagnose.log.checks.kinematics import (
     is_clear,
     whiteness,
 )
+from shipcosim.diagnose.log.checks.labels import mislabelled
 
 TIME = np.arange(4000.0)
 
@@ -69,3 +70,25 @@ def test_innovations_that_hang_together_count_less():
     random = np.random.default_rng(3).normal(size=5000)
     smooth = np.convolve(random, np.ones(5) / 5**0.5, "same")
     assert whiteness(smooth[:, None]) == pytest.approx(5.0, rel=0.3)
+
+
+@pytest.mark.parametrize("digits", [4, 5])
+@pytest.mark.parametrize("lost", [False, True])
+def test_what_rounding_leaves_of_a_ship_at_rest_is_no_wrong_label(digits, lost):
+    """As AIS has it: positions to some metres, speed to 0.1 kn, heading to a degree."""
+    time = np.arange(600.0)
+    north = 8.0 * np.tanh((time - 100.0) / 60.0)
+    east = -8.0 * np.tanh((time - 300.0) / 60.0)
+    speeds = [np.gradient(way, time) + 0.01 * np.sin(time / 11.0) for way in (north, east)]
+    step = 111320.0 * 10.0**-digits
+    rounded = {
+        "time": time,
+        "north": np.round(north / step) * step,
+        "east": np.round(east / step) * step,
+        "heading": np.round(3.0 * np.sin(time / 70.0)),
+        "surge": np.round(speeds[0] / 0.05144) * 0.05144,
+        "sway": np.round(speeds[1] / 0.05144) * 0.05144,
+    }
+    if lost:
+        rounded["heading"][50:60] = np.nan
+    assert mislabelled(rounded)[0] == []

@@ -141,3 +141,15 @@ def test_a_zero_keeps_its_sign(tmp_path):
         "yaw_rate"
     ].values
     assert np.signbit(values).tolist() == [True, False]
+
+
+def test_numbers_by_which_ais_says_that_there_is_none_are_left_out(tmp_path):
+    rows = ["BaseDateTime,LAT,LON,SOG,COG,Heading"]
+    rows += [f"2024-05-03T10:00:{s:02d},{62 + s * 1e-5:.5f},6.0,2.2,0.0,120" for s in range(30)]
+    rows[5] = "2024-05-03T10:00:04,91.0,181.0,102.3,0.0,511"
+    log = read_log(written(tmp_path, "\n".join(rows) + "\n"))
+    for role in ("north", "heading", "surge"):
+        assert np.flatnonzero(np.isnan(log[role].values)).tolist() == [4]
+    assert float(np.nanmax(log["heading"])) == 120.0
+    said = " ".join(log.attrs["column_remarks"])
+    assert "'Heading' is 511 in 1 of its rows" in said and "'SOG' is 102.3" in said

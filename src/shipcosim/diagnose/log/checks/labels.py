@@ -19,6 +19,7 @@ from shipcosim.diagnose.log.checks.kinematics import (
     position_motion,
     whiteness,
 )
+from shipcosim.diagnose.log.checks.samples import quantum
 from shipcosim.diagnose.log.mislabels import (
     HEADING_LABELS,
     POSITION_LABELS,
@@ -37,6 +38,7 @@ from shipcosim.diagnose.log.thresholds import (
     LABEL_SLOPE_FAR,
     LABEL_SLOPE_NEAR,
     LABEL_SLOPE_STD,
+    LABEL_STEPS,
     SEGMENT_COST,
     SHORTEST_LABEL,
 )
@@ -160,6 +162,8 @@ def _explains(plain: Motion, other: Motion, whitener: Filter, hypothesis) -> boo
     Noise in the velocity makes slopes too small, for a ship that hardly moves by half. That leaves signs and swapped
     channels clear, but not units.
     """
+    if not _is_above_resolution(plain, other, hypothesis.segment):
+        return False
     channels = hypothesis.mislabel.channels
     is_unit = hypothesis.mislabel.scale is not None
     # Slopes of the observed on the reported motion, with the label undone and as logged.
@@ -180,6 +184,16 @@ def _explains(plain: Motion, other: Motion, whitener: Filter, hypothesis) -> boo
     # Very clear evidence replaces the distance from the labelled slopes.
     clear = hypothesis.gain > CLEAR_LABEL_GAIN and hypothesis.rough < 1.5 and all(sure)
     return all(near) and (clear or any(a and s for a, s in zip(apart, sure, strict=True)))
+
+
+def _is_above_resolution(plain: Motion, other: Motion, segment) -> bool:
+    """Whether a label changes what is left of the way by more than steps of what is seen.
+
+    Where a ship hardly moves, a coarse position stays the same, and what the velocity adds up to is rounding.
+    """
+    apart = in_segment(other.level - plain.level, plain.time, segment)
+    steps = np.array([quantum(axis) for axis in plain.seen.T])
+    return bool((np.ptp(apart, axis=0) > LABEL_STEPS * steps).any())
 
 
 def _slopes(motion: Motion, channels, whitener: Filter, segment):

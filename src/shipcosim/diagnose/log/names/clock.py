@@ -133,7 +133,10 @@ def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
 
 
 def _is_clock_number(known):
-    """Whether numbers can be hhmmss, and are no seconds, as minutes and seconds end at 60."""
+    """Whether numbers can be hhmmss, and are no seconds, as minutes and seconds end at 60.
+
+    Fractions of days run slower than any clock: their steps are below a millisecond.
+    """
     whole = np.floor(known)
     inside = known.min() >= 0.0 and known.max() < 240000.0
     return bool(
@@ -141,6 +144,7 @@ def _is_clock_number(known):
         and (whole % 100 < 60).all()
         and (whole // 100 % 100 < 60).all()
         and known.max() > 100.0
+        and float(np.ptp(known)) >= 1e-3 * (len(known) - 1)
     )
 
 

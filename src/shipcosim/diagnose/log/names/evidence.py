@@ -69,10 +69,12 @@ def _unit_by(time, rate, change, units):
             break
         x, y = _without_leaps(told[k:] - told[:-k], change(k))
         norm = float(np.sqrt((x @ x) * (y @ y)))
-        if norm > 0.0 and (x @ y) / norm > max(best, _ALIKE):
-            best = (x @ y) / norm
+        # The unit is the same where a rate is counted the other way.
+        alike = abs(x @ y)
+        if norm > 0.0 and alike / norm > max(best, _ALIKE):
+            best = alike / norm
             # Ratio of the energy to the cross product: slope of the inverse regression.
-            ratio = (y @ y) / (x @ y)
+            ratio = (y @ y) / alike
     if ratio is None:
         return None
     # Nearest unit on a logarithmic scale; none if the ratio fits none of them.

@@ -46,14 +46,14 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: FileLayout) -> None
         # The unit of a wind speed with a sailor's short name is mostly knots.
         if _is_open(chosen, role) and len(chosen[role].column.strip()) <= 4:
             _guess(chosen, role, "kn", "no unit is stated: kn or m/s")
-    # Angles within pi may be radians.
+    # Small angles may be radians: directions within a turn, azimuths within half a turn, as many
+    # azimuths stay within some degrees.
     for role, guess in list(chosen.items()):
-        is_angle = role in ("wind_from", "true_wind_from", "course_over_ground") or role.endswith(
-            "_azimuth"
-        )
-        if is_angle and _is_open(chosen, role):
+        is_direction = role in ("wind_from", "true_wind_from", "course_over_ground")
+        if (is_direction or role.endswith("_azimuth")) and _is_open(chosen, role):
             known = np.abs(_finite(log.values[guess.column]))
-            if len(known) and known.max() <= np.pi + 0.01 and known.max() > 0.0:
+            most = _DEGREES if is_direction else np.pi + 0.01
+            if len(known) and 0.0 < known.max() <= most:
                 _guess(chosen, role, "rad", "no unit is stated: rad or deg")
 
 
@@ -192,7 +192,8 @@ def _settle_heading(chosen, log, form, motion):
         return
     # Write the reading into the channel: unit, frame of the quaternion, or sign and offset.
     unit, frame = found
-    said = f"in {unit} and {'clockwise from north' if frame == 'NED' else 'anticlockwise from east'}, as the course says"
+    counted = "clockwise from north" if frame == "NED" else "anticlockwise from east"
+    said = f"{f'in {unit} and ' if is_open else ''}{counted}, as the course says"
     update = {} if not is_open else {"unit": unit}
     if guess.channel.quaternion is not None:
         update = {"frame": frame}
@@ -274,9 +275,10 @@ def _settle_rate(chosen, log, form, motion):
             "rate of turn",
             "rate_of_turn",
         )
-        _guess(
-            chosen, "yaw_rate", "deg/min" if is_rot else ROLES["yaw_rate"].unit, "no unit is stated"
-        )
+        # ROS has rad/s throughout (REP 103).
+        is_ros = "angular" in guess.column.lower()
+        usual = "deg/min" if is_rot else "rad/s" if is_ros else ROLES["yaw_rate"].unit
+        _guess(chosen, "yaw_rate", usual, "no unit is stated")
         return
     channel = guess.channel.model_copy(update={"unit": unit})
     chosen["yaw_rate"] = replace(

@@ -49,6 +49,7 @@ def words_of(name: str) -> tuple[str, ...]:
     """
     # Scripts without blanks first, then words by their separators and capitals.
     same = vocabulary()["words"]["same"]
+    name = name.replace("StB", "Stb")  # German for starboard; the capital begins no word
     if not name.isascii():
         parts = vocabulary()["words"]["parts"]
         name = word_parts().sub(lambda found: f" {parts[found[0]]} ", name)
