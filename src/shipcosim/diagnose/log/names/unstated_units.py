@@ -17,6 +17,7 @@ from shipcosim.diagnose.numerics import finite
 from shipcosim.errors import ShipcosimError
 
 _DEGREES = 1.02 * 2.0 * np.pi  # no angle in radians is larger
+_RAD_OR_DEG = "no unit is stated, and no value is beyond 2 pi: rad or deg"
 _IN_KNOTS = ("speed_over_ground", "wind_speed", "true_wind_speed")
 
 
@@ -183,12 +184,7 @@ def _settle_heading(chosen, log, form, motion):
         )
     if found is None:
         if is_open and len(units) == 2:
-            _guess(
-                chosen,
-                "heading",
-                "rad",
-                "no unit is stated, and no value is beyond 2 pi: rad or deg",
-            )
+            _guess(chosen, "heading", "rad", _RAD_OR_DEG)
         return
     # Write the reading into the channel: unit, frame of the quaternion, or sign and offset.
     unit, frame = found
