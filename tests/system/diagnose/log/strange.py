@@ -254,3 +254,17 @@ def days_under_the_name_of_a_clock(table, folder):
 def milliseconds_under_a_short_name(table, folder):
     texts = [f"{1666915050000 + 1000.0 * t:.0f}" for t in table["time"]]
     return save(folder, lines(with_time(table, "ts_ms", texts)))
+
+
+@strange
+def units_after_names_of_thrusters(table, folder):
+    told = table | {f"{s}_rpm": table[f"{s}_rpm"] / 60.0 for s in ("port", "starboard")}
+    names = {"port_rpm": "n_port_rps", "starboard_rpm": "n_stbd_rps"}
+    names |= {"port_azimuth": "alpha_port_deg", "starboard_azimuth": "alpha_stbd_deg"}
+    return save(folder, lines(renamed(told, names)))
+
+
+@strange
+def speeds_of_engines(table, folder):
+    names = {"port_rpm": "ME Port RPM", "starboard_rpm": "ME Stbd RPM"}
+    return save(folder, lines(renamed(table, names)))

@@ -1,7 +1,7 @@
 """One column by itself: the roles that its name and its unit allow, and how sure that is."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -98,6 +98,14 @@ def guesses_of(column: str, log: LogColumns, thrusters: Thrusters | None) -> lis
         found = _of_thruster(column, drive, stated, thrusters)
         if found[0].role or meaning_of(words).role is None:
             return found
+    # A name of a thruster may end in a unit.
+    for target in () if stated else _THRUSTER_UNITS.values():
+        rest, suffix = unit_after(words, target)
+        if suffix and (drive := drive_of(rest, suffix, values)):
+            found = _of_thruster(column, drive, suffix, thrusters)
+            if found[0].role:
+                of_name = {"unit": suffix}
+                return [replace(g, channel=g.channel.model_copy(update=of_name)) for g in found]
     # A number in a name counts sensors of a kind; with several of them each is a guess.
     found = _by_meaning(column, words, stated, values)
     bare = tuple(word for word in words if not word.isdigit())

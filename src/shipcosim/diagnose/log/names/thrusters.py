@@ -9,12 +9,14 @@ import numpy as np
 from shipcosim.diagnose.log.names.units import unit_for
 from shipcosim.diagnose.log.names.vocabulary import vocabulary, words_of
 from shipcosim.diagnose.numerics import finite
+from shipcosim.units import relation, spelled_unit
 
 _PWM = (850.0, 2150.0)  # us, pulse widths of servos and speed controllers
 OF_A_MAP = {"%": "percent", "pct": "percent", "percent": "percent"}
 OF_A_MAP |= {"us": "pwm", "µs": "pwm", "pwm": "pwm"}
 """Units that become a speed by a map only, and what they are of."""
 _SURE = {"rpm", "azimuth", "thrust", "rudder", "force"}  # words that hardly say anything else
+_ENGINES = {"engine", "me"}
 _ELSEWHERE = {"bow", "port", "starboard", "stern", "centre"}
 
 
@@ -84,6 +86,8 @@ def drive_of(words: tuple[str, ...], unit: str, values: np.ndarray) -> Drive | N
         return None
     # Unit and values decide between pulses, per cent and others.
     quantity, doubt = _by_values(quantity, word, unit.strip().lower(), values)
+    if quantity == "rpm" and _ENGINES & set(whole):
+        doubt = "an engine turns as fast as its propeller only where there is no gear"
     return Drive(quantity, place, kind, doubt)
 
 
@@ -180,7 +184,9 @@ def _by_values(quantity, word, unit, values):
     known = finite(values) if values.dtype.kind == "f" else np.empty(0)
     if unit in OF_A_MAP:
         return OF_A_MAP[unit], ""
-    if quantity == "" and unit_for(unit, "rpm") == "rpm":
+    given = spelled_unit(unit_for(unit, "rpm")) if unit else None
+    turns = spelled_unit("rpm")
+    if quantity == "" and given and turns and relation(given, turns) in ("same", "convertible"):
         return "rpm", ""
     inside = len(known) and known.min() >= _PWM[0] and known.max() <= _PWM[1]
     if quantity == "" and inside:
