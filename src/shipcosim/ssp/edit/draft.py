@@ -108,9 +108,14 @@ class Draft:
 
     def assembled(self) -> tuple[System | None, Findings]:
         """Like `assemble`, but read only once after each change."""
-        if self._assembled is None or self._changing:
+        if self._assembled is None:
             self._assembled = self.assemble()
         return self._assembled
+
+    def reassembled(self) -> tuple[System | None, Findings]:
+        """Like `assembled`, after a change within a block of `changes`."""
+        self._assembled = None
+        return self.assembled()
 
     def fmu_of(self, element: etree._Element) -> FmuDescription | None:
         """Description of a component's FMU; None for other elements, or if it cannot be read."""
@@ -134,6 +139,7 @@ class Draft:
         # Only the outermost block checks: within it the system may be incomplete.
         if self._changing:
             yield
+            self._assembled = None
             return
         # Errors that the system already had do not count.
         before = self._snapshot()
@@ -142,7 +148,7 @@ class Draft:
         try:
             yield
             # New errors undo the whole block, as any other exception does.
-            fresh = [p for p in dict.fromkeys(self.assembled()[1].errors) if not known[p.found]]
+            fresh = [p for p in dict.fromkeys(self.reassembled()[1].errors) if not known[p.found]]
             if fresh:
                 raise ShipcosimError(fresh)
         except BaseException:

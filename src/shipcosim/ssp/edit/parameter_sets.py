@@ -134,7 +134,8 @@ class Sets:
 
     def keep(self, file: Path | None, root: etree._Element) -> None:
         """Keep a changed file for writing; nothing to do for an inline set."""
-        if file is not None:
+        held = self.package.held.get(file) if file is not None else None
+        if file is not None and not (isinstance(held, Document) and held.root is root):
             self.package.held[file] = Document(self.package.show(file), root, file.parent)
 
     def put(self, name: str, value: ParameterValue) -> None:

@@ -47,7 +47,9 @@ class StartValues(MutableMapping[str, Value]):
 
     def __delitem__(self, name: str) -> None:
         with self._draft.changes():
-            if not self._draft.sets.clear(name) or name in self:
+            was_there = self._draft.sets.clear(name)
+            self._draft.reassembled()
+            if not was_there or name in self:
                 where = "It is set in a set that is bound more than once, or by a mapping."
                 found, remedy = (
                     (where, "")
@@ -97,7 +99,7 @@ class StartValues(MutableMapping[str, Value]):
         # Put it in place, and look whether the system now has this value.
         before = len(self._draft.assembled()[1].errors)
         self._draft.sets.put(name, given)
-        system, findings = self._draft.assembled()
+        system, findings = self._draft.reassembled()
         wanted = items.get(value, value) if kind == "Enumeration" else value
         if system is not None and len(findings.errors) <= before and _value(system, name) != wanted:
             self._draft.sets.append(

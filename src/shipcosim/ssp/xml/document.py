@@ -104,7 +104,7 @@ class Findings:
         return [problem for problem in self.problems if problem.severity != "error"]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Document:
     """An XML file or the inline part of one.
 
@@ -118,12 +118,15 @@ class Document:
         Folder that relative addresses in it start from.
     flaws : list of Problem
         Flaws of its form that were put right in the tree, which reading it says again.
+    mended : bool
+        Whether they were looked for: what is changed here has none.
     """
 
     file: str
     root: etree._Element
     folder: Path = Path()
     flaws: list[Problem] = field(default_factory=list, compare=False)
+    mended: bool = field(default=False, compare=False)
 
     def place(self, element: etree._Element, what: str = "") -> str:
         """Place of an element, for the user to look it up."""

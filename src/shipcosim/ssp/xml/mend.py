@@ -80,8 +80,9 @@ def mend(document: Document, tag: str) -> None:
         Of the outermost element that it should have: ``"ssv:ParameterSet"``.
     """
     prefix, name = tag.split(":")
-    if local(document.root) != name:
+    if document.mended or local(document.root) != name:
         return
+    document.mended = True
     # Namespaces first: all other corrections find elements by them.
     noted = Findings()
     _set_namespaces(document, prefix, noted)
