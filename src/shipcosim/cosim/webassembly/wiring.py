@@ -274,6 +274,13 @@ class Wiring:
     def _start_values(self, components: Sequence[Component]) -> None:
         """All start values, in the order in which the FMUs get them."""
         rows = []
+        outside = {
+            end: f"{number}, {row}"
+            for number, kind in enumerate(self.kinds)
+            for row, end in enumerate(
+                self._plan.layouts[kind].external, start=len(self._plan.layouts[kind].outputs)
+            )
+        }
         for number, component in enumerate(components):
             for name, value in component.start.items():
                 variable = component.fmu.variables[name]
@@ -285,10 +292,11 @@ class Wiring:
                 shown = c_text(value) if isinstance(value, str) else "NULL"
                 told = "0.0" if isinstance(value, str) else literal(float(value))  # pyright: ignore
                 rows.append(
-                    f"{{{number}, {variable.value_reference}, {kind.upper()}, {told}, {shown}}}"
+                    f"{{{number}, {variable.value_reference}, {kind.upper()}, {told}, {shown}, "
+                    f"{outside.get((component.name, name), '-1, -1')}}}"
                 )
         self._constants["N_STARTS"] = str(len(rows))
-        self._table("static Start starts[]", [*rows, "{0, 0, 0, 0.0, NULL}"])
+        self._table("static Start starts[]", [*rows, "{0, 0, 0, 0.0, NULL, -1, -1}"])
 
 
 def _check(plan: Plan) -> None:

@@ -77,13 +77,14 @@ def test_going_back_forgets_what_came_after(desk, tmp_path):
     assert worst < SAME
 
 
-def test_another_seed_starts_another_run(desk, tmp_path):
+@pytest.mark.parametrize("name, value", [("environment.seed", 17), ("environment.wind_speed", 12)])
+def test_another_start_value_starts_another_run(desk, tmp_path, name, value):
     place = desk.ask(
-        "return desk.live.about.starts.find(([, name]) => name === 'environment.seed')[0]"
+        "return desk.live.about.starts.find(([, name]) => name === arguments[0])[0]", name
     )
-    desk.ask("desk.live.reset({ [arguments[0]]: 17 }); desk.live.reach(60)", place)
+    desk.ask("desk.live.reset({ [arguments[0]]: arguments[1] }); desk.live.reach(60)", place, value)
     table = repeated(desk, tmp_path)
-    assert json.loads(table.attrs["start_values"])["environment.seed"] == 17
+    assert json.loads(table.attrs["start_values"])[name] == value
     worst, _ = largest_difference(desk, table)
     assert worst < SAME
 

@@ -91,6 +91,7 @@
     field.setAttribute("aria-describedby", remark.id);
     const row = element("div", { className: "input" }, label, field, element("span", { textContent: unitOf(signal) }), follow, remark);
     row.dataset.words = `${name} ${signal.text}`.toLowerCase();
+    field.setAttribute("aria-label", `${owner(name)}: ${short(name)}${unitOf(signal) && `, ${unitOf(signal)}`}`);
     follow.setAttribute("aria-label", `${name} follows its own value again`);
     field.addEventListener("change", () => {
       const value = valueIn(field, remark, signal);
@@ -110,11 +111,13 @@
 
   groupsOf(by("failures").querySelector(".groups"), free.filter(([, signal]) => signal.kind === "Boolean"), switchOf);
   const weather = new Set(run.flows.flatMap(({ what }) => free.map(([name]) => name).filter((name) => new RegExp(`(^|\\.|_)${what.replace(/s$/, "")}_(speed|from|to|height|period)$`).test(name))));
-  const isMain = ([name]) => aims.includes(name) || weather.has(name), numbers = Object.entries(about.signals).filter(([name, signal]) => signal.kind !== "Boolean" && (signal.free || aims.includes(name)));
+  // The system's own inputs are those that its maker chose to steer it by.
+  const isMain = ([name, { side }]) => aims.includes(name) || weather.has(name) || side === 2, numbers = Object.entries(about.signals).filter(([name, signal]) => signal.kind !== "Boolean" && (signal.free || aims.includes(name)));
   const [main, rest] = by("inputs").querySelectorAll(".groups");
   groupsOf(main, numbers.filter(isMain).sort(([a], [b]) => aims.includes(b) - aims.includes(a)), fieldOf);
   groupsOf(rest, numbers.filter((one) => !isMain(one)), fieldOf);
   by("inputs").querySelector("details").hidden = !rest.childElementCount;
+  if (!aims.length) by("inputs").querySelector("h2").textContent = "Steering and weather";
   by("failures").hidden = !by("failures").querySelector("button");
   by("inputs-filter").addEventListener("input", ({ target }) => {
     const words = target.value.toLowerCase().split(/\s+/);
@@ -209,8 +212,12 @@
     const canvas = element("canvas"), signal = about.signals[name] || { unit: "" };
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-label", `${name} over the last two minutes`);
-    by("trend-canvases").append(canvas);
-    trends.push({ name, canvas, unit: unitOf(signal), factor: factorOf(signal) });
+    const remove = element("button", { type: "button", textContent: "×" }), box = element("div", { className: "trend" }, canvas, remove);
+    remove.setAttribute("aria-label", `Remove ${name}`);
+    by("trend-canvases").append(box);
+    const trend = { name, canvas, unit: unitOf(signal), factor: factorOf(signal) };
+    trends.push(trend);
+    remove.addEventListener("click", () => { trends.splice(trends.indexOf(trend), 1); box.remove(); });
   }
   by("trend-add").addEventListener("click", () => { addTrend(by("trend-name").value.trim()); by("trend-name").value = ""; draw(); });
   by("trend-name").addEventListener("keydown", (event) => { if (event.key === "Enter") by("trend-add").click(); });
@@ -234,7 +241,7 @@
       scene.stroke(c, "blue", 1.5);
       c.fillStyle = scene.colour("soft");
       c.textAlign = "left"; c.fillText(`${name}${unit ? ` [${unit}]` : ""}`, 8, 12);
-      c.textAlign = "right"; c.fillText(`${digits(low)} to ${digits(high)}`, width - 8, 12);
+      c.textAlign = "right"; c.fillText(`${digits(low)} to ${digits(high)}`, width - 32, 12);
     }
   }
 
