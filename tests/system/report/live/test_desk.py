@@ -151,7 +151,8 @@ def test_arrow_keys_move_the_set_point_and_turn_it(craft, craft_project):
     craft.ask("document.getElementById('scene-chart').focus()")
     keys = ActionChains(craft.driver).send_keys(Keys.ARROW_UP * 3, Keys.ARROW_LEFT)
     keys.key_down(Keys.SHIFT).send_keys(Keys.ARROW_RIGHT * 2).key_up(Keys.SHIFT).perform()
-    assert craft.text("#aim output") == "3.0 m north, -1.0 m east, heading 10.0°."
+    said = "3.0 m north, -1.0 m east, heading 10.0°."
+    craft.wait(f"return document.querySelector('#aim output').textContent === '{said}'")
     events = saved(craft)["events"]
     assert [event["override"] for event in events[:2]] == [
         {"craft.x_set": 3.0},

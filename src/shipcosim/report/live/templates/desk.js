@@ -240,7 +240,7 @@
       for (let k = begin; k < values.length && time[k] <= last + 1e-9; k++) c.lineTo(x(time[k]), y(factor * values[k]));
       scene.stroke(c, "blue", 1.5);
       c.fillStyle = scene.colour("soft");
-      c.textAlign = "left"; c.fillText(`${name}${unit ? ` [${unit}]` : ""}`, 8, 12);
+      c.textAlign = "left"; c.fillText(`${name}${unit ? ` [${unit}]` : ""}`, 8, 12, Math.max(width - 190, 60));
       c.textAlign = "right"; c.fillText(`${digits(low)} to ${digits(high)}`, width - 32, 12);
     }
   }
