@@ -179,7 +179,7 @@ def _write_page(
         html = live_page(system, scenario, progress)
     # An earlier page is set aside at the end: where nothing could be made, it stays.
     name = f"{scenario.name or system.name}.html"
-    if out.suffix.lower() == ".html" and not out.is_dir():
+    if out.suffix.lower() in (".html", ".htm") and not out.is_dir():
         out, name = out.parent, out.name
     with staged(out, force=force) as stage:
         (stage / name).write_text(html, encoding="utf-8")

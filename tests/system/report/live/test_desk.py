@@ -185,3 +185,17 @@ def test_a_browser_without_webassembly_gets_a_sentence(craft, browse, craft_proj
         craft.wait("return document.body.innerText.includes('WebAssembly')")
     finally:
         craft.driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", found)
+
+
+def test_the_time_line_marks_what_was_done(craft):
+    craft.ask("desk.live.reach(20); scene.grown(20); scene.go(20); desk.act('override', 'gear', 3)")
+    marks = "return [...document.querySelectorAll('#scene-marks line')].map((line) => parseFloat(line.getAttribute('x1')))"
+    craft.wait(f"{marks}.length >= 4")
+    assert craft.ask(marks)[:4] == pytest.approx([10.0, 25.5, 35.0, 45.0])
+
+
+def test_keys_go_through_all_speeds_and_back(craft):
+    ActionChains(craft.driver).send_keys("+" * 9).perform()
+    assert craft.ask("return document.getElementById('scene-speed').value") == "Infinity"
+    ActionChains(craft.driver).send_keys("-").perform()
+    assert craft.ask("return scene.speed") == 64

@@ -282,7 +282,11 @@
     link.click();
     setTimeout(() => URL.revokeObjectURL(address), 1000);
   }
-  save.addEventListener("click", () => keep("live.toml", scenario()));
+  // Who leaves the page with something done that is not saved is asked first.
+  let unsaved = false;
+  addEventListener("live-acted", () => { unsaved = true; });
+  addEventListener("beforeunload", (event) => { if (unsaved && navigator.userActivation?.hasBeenActive) event.preventDefault(); });
+  save.addEventListener("click", () => { keep("live.toml", scenario()); unsaved = false; });
   table.addEventListener("click", () => keep("live.csv", csv()));
   Object.assign(window.desk, { scenario, csv });
 
