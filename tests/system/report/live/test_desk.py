@@ -109,14 +109,16 @@ def test_the_forecast_begins_with_what_was_done_in_a_pause(craft):
     craft.wait("return desk.losses.time === 0")
 
 
-def test_a_future_is_drawn_by_a_click(craft):
+def test_a_future_is_played_in_the_chart_by_a_click(craft):
     craft.ask("desk.live.reach(20); scene.grown(20); scene.go(20)")
     craft.wait("return desk.losses.time === 20")
     button = craft.driver.find_element(By.CSS_SELECTOR, "#losses button")
     craft.ask("arguments[0].click()", button)
-    craft.wait("return scene.drawn.some((one) => one.what === 'future')")
-    places = craft.ask("return scene.drawn.find((one) => one.what === 'future').places")
-    assert len(places) == 240
+    future = "scene.drawn.find((one) => one.what === 'future')"
+    craft.wait(f"return {future}?.at > 0")
+    assert craft.ask(f"return {future}.at") < 239
+    craft.wait(f"return {future}.at === 239")
+    assert len(craft.ask(f"return {future}.places")) == 240
     craft.ask("arguments[0].click()", button)
     craft.wait("return !scene.drawn.some((one) => one.what === 'future')")
 

@@ -36,10 +36,11 @@
     return crossed.after === 0 ? `is beyond the limit of ${crossed.what} already` : `leaves the limit of ${crossed.what} after ${crossed.after.toFixed(0)} s`;
   }
 
-  // ---- a future in the chart: where she goes after a loss, with her outline every half minute
+  // ---- a future in the chart: where she goes after a loss, with her outline every half minute; a click plays it
 
-  const OUTLINES = 30, rows = new Map(), chart = document.getElementById("scene-chart");  // s
-  let chosen = null;
+  const OUTLINES = 30, FASTER = 20;  // s; times real time
+  const still = matchMedia("(prefers-reduced-motion: reduce)").matches, rows = new Map(), chart = document.getElementById("scene-chart");
+  let chosen = null, began = 0;
 
   function rowOf(name) {  // rows stay, and with them the focus of the keyboard
     if (!rows.has(name)) {
@@ -51,7 +52,8 @@
       button.addEventListener("click", () => {
         chosen = chosen === name ? null : name;
         for (const [other, found] of rows) found.button.setAttribute("aria-pressed", String(other === chosen));
-        if (chosen) scene.follow(false);
+        if (chosen) { scene.follow(false); chart.scrollIntoView({ block: "nearest" }); }
+        began = performance.now();
         follow();
       });
       button.setAttribute("aria-pressed", "false");
@@ -69,14 +71,29 @@
 
   scene.paints(() => {
     if (!scene.future) return [];
-    const c = chart.getContext("2d"), places = scene.future, every = Math.round(OUTLINES / live.engine.seconds(about.steps_per_row)) || 1, last = places[places.length - 1];
+    const c = chart.getContext("2d"), places = scene.future, spacing = live.engine.seconds(about.steps_per_row);
+    const outline = ({ north, east, heading }) => scene.outline(c, scene.placed(vessel, north, east, heading));
+
+    // How far it has been played; who wants no motion sees its end.
+    const played = Math.floor(((performance.now() - began) / 1000) * (FASTER / spacing)), most = places.length - 1;
+    const end = still ? most : Math.min(played, most), last = places[end];
+    if (end < most) requestAnimationFrame(scene.refresh);
+
+    // The whole track, the outlines up to there, and the ship.
     c.beginPath();
     for (const { north, east } of places) c.lineTo(...scene.pixel(east, north));
     scene.stroke(c, "alarm", 2, [6, 4]);
-    for (let k = every - 1; k < places.length; k += every) { scene.outline(c, scene.placed(vessel, places[k].north, places[k].east, places[k].heading)); scene.stroke(c, "alarm", 1.2); }
+    const every = Math.round(OUTLINES / spacing) || 1;
+    for (let k = every - 1; k < end; k += every) { outline(places[k]); scene.stroke(c, "alarm/0.5", 1.2); }
+    outline(last);
+    c.fillStyle = scene.colour("alarm/0.15"); c.fill();
+    scene.stroke(c, "alarm", 1.6);
+
+    // Which future it is, and its time.
     const [x, y] = scene.pixel(last.east, last.north);
-    c.fillStyle = scene.colour("alarm"); c.textAlign = "left"; c.textBaseline = "middle"; c.fillText(`${chosen} lost: in ${ahead} s`, x + 8, y);
-    return [{ what: "future", of: chosen, places }];
+    c.fillStyle = scene.colour("alarm"); c.textAlign = "left"; c.textBaseline = "middle";
+    c.fillText(`${chosen} lost: in ${Math.round((end + 1) * spacing)} s`, x + 8, y);
+    return [{ what: "future", of: chosen, places, at: end }];
   });
 
   worker.onmessage = ({ data }) => {
