@@ -24,8 +24,10 @@
   });
 
   const rows = [...references, ...buses].map((one) => ({ ...one, cell: element("td") }));
+  const groups = [...new Set(rows.map((one) => one.group))];
   section.hidden = !rows.length;
-  for (const group of new Set(rows.map((one) => one.group))) {
+  section.querySelector("h2").textContent = groups.map((group, k) => (k ? group.toLowerCase() : group)).join(" and ");
+  for (const group of groups) {
     const table = element("table");
     for (const { label, cell } of rows.filter((one) => one.group === group)) table.append(element("tr", {}, element("th", { scope: "row", textContent: label.replaceAll("_", " ") }), cell));
     section.querySelector(".groups").append(element("div", {}, element("h3", { textContent: group }), table));
