@@ -4,6 +4,7 @@ import gc
 import math
 import random
 import time as clock
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -215,6 +216,11 @@ def test_what_is_no_arithmetic_is_not_called_and_named():
         self.y = self.x
 
     assert "it calls builtins.print" in reason(body_with_print)
+
+    def body_with_file(self, t, h):
+        self.y = float(len([*Path().glob("*.npz")]))
+
+    assert "it reads files in a step" in reason(body_with_file)
 
 
 def test_what_the_garbage_collector_calls_hides_no_call_of_the_model():

@@ -80,7 +80,10 @@ def fmu(
 def page(
     what: SystemOrScenario,
     out: Annotated[
-        Path, typer.Option("--out", metavar="DIR", help="Folder that gets NAME.html.")
+        Path,
+        typer.Option(
+            "--out", metavar="DIR|FILE.html", help="Folder that gets NAME.html, or the file."
+        ),
     ] = Path("."),
     stop_time: ScenariosStopTime = None,
     step_size: ScenariosStepSize = None,
@@ -107,7 +110,10 @@ def page(
 def live(
     what: SystemOrScenario,
     out: Annotated[
-        Path, typer.Option("--out", metavar="DIR", help="Folder that gets NAME.html.")
+        Path,
+        typer.Option(
+            "--out", metavar="DIR|FILE.html", help="Folder that gets NAME.html, or the file."
+        ),
     ] = Path("results", "live"),
     stop_time: ScenariosStopTime = None,
     step_size: ScenariosStepSize = None,
@@ -173,6 +179,8 @@ def _write_page(
         html = live_page(system, scenario, progress)
     # An earlier page is set aside at the end: where nothing could be made, it stays.
     name = f"{scenario.name or system.name}.html"
+    if out.suffix.lower() in (".html", ".htm") and not out.is_dir():
+        out, name = out.parent, out.name
     with staged(out, force=force) as stage:
         (stage / name).write_text(html, encoding="utf-8")
     return out / name

@@ -162,6 +162,9 @@ EXPORT int desk_start(void)
         if (set_start(starts + i))
             return 1;
     restore_external();
+    for (int i = 0; i < N_STARTS; i++)
+        if (starts[i].row >= 0)
+            put(exchanges + starts[i].exchange, exchanges[starts[i].exchange].sources, starts[i].row, starts[i].number);
     /* Outputs exist only in the initialisation mode, so all enter it first. */
     for (int i = 0; i < N_PARTS; i++)
         if (parts[i].fmu->setup(parts[i].instance, 0, 0.0, START_TIME, 1, STOP_TIME) > WARNING

@@ -55,13 +55,15 @@ typedef struct {
 
 enum { REAL, INTEGER, BOOLEAN, STRING, N_KINDS };
 
-/* A start value: of a text `text`, else `number`. */
+/* A start value: of a text `text`, else `number`. That of an input that nothing feeds is a value from outside, too:
+   `row` of the sources of `exchange`, else -1. */
 typedef struct {
     int part;
     unsigned reference;
     int kind;
     double number;
     const char *text;
+    int exchange, row;
 } Start;
 
 /* A component. Its memory holds inputs and outputs, reals before integers before booleans. */

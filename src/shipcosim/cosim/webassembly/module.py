@@ -75,12 +75,13 @@ def make_module(
         With every component that has no native code, and why; or the compiler is missing or fails.
     """
     check_installed()
-    # Every input gets a row, so that the page can change it.
+    # Every input and tunable parameter gets a row, so that the page can change it.
     inputs = [
         label((component.name, variable.name))
         for component in system.components.values()
         for variable in component.variables.values()
-        if variable.causality == "input" and variable.kind in ("Real", "Integer", "Boolean")
+        if (variable.causality == "input" or variable.variability == "tunable")
+        and variable.kind in ("Real", "Integer", "Boolean")
     ]
     plan = make_plan(system, scenario, (), inputs)
     texts = _texts(system, progress)

@@ -38,12 +38,15 @@ class StartValue:
         Among all of them.
     signal, unit : str
     value : number, bool or text
+    kind : str
+        Real, Integer, Boolean or String.
     """
 
     place: int
     signal: str
     value: float | bool | str
     unit: str
+    kind: str
 
 
 class Wiring:
@@ -271,19 +274,29 @@ class Wiring:
     def _start_values(self, components: Sequence[Component]) -> None:
         """All start values, in the order in which the FMUs get them."""
         rows = []
+        outside = {
+            end: f"{number}, {row}"
+            for number, kind in enumerate(self.kinds)
+            for row, end in enumerate(
+                self._plan.layouts[kind].external, start=len(self._plan.layouts[kind].outputs)
+            )
+        }
         for number, component in enumerate(components):
             for name, value in component.start.items():
                 variable = component.fmu.variables[name]
                 is_text = isinstance(value, str)
-                kind = "STRING" if is_text else (self._plan.kind(variable) or "").upper()
+                kind = "String" if is_text else self._plan.kind(variable) or ""
                 signal = label((component.name, name))
                 told_as = variable.unit or ""
-                self.starts.append(StartValue(len(rows), signal, value, told_as))  # pyright: ignore
+                self.starts.append(StartValue(len(rows), signal, value, told_as, kind))  # pyright: ignore
                 shown = c_text(value) if isinstance(value, str) else "NULL"
                 told = "0.0" if isinstance(value, str) else literal(float(value))  # pyright: ignore
-                rows.append(f"{{{number}, {variable.value_reference}, {kind}, {told}, {shown}}}")
+                rows.append(
+                    f"{{{number}, {variable.value_reference}, {kind.upper()}, {told}, {shown}, "
+                    f"{outside.get((component.name, name), '-1, -1')}}}"
+                )
         self._constants["N_STARTS"] = str(len(rows))
-        self._table("static Start starts[]", [*rows, "{0, 0, 0, 0.0, NULL}"])
+        self._table("static Start starts[]", [*rows, "{0, 0, 0, 0.0, NULL, -1, -1}"])
 
 
 def _check(plan: Plan) -> None:

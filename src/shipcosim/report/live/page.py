@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from math import degrees
 from typing import Any
 
@@ -129,7 +129,7 @@ def _description(module: Module, scenario: Scenario, written: Scenario) -> JsonO
         "columns": [columns[kind] for kind in wiring.kinds],
         "kinds": wiring.kinds,
         "signals": dict(_signals(module)),
-        "starts": [[one.place, one.signal, one.value, one.unit] for one in wiring.starts],
+        "starts": [astuple(start) for start in wiring.starts],
         "events": happening,
         "scenario": _header(written),
     }

@@ -1,9 +1,12 @@
 """The page that runs a system: what it computes is what the engines compute, and nothing that is done gets lost."""
 
 import json
+import tomllib
 
 import numpy as np
 import pytest
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
 
 import shipcosim
 from shipcosim.calls.arguments import Reading, system_and_scenario
@@ -74,13 +77,14 @@ def test_going_back_forgets_what_came_after(desk, tmp_path):
     assert worst < SAME
 
 
-def test_another_seed_starts_another_run(desk, tmp_path):
+@pytest.mark.parametrize("name, value", [("environment.seed", 17), ("environment.wind_speed", 12)])
+def test_another_start_value_starts_another_run(desk, tmp_path, name, value):
     place = desk.ask(
-        "return desk.live.about.starts.find(([, name]) => name === 'environment.seed')[0]"
+        "return desk.live.about.starts.find(([, name]) => name === arguments[0])[0]", name
     )
-    desk.ask("desk.live.reset({ [arguments[0]]: 17 }); desk.live.reach(60)", place)
+    desk.ask("desk.live.reset({ [arguments[0]]: arguments[1] }); desk.live.reach(60)", place, value)
     table = repeated(desk, tmp_path)
-    assert json.loads(table.attrs["start_values"])["environment.seed"] == 17
+    assert json.loads(table.attrs["start_values"])[name] == value
     worst, _ = largest_difference(desk, table)
     assert worst < SAME
 
@@ -129,17 +133,23 @@ def test_as_fast_as_it_goes_from_the_start_and_back_within_bounds(desk):
     assert desk.ask("return desk.live.states()") <= 81
 
 
-def test_a_wrong_number_is_refused_where_it_stands(desk):
-    desk.ask(
-        "const field = document.getElementById('input-environment.wind_speed'); field.value = 'strong';"
-        "field.dispatchEvent(new Event('change'))"
+def test_the_set_point_is_dragged_in_the_chart(desk):
+    desk.ask("scene.follow(true)")
+    desk.wait("return scene.drawn.some((one) => one.what === 'set point')")
+    chart = desk.driver.find_element(By.ID, "scene-chart")
+    desk.ask("arguments[0].scrollIntoView()", chart)
+    # Pixels from the middle of the chart, as the driver counts, and those of three metres.
+    x, y, far = desk.ask(
+        "const { clientWidth, clientHeight } = arguments[0];"
+        "const { north, east } = scene.drawn.find((one) => one.what === 'set point');"
+        "const [x, y] = scene.pixel(east, north), [further] = scene.pixel(east + 3, north);"
+        "return [x - clientWidth / 2, y - clientHeight / 2, further - x]",
+        chart,
     )
-    field = "document.getElementById('input-environment.wind_speed')"
-    assert desk.ask(f"return {field}.ariaInvalid") == "true"
-    assert "number" in desk.ask(f"return {field}.title")
-    assert "wind_speed" not in desk.ask(
-        "return desk.scenario().split('[[events]]').slice(1).join()"
-    )
+    drag = ActionChains(desk.driver).move_to_element_with_offset(chart, round(x), round(y))
+    drag.click_and_hold().move_by_offset(round(far), 0).release().perform()
+    events = tomllib.loads(desk.ask("return desk.scenario()"))["events"]
+    assert events[-1]["override"]["reference.y_set"] == pytest.approx(3.0, abs=0.2)
 
 
 def test_a_run_that_fails_says_why_and_can_be_saved_and_taken_back(desk):

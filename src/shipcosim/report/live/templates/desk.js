@@ -10,6 +10,22 @@
   const SHOWN = { rad: ["deg", 180 / Math.PI], "rad/s": ["deg/s", 180 / Math.PI] };
   const unitOf = (signal) => SHOWN[signal.unit]?.[0] ?? (signal.unit === "1" ? "" : signal.unit), factorOf = (signal) => SHOWN[signal.unit]?.[1] ?? 1;
 
+  // A number as one types it, with a comma or a point; NaN for anything else.
+  function numberIn(text) {
+    const plain = text.trim().replace("−", "-");
+    return /^[+-]?(\d+([.,]\d*)?|[.,]\d+)(e[+-]?\d+)?$/i.test(plain) ? Number(plain.replace(",", ".")) : NaN;
+  }
+
+  // The value of a signal that was typed; what is wrong with it is said at the field, until another one is typed.
+  function valueIn(field, remark, signal) {
+    const typed = numberIn(field.value), value = typed / factorOf(signal), whole = signal.kind === "Integer";
+    const fits = Number.isFinite(value) && !(value < signal.min) && !(value > signal.max) && (!whole || (Number.isInteger(value) && Math.abs(value) < 2 ** 31));
+    const bounds = ["min", "max"].filter((bound) => bound in signal).map((bound) => `${bound === "min" ? "from" : "to"} ${digits(signal[bound] * factorOf(signal))}`);
+    remark.textContent = fits ? "" : [whole ? "A whole number" : "A number", ...bounds, unitOf(signal)].join(" ").trim();
+    field.setAttribute("aria-invalid", String(!fits));
+    return fits ? value : null;
+  }
+
   // ---- the player
 
   const step = element("button", { type: "button", className: "plain", textContent: "Step", title: "One row further" });
@@ -33,8 +49,17 @@
 
   // ---- inputs that nothing feeds
 
+  // Their start value holds until something is done: nothing else changes them. A fed set point has the value of its source.
+  const placeOf = new Map(about.starts.map(([place, name]) => [name, place]));
+  const startOf = (name) => Number(live.starts[placeOf.get(name)] ?? about.signals[name].start ?? 0);
+  function present(name) {
+    const held = live.held(name), number = held && Number(held[3]);
+    if (!about.signals[name].free) return held?.[1] === "override" ? number : live.value(name);
+    return held ? number + (held[1] === "bias" ? startOf(name) : 0) : startOf(name);
+  }
+
   const free = Object.entries(about.signals).filter(([, signal]) => signal.free);
-  const run = report.data.scene[0], aims = run.vessels[0]?.aims["set point"] || [];
+  const run = report.data.scene[0], aims = (run.vessels[0]?.aims["set point"] || []).map((column) => run.recipes[column]?.signal);
   const rows = new Map();
 
   function groupsOf(place, signals, build) {
@@ -48,40 +73,51 @@
   function switchOf(name, signal) {
     const button = element("button", { type: "button", textContent: short(name), title: `${name}: ${signal.text}` });
     button.setAttribute("aria-label", `${owner(name)}: ${short(name)}`);
-    button.addEventListener("click", () => act(live.held(name) && Number(live.held(name)[3]) ? "reset" : "override", name, true));
-    rows.set(name, () => button.setAttribute("aria-pressed", String(Boolean(live.held(name) && Number(live.held(name)[3])))));
+    button.addEventListener("click", () => {
+      const wanted = present(name) ? 0 : 1;
+      act(wanted === startOf(name) ? "reset" : "override", name, Boolean(wanted));
+    });
+    rows.set(name, () => {
+      button.setAttribute("aria-pressed", String(Boolean(present(name))));
+      button.classList.toggle("changed", present(name) !== startOf(name));
+    });
     return button;
   }
 
   function fieldOf(name, signal) {
     const id = `input-${name}`, field = element("input", { id, inputMode: "decimal" }), follow = element("button", { type: "button", textContent: "Follow" });
-    const label = element("label", { htmlFor: id, textContent: short(name), title: `${name}: ${signal.text}` }), row = element("div", { className: "input" }, label, field, element("span", { textContent: unitOf(signal) }), follow);
+    const label = element("label", { htmlFor: id, textContent: short(name), title: `${name}: ${signal.text}` }), remark = element("span", { className: "wrong", id: `wrong-${name}` });
+    remark.setAttribute("aria-live", "polite");
+    field.setAttribute("aria-describedby", remark.id);
+    const row = element("div", { className: "input" }, label, field, element("span", { textContent: unitOf(signal) }), follow, remark);
     row.dataset.words = `${name} ${signal.text}`.toLowerCase();
+    field.setAttribute("aria-label", `${owner(name)}: ${short(name)}${unitOf(signal) && `, ${unitOf(signal)}`}`);
     follow.setAttribute("aria-label", `${name} follows its own value again`);
     field.addEventListener("change", () => {
-      const typed = Number(field.value.replace(",", ".").replace("−", "-")), value = typed / factorOf(signal);
-      const fits = field.value.trim() !== "" && Number.isFinite(typed) && !(value < signal.min) && !(value > signal.max);
-      field.setAttribute("aria-invalid", String(!fits));
-      field.title = fits ? "" : `A number${"min" in signal ? ` from ${digits(signal.min * factorOf(signal))}` : ""}${"max" in signal ? ` to ${digits(signal.max * factorOf(signal))}` : ""} ${unitOf(signal)}`;
-      if (fits) act("override", name, signal.kind === "Integer" ? Math.round(value) : value);
+      const value = valueIn(field, remark, signal);
+      if (value !== null) act("override", name, value);
     });
-    follow.addEventListener("click", () => act("reset", name));
+    const clear = () => { remark.textContent = ""; field.removeAttribute("aria-invalid"); };
+    field.addEventListener("keydown", ({ key }) => { if (key === "Escape") { clear(); field.value = digits(present(name) * factorOf(signal)); } });
+    follow.addEventListener("click", () => { clear(); act("reset", name); });
     rows.set(name, () => {
-      const held = live.held(name), value = held ? held[3] : (live.value(name) ?? signal.start ?? 0);
+      const held = live.held(name);
       row.classList.toggle("held", Boolean(held));
       follow.disabled = !held;
-      if (document.activeElement !== field) field.value = digits(value * factorOf(signal));
+      if (document.activeElement !== field && !remark.textContent) field.value = digits(present(name) * factorOf(signal));
     });
     return row;
   }
 
   groupsOf(by("failures").querySelector(".groups"), free.filter(([, signal]) => signal.kind === "Boolean"), switchOf);
   const weather = new Set(run.flows.flatMap(({ what }) => free.map(([name]) => name).filter((name) => new RegExp(`(^|\\.|_)${what.replace(/s$/, "")}_(speed|from|to|height|period)$`).test(name))));
-  const isMain = ([name]) => aims.includes(name) || weather.has(name), numbers = free.filter(([, signal]) => signal.kind !== "Boolean");
+  // The system's own inputs are those that its maker chose to steer it by.
+  const isMain = ([name, { side }]) => aims.includes(name) || weather.has(name) || side === 2, numbers = Object.entries(about.signals).filter(([name, signal]) => signal.kind !== "Boolean" && (signal.free || aims.includes(name)));
   const [main, rest] = by("inputs").querySelectorAll(".groups");
   groupsOf(main, numbers.filter(isMain).sort(([a], [b]) => aims.includes(b) - aims.includes(a)), fieldOf);
   groupsOf(rest, numbers.filter((one) => !isMain(one)), fieldOf);
   by("inputs").querySelector("details").hidden = !rest.childElementCount;
+  if (!aims.length) by("inputs").querySelector("h2").textContent = "Steering and weather";
   by("failures").hidden = !by("failures").querySelector("button");
   by("inputs-filter").addEventListener("input", ({ target }) => {
     const words = target.value.toLowerCase().split(/\s+/);
@@ -91,71 +127,79 @@
 
   function act(action, name, value) {  // what one does acts at the end of the record, so the view goes there
     live.act(action, name, value);
+    if (scene.time < live.time.last) go();
     changed();
   }
   function changed() { for (const write of rows.values()) write(); if (!live.stopped) by("failure").hidden = true; }
-  window.desk = { act, live };  // for those who look from outside
-
-  // ---- the set point by a click in the chart
-
-  const canSet = aims.length && aims.slice(0, 2).every((name) => about.signals[name]);
-  move.hidden = !canSet;
-  move.addEventListener("click", () => move.setAttribute("aria-pressed", String(move.getAttribute("aria-pressed") !== "true")));
-  by("scene-chart").addEventListener("click", (event) => {
-    if (move.getAttribute("aria-pressed") !== "true") return;
-    const box = event.target.getBoundingClientRect(), { north, east } = scene.place(event.clientX - box.left, event.clientY - box.top);
-    act("override", aims[0], +north.toFixed(1));
-    act("override", aims[1], +east.toFixed(1));
-    move.setAttribute("aria-pressed", "false");
-    scene.refresh();
-  });
+  window.desk = { act, live, present, move, element, changed };  // for those who look from outside
 
   // ---- other start values
 
   const starts = about.starts.filter(([, , value]) => typeof value === "number"), choice = by("start-name"), typed = by("start-value");
   starts.sort((a, b) => /seed$/.test(b[1]) - /seed$/.test(a[1]) || a[1].localeCompare(b[1]));
-  for (const [place, name, , unit] of starts) choice.append(new Option(`${name}${unit && unit !== "1" ? ` [${unit}]` : ""}`, place));
-  const present = () => { const found = starts.find(([place]) => place === +choice.value); typed.value = live.starts[choice.value] ?? found?.[2] ?? ""; };
-  choice.addEventListener("change", present);
+  const signals = new Map(starts.map(([place, , value, unit, kind]) => [String(place), { value, unit, kind }]));
+  for (const [place, name] of starts) { const unit = unitOf(signals.get(String(place))); choice.append(new Option(`${name}${unit ? ` [${unit}]` : ""}`, place)); }
+  const before = () => live.starts[choice.value] ?? signals.get(choice.value).value;
+  const show = () => { typed.value = +(before() * factorOf(signals.get(choice.value))).toPrecision(12); by("start-wrong").textContent = ""; typed.removeAttribute("aria-invalid"); };
+  choice.addEventListener("change", show);
   by("starts").hidden = !starts.length;
-  present();
+  if (starts.length) show();
   by("start-again").addEventListener("click", () => {
-    const value = Number(typed.value);
-    if (!Number.isFinite(value) || typed.value.trim() === "") { typed.setAttribute("aria-invalid", "true"); return; }
-    typed.removeAttribute("aria-invalid");
+    const value = valueIn(typed, by("start-wrong"), signals.get(choice.value)), old = before();
+    if (value === null) return;
     scene.pause();
-    const before = live.starts[choice.value] ?? starts.find(([place]) => place === +choice.value)[2];
     try { live.reset({ [choice.value]: value }); }
-    catch (error) { live.reset({ [choice.value]: before }); by("failure").hidden = false; by("failure").textContent = `It does not start with that: ${error.message}. The value before holds.`; go(); return; }
+    catch (error) { live.reset({ [choice.value]: old }); by("failure").hidden = false; by("failure").textContent = `It does not start with that: ${error.message}. The value before holds.`; go(); return; }
     go();
     changed();
   });
 
-  // ---- alarms: flags that components raise
+  // ---- alarms: flags that components raise, and those that say that something works no longer
 
-  const ALARM = /alarm|lost|failed|rejected|saturated|limited|dropout|unsafe/, flags = Object.entries(about.signals).filter(([name, signal]) => signal.kind === "Boolean" && signal.side === 0 && ALARM.test(name));
+  const ALARM = /alarm|lost|fail|fault|rejected|saturated|limited|dropout|unsafe/, WORKS = /(^|[._])(valid|available)$/;
+  const flags = Object.entries(about.signals).flatMap(([name, { kind, side, text }]) => {
+    const short = name.slice(name.lastIndexOf(".") + 1), works = WORKS.test(short);
+    if (kind !== "Boolean" || side !== 0 || !(works || ALARM.test(short))) return [];
+    return [{ name, rings: works ? 0 : 1, label: works ? `not ${name}` : name, text }];
+  });
+  const acknowledged = new Set(), place = by("alarm-list"), box = by("alarms");
   let alarms = [], looked = 0;
+  function forget() { alarms = []; looked = 0; place.replaceChildren(); }  // all rows are looked at anew
+  addEventListener("live-cut", forget);
+
+  function itemOf(alarm) {  // an entry stays the same element: one may be about to press its button
+    const key = `${alarm.flag.name} ${alarm.since}`, over = element("span"), words = element("span", { className: "on", textContent: `${alarm.flag.label}: ${alarm.flag.text}` });
+    const item = element("li", {}, element("span", { textContent: `${alarm.since.toFixed(1)} s` }), words, element("span", { className: "spacer" }), over);
+    alarm.end = (t) => { alarm.until = t; words.className = ""; over.textContent = `over at ${t.toFixed(1)} s`; };
+    if (acknowledged.has(key)) return item;
+    const button = element("button", { type: "button", textContent: "Acknowledge" });
+    button.setAttribute("aria-label", `Acknowledge ${alarm.flag.label} of ${alarm.since.toFixed(1)} s`);
+    button.addEventListener("click", () => {
+      acknowledged.add(key);
+      const all = [...place.querySelectorAll("button")], next = all[all.indexOf(button) + 1] || all[all.indexOf(button) - 1];
+      button.remove();
+      next?.focus();
+    });
+    item.append(button);
+    return item;
+  }
+
   function look() {
-    if (live.time.length < looked) { alarms = []; looked = 0; }  // it went back
     for (; looked < live.time.length; looked++) {  // every row, however fast it goes
       const t = live.time.all[looked];
-      for (const [name, signal] of flags) {
-        const on = live.raw.get(name).all[looked] > 0.5, open = alarms.find((one) => one.name === name && one.until === null);
-        if (on && !open) alarms.push({ name, text: signal.text, since: t, until: null, seen: false });
-        if (!on && open) open.until = t;
+      for (const flag of flags) {
+        const on = (live.raw.get(flag.name).all[looked] > 0.5) === Boolean(flag.rings), open = alarms.find((one) => one.flag === flag && one.until === null);
+        if (on && !open) { const alarm = { flag, since: t, until: null }; alarms.push(alarm); place.prepend(itemOf(alarm)); }
+        if (!on && open) open.end(t);
       }
     }
-    const now = alarms.filter((one) => one.until === null), box = by("alarms");
+    while (place.childElementCount > 60) place.lastElementChild.remove();
+    by("no-alarms").hidden = alarms.length > 0;
+    const now = alarms.filter((one) => one.until === null);
+    const words = now.length ? [`${now.length} alarm${now.length > 1 ? "s" : ""}`, now.map(({ flag }) => flag.label).join(", ")] : ["No alarm", flags.length ? "" : "No component raises one."];
+    if (box.textContent === words.join("")) return;
     box.className = `verdict ${now.length ? "loud" : "quiet"}`;
-    const words = now.length ? [`${now.length} alarm${now.length > 1 ? "s" : ""}`, now.map(({ name }) => name).join(", ")] : ["No alarm", flags.length ? "" : "No component raises one."];
     [box.querySelector("strong").textContent, box.querySelector("p").textContent] = words;
-    const listed = [...alarms].reverse().slice(0, 60), place = by("alarm-list");
-    place.replaceChildren(...listed.map((one) => {
-      const item = element("li", {}, element("span", { textContent: `${one.since.toFixed(1)} s` }), element("span", { className: one.until === null ? "on" : "", textContent: `${one.name}: ${one.text}` }), element("span", { className: "spacer" }), element("span", { textContent: one.until === null ? "" : `over at ${one.until.toFixed(1)} s` }));
-      if (!one.seen) { const button = element("button", { type: "button", textContent: "Acknowledge" }); button.addEventListener("click", () => { one.seen = true; look(); }); item.append(button); }
-      return item;
-    }));
-    if (!listed.length) place.append(element("li", { textContent: "None so far." }));
   }
 
   // ---- trends
@@ -163,11 +207,17 @@
   const trends = [], names = by("trend-names");
   for (const name of live.raw.keys()) names.append(new Option(name));
   function addTrend(name) {
+    by("trend-wrong").textContent = live.raw.has(name) ? "" : `There is no signal “${name}”.`;
     if (!live.raw.has(name) || trends.some((one) => one.name === name)) return;
     const canvas = element("canvas"), signal = about.signals[name] || { unit: "" };
+    canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-label", `${name} over the last two minutes`);
-    by("trend-canvases").append(canvas);
-    trends.push({ name, canvas, unit: unitOf(signal), factor: factorOf(signal) });
+    const remove = element("button", { type: "button", textContent: "×" }), box = element("div", { className: "trend" }, canvas, remove);
+    remove.setAttribute("aria-label", `Remove ${name}`);
+    by("trend-canvases").append(box);
+    const trend = { name, canvas, unit: unitOf(signal), factor: factorOf(signal) };
+    trends.push(trend);
+    remove.addEventListener("click", () => { trends.splice(trends.indexOf(trend), 1); box.remove(); });
   }
   by("trend-add").addEventListener("click", () => { addTrend(by("trend-name").value.trim()); by("trend-name").value = ""; draw(); });
   by("trend-name").addEventListener("keydown", (event) => { if (event.key === "Enter") by("trend-add").click(); });
@@ -190,16 +240,16 @@
       for (let k = begin; k < values.length && time[k] <= last + 1e-9; k++) c.lineTo(x(time[k]), y(factor * values[k]));
       scene.stroke(c, "blue", 1.5);
       c.fillStyle = scene.colour("soft");
-      c.textAlign = "left"; c.fillText(`${name}${unit ? ` [${unit}]` : ""}`, 8, 12);
-      c.textAlign = "right"; c.fillText(`${digits(low)} to ${digits(high)}`, width - 8, 12);
+      c.textAlign = "left"; c.fillText(`${name}${unit ? ` [${unit}]` : ""}`, 8, 12, Math.max(width - 190, 60));
+      c.textAlign = "right"; c.fillText(`${digits(low)} to ${digits(high)}`, width - 32, 12);
     }
   }
 
   // ---- saving
 
-  const quoted = (text) => JSON.stringify(text), written = (value) => (typeof value === "string" ? quoted(value) : typeof value === "boolean" ? String(value) : Number.isInteger(value) ? `${value}` : String(value));
-  const real = (name, value) => (about.signals[name]?.kind === "Real" && Number.isInteger(value) ? `${value}.0` : about.signals[name]?.kind === "Boolean" ? String(Boolean(value)) : written(value));
-  const seconds = (value) => (Number.isInteger(value) ? `${value}.0` : String(value));
+  const quoted = (text) => JSON.stringify(text).replaceAll("\x7f", "\\u007f"), written = (value) => (typeof value === "string" ? quoted(value) : String(value));
+  const seconds = (value) => String(value).replace(/^-?\d+$/, "$&.0");  // TOML tells whole numbers from others
+  const valueOf = { Real: seconds, Integer: String, Boolean: (value) => String(Boolean(value)) };
 
   function scenario() {
     const { set, ...head } = about.scenario, now = live.now(), lines = [];
@@ -215,7 +265,7 @@
     lines.push("", "[set]", ...Object.entries(values).map(([name, value]) => `${quoted(name)} = ${written(value)}`));
     for (const [step, action, name, value] of [...live.done].sort((a, b) => a[0] - b[0])) {
       lines.push("", "[[events]]", `time = ${seconds(live.engine.seconds(step))}`);
-      lines.push(action === "reset" ? `reset = [${quoted(name)}]` : `${action} = { ${quoted(name)} = ${real(name, value)} }`);
+      lines.push(action === "reset" ? `reset = [${quoted(name)}]` : `${action} = { ${quoted(name)} = ${valueOf[about.signals[name].kind](value)} }`);
     }
     return `${lines.join("\n")}\n`;
   }
@@ -232,13 +282,18 @@
     link.click();
     setTimeout(() => URL.revokeObjectURL(address), 1000);
   }
-  save.addEventListener("click", () => keep("live.toml", scenario()));
+  // Who leaves the page with something done that is not saved is asked first.
+  let unsaved = false;
+  addEventListener("live-acted", () => { unsaved = true; });
+  addEventListener("beforeunload", (event) => { if (unsaved && navigator.userActivation?.hasBeenActive) event.preventDefault(); });
+  save.addEventListener("click", () => { keep("live.toml", scenario()); unsaved = false; });
   table.addEventListener("click", () => keep("live.csv", csv()));
   Object.assign(window.desk, { scenario, csv });
 
   // ---- go
 
-  scene.writes(() => { look(); draw(); for (const write of rows.values()) write(); });
-  scene.opened();
+  // Marks at what was done, on a time line that grows.
+  const marked = () => scene.mark([...new Set(live.done.map(([step]) => live.engine.seconds(step)))].filter((t) => t <= scene.end));
+  scene.writes(() => { look(); draw(); marked(); for (const write of rows.values()) write(); });
   changed();
 })();

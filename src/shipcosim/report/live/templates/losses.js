@@ -1,6 +1,6 @@
 // What comes of each loss, by simulation of this very system in a worker, again and again.
 (() => {
-  const { live } = report, { about } = live, section = document.getElementById("losses"), body = section.querySelector("tbody"), said = document.getElementById("losses-said");
+  const { live } = report, { about } = live, { element } = window.desk, section = document.getElementById("losses"), body = section.querySelector("tbody"), said = document.getElementById("losses-said");
   const ahead = 120, run = report.data.scene[0], vessel = run.vessels[0], aim = vessel && (vessel.aims.reference || vessel.aims["set point"]);
   const name = (column) => run.recipes[column]?.signal, real = about.kinds.indexOf("Real");
   const columns = aim ? [...vessel.pose, ...aim].map((column) => about.columns[real].indexOf(name(column))) : [];
@@ -18,32 +18,98 @@
   const address = URL.createObjectURL(new Blob([document.getElementById("worker").textContent], { type: "text/javascript" }));
   const worker = new Worker(address);
   worker.postMessage({ module: live.module, about });
-  let busy = false, asked = -1;
+  let busy = false, asked = null, changes = 0;
   const shown = { answers: [], milliseconds: NaN, time: NaN };
 
   function ask() {
-    if (busy || live.stopped || live.now() === asked || document.hidden) return;
+    const present = `${live.now()} ${changes}`;
+    if (busy || live.stopped || present === asked || document.hidden) return;
     busy = true;
-    asked = live.now();
+    asked = present;
     const steps = Math.round((ahead * about.step[1]) / about.step[0]);
-    worker.postMessage({ state: live.engine.state(), losses, steps, time: live.time.last, watch: { x: real, columns, ...limits } });
+    worker.postMessage({ state: live.engine.state(), pending: live.pending, losses, steps, time: live.time.last, watch: { x: real, columns, ...limits } });
   }
+
+  function outcome({ error, crossed }) {
+    if (error) return `stops: ${error}`;
+    if (!crossed) return "holds";
+    return crossed.after === 0 ? `is beyond the limit of ${crossed.what} already` : `leaves the limit of ${crossed.what} after ${crossed.after.toFixed(0)} s`;
+  }
+
+  // ---- a future in the chart: where she goes after a loss, with her outline every half minute; a click plays it
+
+  const OUTLINES = 30, FASTER = 20;  // s; times real time
+  const still = matchMedia("(prefers-reduced-motion: reduce)").matches, rows = new Map(), chart = document.getElementById("scene-chart");
+  let chosen = null, began = 0;
+
+  function rowOf(name) {  // rows stay, and with them the focus of the keyboard
+    if (!rows.has(name)) {
+      const row = body.insertRow(), button = element("button", { type: "button", textContent: "Show" });
+      row.insertCell().append(name);
+      const cells = [0, 1, 2].map(() => row.insertCell());
+      row.insertCell().append(button);
+      button.setAttribute("aria-label", `Show in the chart where she goes after the loss of ${name}`);
+      button.addEventListener("click", () => {
+        chosen = chosen === name ? null : name;
+        for (const [other, found] of rows) found.button.setAttribute("aria-pressed", String(other === chosen));
+        if (chosen) { scene.follow(false); chart.scrollIntoView({ block: "nearest" }); }
+        began = performance.now();
+        follow();
+      });
+      button.setAttribute("aria-pressed", "false");
+      rows.set(name, { row, cells, button });
+    }
+    return rows.get(name);
+  }
+
+  function follow() {
+    const answer = shown.answers.find((one) => one.name === chosen && one.track), track = answer?.track || [], places = [];
+    for (let k = 0; k < track.length; k += 3) places.push({ north: track[k], east: track[k + 1], heading: (track[k + 2] * 180) / Math.PI });
+    scene.future = places.length ? places : null;
+    scene.refresh();
+  }
+
+  scene.paints(() => {
+    if (!scene.future) return [];
+    const c = chart.getContext("2d"), places = scene.future, spacing = live.engine.seconds(about.steps_per_row);
+    const outline = ({ north, east, heading }) => scene.outline(c, scene.placed(vessel, north, east, heading));
+
+    // How far it has been played; who wants no motion sees its end.
+    const played = Math.floor(((performance.now() - began) / 1000) * (FASTER / spacing)), most = places.length - 1;
+    const end = still ? most : Math.min(played, most), last = places[end];
+    if (end < most) requestAnimationFrame(scene.refresh);
+
+    // The whole track, the outlines up to there, and the ship.
+    c.beginPath();
+    for (const { north, east } of places) c.lineTo(...scene.pixel(east, north));
+    scene.stroke(c, "alarm", 2, [6, 4]);
+    const every = Math.round(OUTLINES / spacing) || 1;
+    for (let k = every - 1; k < end; k += every) { outline(places[k]); scene.stroke(c, "alarm/0.5", 1.2); }
+    outline(last);
+    c.fillStyle = scene.colour("alarm/0.15"); c.fill();
+    scene.stroke(c, "alarm", 1.6);
+
+    // Which future it is, and its time.
+    const [x, y] = scene.pixel(last.east, last.north);
+    c.fillStyle = scene.colour("alarm"); c.textAlign = "left"; c.textBaseline = "middle";
+    c.fillText(`${chosen} lost: in ${Math.round((end + 1) * spacing)} s`, x + 8, y);
+    return [{ what: "future", of: chosen, places, at: end }];
+  });
 
   worker.onmessage = ({ data }) => {
     busy = false;
     Object.assign(shown, data);
     said.textContent = `As of ${data.time.toFixed(1)} s, two minutes ahead, computed in ${data.milliseconds.toFixed(0)} ms. Limits: ${+limits.distance.toPrecision(3)} m and ${+limits.heading.toPrecision(3)}° off the ${vessel.aims.reference ? "reference" : "set point"}${assumed ? ` (${assumed} assumed)` : ""}.`;
-    body.replaceChildren(...data.answers.map((one) => {
-      const row = document.createElement("tr"), add = (text) => row.insertCell().append(text);
+    for (const one of data.answers) {
+      const { row, cells } = rowOf(one.name), far = one.error ? ["–", "–"] : [`${one.distance.toFixed(1)} m`, `${one.heading.toFixed(1)}°`];
       row.className = one.crossed || one.error ? "leaves" : "holds";
-      add(one.name);
-      add(one.error ? `stops: ${one.error}` : one.crossed?.after === 0 ? `is beyond the limit of ${one.crossed.what} already` : one.crossed ? `leaves the limit of ${one.crossed.what} after ${one.crossed.after.toFixed(0)} s` : "holds");
-      add(one.error ? "–" : `${one.distance.toFixed(1)} m`);
-      add(one.error ? "–" : `${one.heading.toFixed(1)}°`);
-      return row;
-    }));
+      [outcome(one), ...far].forEach((text, k) => { cells[k].textContent = text; });
+    }
+    follow();
   };
   worker.onerror = (event) => { busy = false; said.textContent = `The forecast stopped: ${event.message}`; };
+  // What one does changes the forecast, also while the run pauses.
+  for (const event of ["live-acted", "live-cut"]) addEventListener(event, () => { changes += 1; setTimeout(ask); });
   setInterval(ask, 3000);
   ask();
   window.desk.losses = shown;

@@ -71,7 +71,7 @@ report.live = await (async () => {
   }
 
   function advance(to) {
-    const spacing = Math.round((EVERY * about.step[1]) / about.step[0]);
+    const spacing = Math.max(Math.round((EVERY * about.step[1]) / about.step[0]), 1);
     try {
       while (engine.step() < to) {
         const from = engine.step(), next = Math.min(to, from + spacing, from + about.most_steps);
@@ -117,6 +117,7 @@ report.live = await (async () => {
         track.made.cut(kept);
         for (const columns of track.parts.values()) for (const column of columns) column.cut(kept);
       }
+      dispatchEvent(new Event("live-cut"));
     },
     back(to) {
       const state = [...states].reverse().find((one) => one.time <= to + 1e-9) || states[0];
@@ -130,7 +131,10 @@ report.live = await (async () => {
       show();
     },
     act(action, name, value) {  // from the next step on
-      done.push([engine.step(), action, name, value, true]);
+      // Of several changes of a signal before the next step the last one holds.
+      const now = engine.step();
+      done = done.filter(([step, , of, , byHand]) => !(byHand && step === now && of === name));
+      done.push([now, action, name, value, true]);
       dispatchEvent(new Event("live-acted"));
     },
     now: () => engine.step(),
@@ -139,6 +143,7 @@ report.live = await (async () => {
       const last = done.filter(([step, , of]) => of === name && step <= engine.step()).sort((a, b) => a[0] - b[0]).pop();
       return last && last[1] !== "reset" ? last : null;
     },
+    get pending() { return done.filter(([step]) => step === engine.step()); },  // what the next step begins with
     get done() { return done.filter(([step, , , , byHand]) => byHand || step < engine.step()); },
     get starts() { return starts; },
     states: () => states.length,

@@ -40,8 +40,14 @@
 
   function projection(width, height, states) {
     if (report.live && seen !== runs[0].time.length) extend();
-    const middle = { east: (box.east[0] + box.east[1]) / 2, north: (box.north[0] + box.north[1]) / 2 };
-    let scale = Math.min((width - 70) / (box.east[1] - box.east[0] || 1), (height - 50) / (box.north[1] - box.north[0] || 1));
+    let [west, east] = box.east, [south, north] = box.north;
+    for (const place of scene.future || []) {  // a forecast that is shown is in view
+      const around = 0.6 * size(runs[0].vessels[0]);
+      west = Math.min(west, place.east - around); east = Math.max(east, place.east + around);
+      south = Math.min(south, place.north - around); north = Math.max(north, place.north + around);
+    }
+    const middle = { east: (west + east) / 2, north: (south + north) / 2 };
+    let scale = Math.min((width - 70) / (east - west || 1), (height - 50) / (north - south || 1));
     const own = states.map(scene.of).find(Boolean);
     if (view.follow && own) {
       Object.assign(middle, { east: own.east, north: own.north });
@@ -228,6 +234,7 @@
     return drawn;
   });
   scene.place = (x, y) => ({ east: shown.east(x), north: shown.north(y) });
+  scene.outline = (c, { east, north }) => path(c, shown, east, north, true);
   scene.pixel = (east, north) => [shown.x(east), shown.y(north)];  // of the chart, in pixels of the style sheet
 
   // ---- key, and what the reader turns

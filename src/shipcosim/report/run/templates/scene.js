@@ -196,16 +196,19 @@ const scene = (() => {
   speed.addEventListener("change", () => { self.speed = +speed.value; });
   self.setSpeed = (factor) => { if ([...speed.options].some((o) => +o.value === factor)) { speed.value = factor; self.speed = factor; } };
 
-  const marks = by("marks");
-  for (const t of data.events) {
+  const faster = (by) => { speed.selectedIndex = Math.min(Math.max(speed.selectedIndex + by, 0), speed.options.length - 1); self.speed = +speed.value; };
+
+  // Lines at the times at which something happens.
+  self.mark = (times) => by("marks").replaceChildren(...times.map((t) => {
     const line = document.createElementNS("http://www.w3.org/2000/svg", "line"), x = `${(100 * (t - start)) / (end - start || 1)}%`;
     for (const [key, v] of Object.entries({ x1: x, x2: x, y1: 0, y2: "100%" })) line.setAttribute(key, v);
-    marks.append(line);
-  }
+    return line;
+  }));
+  self.mark(data.events);
 
   const KEYS = {
-    " ": () => self.toggle(), Home: () => self.go(start), End: () => self.go(end), "+": () => self.setSpeed(self.speed * 2), "-": () => self.setSpeed(self.speed / 2),
-    ArrowRight: (far) => self.go(self.time + far * self.speed), ArrowLeft: (far) => self.go(self.time - far * self.speed),
+    " ": () => self.toggle(), Home: () => self.go(start), End: () => self.go(end), "+": () => faster(1), "-": () => faster(-1),
+    ArrowRight: (far) => self.go(self.time + far * Math.min(self.speed, 64)), ArrowLeft: (far) => self.go(self.time - far * Math.min(self.speed, 64)),
   };
   addEventListener("keydown", (event) => {
     const inside = section.contains(event.target), box = section.getBoundingClientRect();

@@ -1,0 +1,203 @@
+"""What a reader does at the desk, by keys and pointer, and what stands of it in the saved scenario."""
+
+import tomllib
+
+import pytest
+from report.live.test_live import SAME, largest_difference, repeated
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+from typer.testing import CliRunner
+
+from shipcosim.cli.app import app
+
+
+def saved(page):
+    """The saved scenario, parsed."""
+    return tomllib.loads(page.ask("return desk.scenario()"))
+
+
+def typed(page, field, text):
+    """Type into a field and press Enter; the value that the last event gives, and what is said at the field."""
+    place = page.driver.find_element(By.ID, field)
+    page.ask("arguments[0].closest('details')?.setAttribute('open', '')", place)
+    page.ask("arguments[0].scrollIntoView({ block: 'center' })", place)
+    place.send_keys(Keys.CONTROL, "a")
+    place.send_keys(text or Keys.DELETE, Keys.ENTER)
+    said = page.ask(
+        "return document.getElementById(arguments[0].getAttribute('aria-describedby')).textContent",
+        place,
+    )
+    return page.ask("return desk.live.done.filter((one) => one[4]).pop()?.[3] ?? null"), said
+
+
+def test_a_craft_of_all_kinds_of_inputs_repeats_what_was_done(craft, craft_project):
+    craft.ask(
+        "const { live, act } = desk; live.reach(12); act('override', 'gear', 3); act('bias', 'wish', 0.1);"
+        "live.reach(13.3); act('override', 'craft.engaged', false); act('override', 'craft.factor', 1.5);"
+        "live.reach(15); act('reset', 'gear'); act('reset', 'craft.engaged'); live.reach(16); live.back(14);"
+        "act('override', 'craft.push', 1e300); act('override', 'craft.push', 0.25); live.reach(20)"
+    )
+    worst, count = largest_difference(craft, repeated(craft, craft_project / "scenarios"))
+    assert count > 15
+    assert worst < SAME
+    assert craft.ask("return window.hacked ?? null") is None
+    assert craft.errors() == []
+
+
+def test_a_switch_that_begins_on_is_switched_off_and_on_again(craft):
+    button = craft.driver.find_element(By.CSS_SELECTOR, '[aria-label="craft: engaged"]')
+    assert button.get_attribute("aria-pressed") == "true"
+    craft.ask("arguments[0].click()", button)
+    assert button.get_attribute("aria-pressed") == "false"
+    assert saved(craft)["events"][0]["override"] == {"craft.engaged": False}
+    craft.ask("arguments[0].click()", button)
+    assert button.get_attribute("aria-pressed") == "true"
+
+
+@pytest.mark.parametrize("text", ["", "strong", "NaN", "1e400", "0x10", "1.000,5", "12 kn", "2000"])
+def test_a_number_that_is_none_is_refused_in_words(craft, text):
+    value, said = typed(craft, "input-craft.y_set", text)
+    assert value is None
+    assert "number" in said
+    craft.ask("desk.live.reach(1); scene.grown(1); scene.go(1); document.activeElement.blur()")
+    craft.wait("return scene.time === 1")
+    assert craft.ask("return document.querySelectorAll('[aria-invalid=true]').length") == 1
+
+
+def test_numbers_as_people_type_them(craft):
+    assert typed(craft, "input-speed", "0,75") == (0.75, "")
+    assert typed(craft, "input-speed", "−2") == (-2, "")
+    assert typed(craft, "input-gear", "2.5") == (-2, "A whole number")
+    assert typed(craft, "input-speed", "1e300") == (1e300, "")
+    assert saved(craft)["events"][0]["override"] == {"speed": 1e300}
+
+
+def test_a_start_value_is_typed_with_a_comma_and_a_whole_one_stays_whole(craft, craft_project):
+    def start(name, text):
+        craft.ask(
+            "const choice = document.getElementById('start-name'); const field = document.getElementById('start-value');"
+            "choice.value = [...choice.options].find((o) => o.textContent.startsWith(arguments[0])).value;"
+            "choice.dispatchEvent(new Event('change')); field.value = arguments[1];"
+            "document.getElementById('start-again').click()",
+            name,
+            text,
+        )
+        return craft.text("#start-wrong")
+
+    assert "whole" in start("craft.seed", "1,5")
+    assert start("craft.seed", "4") == ""
+    assert start("craft.x_start", "12,5") == ""
+    assert saved(craft)["set"] == {"craft.seed": 4, "craft.x_start": 12.5}
+    craft.ask("desk.live.reach(5)")
+    worst, _ = largest_difference(craft, repeated(craft, craft_project / "scenarios"))
+    assert worst < SAME
+
+
+def test_what_is_done_while_the_past_is_shown_brings_the_view_to_the_end(craft):
+    craft.ask("desk.live.reach(20); scene.grown(20); scene.go(5); desk.act('override', 'speed', 1)")
+    assert craft.ask("return scene.time") == 20
+
+
+def test_the_forecast_begins_with_what_was_done_in_a_pause(craft):
+    craft.ask("desk.live.reach(20); scene.grown(20); scene.go(20)")
+    craft.wait("return desk.losses.time === 20")
+    before = craft.ask("return desk.losses.answers[0].distance")
+    craft.ask("desk.act('override', 'craft.x_set', 500)")
+    craft.wait(f"return Math.abs(desk.losses.answers[0].distance - {before}) > 100")
+    craft.ask("desk.live.back(0)")
+    craft.wait("return desk.losses.time === 0")
+
+
+def test_a_future_is_played_in_the_chart_by_a_click(craft):
+    craft.ask("desk.live.reach(20); scene.grown(20); scene.go(20)")
+    craft.wait("return desk.losses.time === 20")
+    button = craft.driver.find_element(By.CSS_SELECTOR, "#losses button")
+    craft.ask("arguments[0].click()", button)
+    future = "scene.drawn.find((one) => one.what === 'future')"
+    craft.wait(f"return {future}?.at > 0")
+    assert craft.ask(f"return {future}.at") < 239
+    craft.wait(f"return {future}.at === 239")
+    assert len(craft.ask(f"return {future}.places")) == 240
+    craft.ask("arguments[0].click()", button)
+    craft.wait("return !scene.drawn.some((one) => one.what === 'future')")
+
+
+def test_alarms_come_at_their_time_and_are_acknowledged_once(craft):
+    craft.ask(
+        "desk.live.reach(12); desk.act('override', 'gear', 3); desk.live.reach(15); scene.grown(15); scene.go(15)"
+    )
+    craft.wait("return document.querySelectorAll('#alarm-list li').length === 1")
+    assert "shaft_faulty: the shaft <i>slips</i>" in craft.text("#alarm-list")
+    # The entry stays the same element while the run goes on: a slow press reaches it.
+    craft.ask("window.entry = document.querySelector('#alarm-list button'); scene.play()")
+    craft.wait("return scene.time > 15.5")
+    assert craft.ask("return entry.isConnected")
+    craft.ask("entry.click(); scene.pause(); desk.live.back(14); scene.grown(14); scene.go(14)")
+    craft.wait(
+        "return scene.time === 14 && document.querySelectorAll('#alarm-list li').length === 1"
+    )
+    assert craft.ask("return document.querySelectorAll('#alarm-list button').length") == 0
+
+
+def test_panels_show_references_and_power(craft):
+    assert "position 1\tused" in craft.text("#panels")
+    craft.ask(
+        "desk.act('override', 'craft.y_set', 1000); desk.live.reach(2); scene.grown(2); scene.go(2)"
+    )
+    craft.wait("return document.getElementById('panels').innerText.includes('lost')")
+    assert "bus a\t1 kW" in craft.text("#panels")
+
+
+def test_arrow_keys_move_the_set_point_and_turn_it(craft, craft_project):
+    craft.ask("document.getElementById('scene-chart').focus()")
+    keys = ActionChains(craft.driver).send_keys(Keys.ARROW_UP * 3, Keys.ARROW_LEFT)
+    keys.key_down(Keys.SHIFT).send_keys(Keys.ARROW_RIGHT * 2).key_up(Keys.SHIFT).perform()
+    said = "3.0 m north, -1.0 m east, heading 10.0°."
+    craft.wait(f"return document.querySelector('#aim output').textContent === '{said}'")
+    events = saved(craft)["events"]
+    assert [event["override"] for event in events[:2]] == [
+        {"craft.x_set": 3.0},
+        {"craft.y_set": -1.0},
+    ]
+    assert events[2]["override"]["craft.psi_set"] == pytest.approx(0.17453, rel=1e-4)
+    craft.ask("desk.live.reach(20)")
+    worst, _ = largest_difference(craft, repeated(craft, craft_project / "scenarios"))
+    assert worst < SAME
+
+
+def test_out_is_a_folder_or_the_file_itself(craft_project, tmp_path, monkeypatch):
+    monkeypatch.chdir(craft_project)
+    for out in (tmp_path / "new" / "ship.html", tmp_path / "folder"):
+        found = CliRunner().invoke(app, ["export", "page", "scenarios/odd.toml", "--out", str(out)])
+        assert found.exit_code == 0, found.output
+    assert (tmp_path / "new" / "ship.html").is_file()
+    assert (tmp_path / "folder" / "odd.html").is_file()
+
+
+def test_tunable_parameters_are_knobs(craft):
+    assert typed(craft, "input-craft.factor", "3") == (3, "")
+
+
+def test_a_browser_without_webassembly_gets_a_sentence(craft, browse, craft_project):
+    script = {"source": "delete window.WebAssembly"}
+    found = craft.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", script)
+    try:
+        craft.driver.get((craft_project / "craft.html").as_uri())
+        craft.wait("return document.body.innerText.includes('WebAssembly')")
+    finally:
+        craft.driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", found)
+
+
+def test_the_time_line_marks_what_was_done(craft):
+    craft.ask("desk.live.reach(20); scene.grown(20); scene.go(20); desk.act('override', 'gear', 3)")
+    marks = "return [...document.querySelectorAll('#scene-marks line')].map((line) => parseFloat(line.getAttribute('x1')))"
+    craft.wait(f"{marks}.length >= 4")
+    assert craft.ask(marks)[:4] == pytest.approx([10.0, 25.5, 35.0, 45.0])
+
+
+def test_keys_go_through_all_speeds_and_back(craft):
+    ActionChains(craft.driver).send_keys("+" * 9).perform()
+    assert craft.ask("return document.getElementById('scene-speed').value") == "Infinity"
+    ActionChains(craft.driver).send_keys("-").perform()
+    assert craft.ask("return scene.speed") == 64
