@@ -241,7 +241,9 @@
       scene.stroke(c, "blue", 1.5);
       c.fillStyle = scene.colour("soft");
       c.textAlign = "left"; c.fillText(`${name}${unit ? ` [${unit}]` : ""}`, 8, 12, Math.max(width - 190, 60));
-      c.textAlign = "right"; c.fillText(`${digits(low)} to ${digits(high)}`, width - 32, 12);
+      // Ends of the range, to a hundredth of it.
+      const least = 10 ** (Math.floor(Math.log10(high - low)) - 1), end = (v) => digits(Math.round(v / least) * least);
+      c.textAlign = "right"; c.fillText(`${end(low)} to ${end(high)}`, width - 32, 12);
     }
   }
 
