@@ -1,6 +1,6 @@
 """What a diagnosis names: causes with their parameters, candidates, and where simulation and log differ."""
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 
 Segment = tuple[float, float]
 """First and last time of a part of a log. [s]"""
@@ -112,6 +112,19 @@ class Finding:
         if self.alternatives:
             entry["alternatives"] = list(self.alternatives)
         return entry
+
+
+def log_fault(
+    cause: str,
+    channels: tuple[str, ...],
+    note: str,
+    segments: tuple[Segment, ...] = (),
+    probability: float = 1.0,
+    parameters: dict[str, ParameterEstimate] | None = None,
+) -> Finding:
+    """The finding that some channels of a log are wrong, in segments or throughout."""
+    found = Finding(cause, None, "data", probability, parameters or {}, segments, channels)
+    return replace(found, note=note)
 
 
 @dataclass(frozen=True)

@@ -90,11 +90,6 @@ def discrepancies_of(
     ]
 
 
-def is_of_damping(one: Discrepancy) -> bool:
-    """Whether a discrepancy is one of the water's damping."""
-    return one.what.startswith(_DAMPING)
-
-
 def _wrong_signs(labels: Labels, gains: Sequence[AxisGain]) -> Iterator[Discrepancy]:
     """Axes on which the thrusters do the opposite of what they are commanded, as logged; else the labels themselves."""
     # Interpretations that would correct wrong labels: the best, and those that cannot be told from

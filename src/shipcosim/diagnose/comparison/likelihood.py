@@ -83,10 +83,7 @@ class Blocks:
 
 def smoothed(felt: Felt) -> Felt:
     """The same with a smoothed motion, so that noise of the velocities does not go with the loads that they make."""
-    motion = felt.motion
-    return replace(
-        felt, motion=type(motion)(*(felt.kernel.smooth(np.asarray(one, float)) for one in motion))
-    )
+    return replace(felt, motion=felt.smooth_motion)
 
 
 def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
@@ -105,10 +102,10 @@ def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
     """
     length = model.length
     # Loads from the smoothed motion, accelerations from block means: their noise is not correlated.
-    motion = smoothed(felt).motion
+    motion = felt.smooth_motion
     count = max(1, round(CAUSAL_STEP * froude_time(length) / felt.kernel.step))
     # Average over blocks of a share of the ship's response time.
-    speeds = blocks(np.stack([felt.motion.u, felt.motion.v, felt.motion.r]), count)
+    speeds = blocks(felt.velocity, count)
     usable = blocks(felt.usable.astype(float), count) > 1.0 - 1e-9
     rows = _with_past(usable[1:] & usable[:-1])
     # Force that the motion needs between two blocks: M nu_dot + C_RB(nu) nu.

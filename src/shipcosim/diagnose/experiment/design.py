@@ -25,7 +25,7 @@ from shipcosim.diagnose.inference.linearisation import linearise, rows_first
 from shipcosim.diagnose.inference.parts import beside
 from shipcosim.diagnose.ship.dynamics import with_steady_current
 from shipcosim.diagnose.ship.inputs import part_of
-from shipcosim.diagnose.ship.measured_motion import readings
+from shipcosim.diagnose.ship.measured_motion import at_rows, readings
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
 from shipcosim.models.core.motion import Motion
@@ -261,7 +261,7 @@ def _simulated(problem, models, manoeuvres):
     motion, units = kept_on_track(ships, many * len(models), tracks, side_by_side, dp, held=held)
     for i in range(len(models)):
         part = slice(i * many, (i + 1) * many)
-        motions.append(Motion(*(value[part] for value in motion)))
+        motions.append(at_rows(motion, part))
         here = part_of(units, part)
         records.append(replace(record, units=here))
         through.append(keeps_track(motions[-1], track, manoeuvres, dp))

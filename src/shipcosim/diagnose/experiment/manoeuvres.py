@@ -12,6 +12,7 @@ from shipcosim.diagnose.inference.innovations import Noise
 from shipcosim.diagnose.numerics import gaussian_filter
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.diagnose.ship.inputs import Inputs, Record
+from shipcosim.diagnose.ship.measured_motion import at_rows
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.diagnose.ship.track_keeping import DpController
@@ -237,7 +238,7 @@ def planned(
     shape = len(manoeuvres), rows
     series = None if wind is None else (np.full(shape, wind[0]), np.full(shape, wind[1]))
     plans = [
-        _thrusters(one, time, Motion(*(value[i] for value in track)), start, wind, dp)
+        _thrusters(one, time, at_rows(track, i), start, wind, dp)
         for i, one in enumerate(manoeuvres)
     ]
     units = {

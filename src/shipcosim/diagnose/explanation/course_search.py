@@ -540,7 +540,7 @@ def _estimates(hypothesis, columns, theta, covariance) -> dict[str, ParameterEst
         value = of.neutral + float(sizes @ theta[which])
         # Standard deviation of a linear combination of the columns.
         std = float(np.sqrt(sizes @ covariance[np.ix_(which, which)] @ sizes))
-        found[of.name] = ParameterEstimate(value * of.factor, abs(std * of.factor), of.unit)
+        found[of.name] = of.estimate(value, std)
     return found
 
 

@@ -10,7 +10,7 @@ from typing import Literal
 
 from pydantic import ValidationError
 
-from shipcosim.diagnose.finding import label_of
+from shipcosim.diagnose.finding import ParameterEstimate, label_of
 from shipcosim.diagnose.hypotheses.cause import Cause, CauseParameter, Fault
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.errors import Problem, ShipcosimError, error_at
@@ -48,6 +48,10 @@ class HypothesisParameter:
     def path(self) -> str:
         """The first of the numbers, which stands for all of them."""
         return self.paths[0]
+
+    def estimate(self, value: float, std: float, given: float | None = None) -> ParameterEstimate:
+        """An estimate in the unit that is reported, from a value and its deviation in that of the numbers."""
+        return ParameterEstimate(value * self.factor, abs(std * self.factor), self.unit, given)
 
 
 @dataclass(frozen=True)

@@ -61,14 +61,13 @@ def repaired(log: xarray.Dataset, findings: Sequence[Finding] = ()) -> xarray.Da
     _check_span(time, step)
     grid = time[0] + step * np.arange(int(np.floor((time[-1] - time[0]) / step + 1e-6)) + 1)
     place = _Place(time, grid, np.diff(base) > HOLE * usual_distance(base))
-    columns = [
-        (n, place(v, _is_angle(n)), log[n].attrs["units"], log[n].attrs["long_name"])
-        for n, v in channels.items()
-    ]
+    even = {name: place(values, _is_angle(name)) for name, values in channels.items()}
     # Headings are interpolated by the shorter way round, which can leave [0, 360).
+    if "heading" in even:
+        even["heading"] = np.mod(even["heading"], 360.0)
     columns = [
-        (n, np.mod(v, 360.0) if n == "heading" else v, unit, meaning)
-        for n, v, unit, meaning in columns
+        (name, values, log[name].attrs["units"], log[name].attrs["long_name"])
+        for name, values in even.items()
     ]
     table = make_table(grid, columns, attributes)
     origin = {"units": "s", "long_name": "time as logged"}

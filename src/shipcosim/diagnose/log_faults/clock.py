@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray
 
-from shipcosim.diagnose.finding import Finding, ParameterEstimate
+from shipcosim.diagnose.finding import Finding, ParameterEstimate, log_fault
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor, fitted, prepared
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import rows_first
@@ -205,7 +205,7 @@ def _most_likely(blocks):
         )
     }
     note = "the ship answers thrusters and wind at another rate than logged"
-    return float(gain), Finding("clock", None, "data", 0.98, rate, segments, ("time",), note=note)
+    return float(gain), log_fault("clock", ("time",), note, segments, 0.98, rate)
 
 
 def _best(match, energy, allowed):

@@ -88,7 +88,7 @@ def sea_trials_of(
         whole &= (record.time < first - record.step) | (record.time > last + record.step)
     # Circles and zig-zags first, straight runs between them.
     found = [*_circles(helm, measured), *_zig_zags(helm, measured, length)]
-    busy = _merged([rows for _, rows in found])
+    busy = [rows for _, rows in found]
     found += _straight_runs(helm, record, measured, length, busy)
     # Only whole manoeuvres in which the ship makes way.
     kept = [(kind, rows) for kind, rows in found if whole[rows].all()]
@@ -253,10 +253,6 @@ def _zig_zags(helm, measured, length):
         ):
             start -= 1
         yield "zig-zag", slice(max(start - 1, 0), chain[-1].start + 1)
-
-
-def _merged(slices):
-    return sorted(slices, key=lambda rows: rows.start)
 
 
 def _straight_runs(helm, record, measured, length, busy):

@@ -10,7 +10,7 @@ import xarray
 
 from shipcosim.cosim import replay
 from shipcosim.diagnose.inference.predictions import missing, predicted
-from shipcosim.diagnose.ship.measured_motion import readings
+from shipcosim.diagnose.ship.measured_motion import at_rows, readings
 from shipcosim.diagnose.ship.third_party_fmu import DRIVES, drives_of
 from shipcosim.diagnose.validation.gain import Comparison, Predictor
 from shipcosim.diagnose.validation.split import HORIZONS, in_rows
@@ -108,7 +108,7 @@ def simulated(
 
 def in_array_form(predictor: Predictor, rows: np.ndarray) -> Motion:
     """What a model predicts the log to show after the horizons, (horizons, s) arrays."""
-    motion = Motion(*(value[rows] for value in predictor.motion))
+    motion = at_rows(predictor.motion, rows)
     found = predicted(motion, rows, predictor.record, predictor.model, in_rows(predictor.record))
     return readings(found, predictor.model)
 

@@ -20,7 +20,7 @@ from shipcosim.diagnose.inference.predictions import (
 )
 from shipcosim.diagnose.inference.thresholds import DRAWS
 from shipcosim.diagnose.ship.inputs import Record
-from shipcosim.diagnose.ship.measured_motion import readings
+from shipcosim.diagnose.ship.measured_motion import at_rows, readings
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.validation.split import (
     HORIZONS,
@@ -229,7 +229,7 @@ class _Model:
             self.record,
             self.model,
             original,
-            Motion(*(value[number] for value in self.known.motion)),
+            at_rows(self.known.motion, number),
         )
 
     def missed(self, rows, seen, holds):
@@ -328,10 +328,10 @@ def sailed(comparison: Comparison, model: ShipModel) -> Motion:
     """
     predictor = comparison.predictors["plain"]
     rows = comparison.rows
-    start = Motion(*(value[rows] for value in predictor.motion))
+    start = at_rows(predictor.motion, rows)
     horizon = in_rows(predictor.record)[-1:]
     there = readings(predicted(start, rows, predictor.record, model, horizon), model)
-    return Motion(*(value[0] for value in there))
+    return at_rows(there, 0)
 
 
 def baseline(errors: xarray.Dataset) -> dict[str, list[float]]:

@@ -7,6 +7,7 @@ import numpy as np
 from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.parts import InParts
 from shipcosim.diagnose.ship.inputs import Record, part_of
+from shipcosim.diagnose.ship.measured_motion import at_rows
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.validation.thresholds import (
     IDLE,
@@ -150,9 +151,7 @@ def trained(problem: IdentificationProblem, train: np.ndarray) -> Identification
         )
 
     linear = InParts(n, base.columns, part)
-    return replace(
-        problem, record=cut, motion=Motion(*(value[:n] for value in problem.motion)), base=linear
-    )
+    return replace(problem, record=cut, motion=at_rows(problem.motion, slice(n)), base=linear)
 
 
 def conditions(

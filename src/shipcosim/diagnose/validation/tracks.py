@@ -13,7 +13,7 @@ from shipcosim.diagnose.inference.predictions import predicted, replayable
 from shipcosim.diagnose.log.roles import ROLES
 from shipcosim.diagnose.ship.inputs import CHANNELS, Record, first_motion
 from shipcosim.diagnose.ship.instruments import Instruments
-from shipcosim.diagnose.ship.measured_motion import readings, true_motion
+from shipcosim.diagnose.ship.measured_motion import at_rows, readings, true_motion
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.third_party_fmu import number_of
 from shipcosim.diagnose.ship.time_scales import response_times
@@ -106,7 +106,7 @@ def tracks_by_models(record: Record, models: Mapping[str, ShipModel], horizon: f
         # Smoothed measurements give the start; inputs are those of the log without delay.
         seen = _seen(record, model, horizon)
         driven, neutral = replayable(record, model, seen)
-        start = true_motion(Motion(*(value[rows] for value in seen)), model)
+        start = true_motion(at_rows(seen, rows), model)
         ahead = readings(predicted(start, rows, driven, neutral, range(1, count + 1)), model)
         first = readings(start, model)
         # The start itself is the first row of each prediction.
@@ -170,7 +170,7 @@ def _cosimulated(record, model, one, rows, horizon, progress):
     # The system's instruments have errors of their own: take them out of the start values.
     errors, lag = _instruments(one)
     own = model.with_values({f"instruments.{key}": value for key, value in errors.items()})
-    start = true_motion(Motion(*(value[rows] for value in seen)), own)
+    start = true_motion(at_rows(seen, rows), own)
     table, states = driving_table(one.system, Predictor(driven, neutral, own, start), STEP, lag)
     states |= {
         f"{model.vessel}.{key}_start": value

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shipcosim.diagnose.finding import Finding, ParameterEstimate
+from shipcosim.diagnose.finding import Finding, ParameterEstimate, log_fault
 from shipcosim.diagnose.log.checks.kinematics import (
     Filter,
     Motion,
@@ -330,7 +330,5 @@ def _findings(segments):
         std = float(np.hypot(weight.sum() ** -0.5, RATE_UNSURE * abs(rate - 1.0)))
         rates = {"rate": ParameterEstimate(rate, std, "1")}
         note = "positions and headings go at another rate than speeds and yaw rates say"
-        found.append(
-            Finding("clock", None, "data", probability, rates, spans, ("time",), note=note)
-        )
+        found.append(log_fault("clock", ("time",), note, spans, probability, rates))
     return found
