@@ -12,7 +12,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     SHORTEST_ANSWER,
 )
 from shipcosim.diagnose.inference.predictions import missing, predicted, replayable
-from shipcosim.diagnose.numerics import root_mean_square
+from shipcosim.diagnose.numerics import root_mean_square, running_sums
 from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.measured_motion import at_rows, readings, true_motion
 from shipcosim.diagnose.ship.model import ShipModel
@@ -145,7 +145,7 @@ def starts_of(record: Record, felt: Felt, horizon: float) -> np.ndarray:
     # Starts whose horizon reaches no row with unknown inputs, by cumulative counts.
     reach = round(horizon / record.step)
     rows = np.arange(0, record.time.size - reach)
-    lost = np.concatenate([[0], np.cumsum(~record.known)])
+    lost = running_sums(~record.known)
     good = rows[(lost[rows + reach] == lost[rows]) & felt.usable[rows] & felt.usable[rows + reach]]
     # Gaps in the motion matter less: they are accepted where there are too few starts.
     good = good if good.size >= FEWEST_STARTS else rows[lost[rows + reach] == lost[rows]]

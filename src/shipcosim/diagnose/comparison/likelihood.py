@@ -28,6 +28,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     THRUSTER_WIDTH,
     WAY_WIDTH,
 )
+from shipcosim.diagnose.numerics import running_sums
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.smoothing import froude_time
 
@@ -148,7 +149,7 @@ def _between(series: np.ndarray) -> np.ndarray:
 
 def _with_past(usable: np.ndarray) -> np.ndarray:
     # Cumulative count of bad steps: equal at both ends where the past is complete.
-    bad = np.cumsum(np.r_[0, ~usable])
+    bad = running_sums(~usable)
     rows = np.arange(CAUSAL_ORDER, usable.size)
     return rows[bad[rows + 1] == bad[rows - CAUSAL_ORDER]]
 

@@ -12,6 +12,7 @@ from shipcosim.diagnose.log.mislabels import mislabel_of, undone
 from shipcosim.diagnose.log.roles import role_of
 from shipcosim.diagnose.log.rows import inside, usable_rows, usual_distance, usual_step
 from shipcosim.diagnose.log.thresholds import HOLE, LONGEST_SPAN
+from shipcosim.diagnose.numerics import running_sums
 from shipcosim.errors import error_at
 from shipcosim.series import make_table
 
@@ -137,7 +138,7 @@ def _true_time(logged, base, findings, step):
                 / max(lasts, step)
             )
     # True time is the integral of the rate.
-    return base[0] + np.r_[0.0, np.cumsum(rates * np.diff(base))]
+    return base[0] + running_sums(rates * np.diff(base))
 
 
 def _put_right(time, channels, findings):

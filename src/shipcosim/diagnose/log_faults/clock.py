@@ -34,7 +34,7 @@ from shipcosim.diagnose.log_faults.thresholds import (
     TYPICAL_RATE,
     TYPICAL_SEGMENT,
 )
-from shipcosim.diagnose.numerics import survival
+from shipcosim.diagnose.numerics import running_sums, survival
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.models.core.motion import Motion
 
@@ -51,7 +51,7 @@ class _Blocks:
 
     def with_run(self, first, last):
         """Inner products of a run with every other: (k + 1, k + 1) array."""
-        sums = np.r_[0.0, np.cumsum(self.gram[:, first:last].sum(axis=1))]
+        sums = running_sums(self.gram[:, first:last].sum(axis=1))
         return differences(sums)
 
 

@@ -34,7 +34,7 @@ from shipcosim.diagnose.log.thresholds import (
     SCALE_SLAB,
     SHORTEST_BLOCK,
 )
-from shipcosim.diagnose.numerics import Bands
+from shipcosim.diagnose.numerics import Bands, running_sums
 
 _AT_ONCE = (
     8  # columns that are whitened together, over the rows in which any of them is not nothing
@@ -221,7 +221,7 @@ def sums_of_runs(match: np.ndarray, gram: np.ndarray) -> tuple[np.ndarray, np.nd
     grams = np.pad(np.cumsum(np.cumsum(gram, axis=0), axis=1), ((1, 0), (1, 0)))
     own = np.diag(grams)
     return (
-        differences(np.r_[0.0, np.cumsum(match)]),
+        differences(running_sums(match)),
         own[None, :] + own[:, None] - grams - grams.T,
     )
 

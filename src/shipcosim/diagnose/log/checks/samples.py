@@ -23,7 +23,7 @@ from shipcosim.diagnose.log.thresholds import (
     RUN_CHANCE,
     SHORTEST_GAP,
 )
-from shipcosim.diagnose.numerics import finite
+from shipcosim.diagnose.numerics import finite, runs
 
 LIFELESS = "values never change, while others say that they should: not used"
 LEAPING = "the ship leaps many times faster than she goes"
@@ -253,13 +253,6 @@ def quantum(values: np.ndarray) -> float:
     steps = np.diff(levels)
     steps = steps[steps > 1e-9 * (np.abs(levels).max(initial=0.0) + 1e-300)]
     return float(np.quantile(steps, 0.01)) if len(steps) and len(steps) < 0.8 * len(values) else 0.0
-
-
-def runs(flags: np.ndarray) -> np.ndarray:
-    """First and one past the last index of each run of true values: (k, 2)."""
-    # Edges of runs are where the flags change, with 0 before and after.
-    edges = np.flatnonzero(np.diff(np.r_[0, np.asarray(flags, np.int8), 0]))
-    return edges.reshape(-1, 2)
 
 
 def _long_runs(flags, least):

@@ -4,6 +4,8 @@ from typing import Any
 
 import numpy as np
 
+from shipcosim.diagnose.numerics import running_sums
+
 _SPEEDS = {"m/s": 1.0, "kn": 1852.0 / 3600.0, "km/h": 1.0 / 3.6}
 _RATES = {"deg/s": 1.0, "rad/s": 180.0 / np.pi, "deg/min": 1.0 / 60.0}
 _FAR = 0.15  # by which a ratio may be off a unit's, as a logarithm: units of speed differ by 1.85
@@ -64,7 +66,7 @@ def _unit_by(time, rate, change, units):
     if len(time) < 4 * _SPANS[0] or not (steps > 0.0).all():
         return None
     # Integral of the reported rate by the trapezium rule.
-    told = np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * steps)))
+    told = running_sums(0.5 * (rate[1:] + rate[:-1]) * steps)
     best = 0.0
     ratio = None
     # Compare changes over several spans: short ones drown in noise,
