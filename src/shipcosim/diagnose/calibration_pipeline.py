@@ -312,7 +312,7 @@ def _named_in(problem: Identification) -> list[Finding]:
     """Causes in the ship, none of the day's weather, that a diagnosis names in a log."""
     found = causes_in(problem, problem.ship, lambda *_: None)
     of_day = {one.label for one in problem.problem.hypotheses if is_of_day(one)}
-    return [one for one in found.findings if one.kind == "physics" and one.label not in of_day]
+    return [one for one in found.physics if one.label not in of_day]
 
 
 def _reasons_not_to_trust(

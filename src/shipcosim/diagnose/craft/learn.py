@@ -64,7 +64,8 @@ def learn(logs: Sequence[CraftLog]) -> LearnedCraft | None:
     while True:
         normal = fitted(logs, numbers, free, near)
         near = normal.solved(free)[-1]
-        tries = [free, *_with_one_more(numbers, free)]
+        # Sets with one more number.
+        tries = [free, *[[*free, i] for i in range(len(numbers)) if i not in free]]
         found = _held_out(logs, normal, tries)
         best = _best(found, tries, normal, logs)
         if best is None or len(free) >= MOST_NUMBERS:
@@ -83,11 +84,6 @@ def _typical(logs: Sequence[CraftLog]) -> dict[str, np.ndarray]:
         for name in each[0]
         if all(name in one for one in each)
     }
-
-
-def _with_one_more(numbers: Sequence[CraftNumber], free: list[int]) -> list[list[int]]:
-    """Sets with one more number."""
-    return [[*free, i] for i in range(len(numbers)) if i not in free]
 
 
 def _held_out(logs: Sequence[CraftLog], normal: Normal, tries: Sequence[Sequence[int]]) -> _HeldOut:

@@ -21,7 +21,7 @@ from shipcosim.diagnose.experiment.manoeuvres import (
 from shipcosim.diagnose.hypotheses.catalogue import paths_of
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 from shipcosim.diagnose.inference.innovations import innovations
-from shipcosim.diagnose.inference.linearisation import linearise, rows_first
+from shipcosim.diagnose.inference.linearisation import linearise, moved, rows_first
 from shipcosim.diagnose.inference.parts import beside
 from shipcosim.diagnose.ship.dynamics import with_steady_current
 from shipcosim.diagnose.ship.inputs import part_of
@@ -176,11 +176,7 @@ def _in_true_wind(model: ShipModel) -> ShipModel:
 def _fitted_ship(fit: Fit) -> ShipModel:
     """The ship of a fit: its causes, and all known numbers at their most likely."""
     # Shift all numbers of the fit by its posterior mean.
-    values = {}
-    for column, share in zip(fit.columns, fit.left, strict=True):
-        for path, size in column.changes.items():
-            values[path] = values.get(path, fit.model.get(path)) + float(share) * size
-    return _in_true_wind(fit.model.with_values(values))
+    return _in_true_wind(fit.model.with_values(moved(fit.columns, fit.left, fit.model.get)))
 
 
 def _shared_columns(fits):

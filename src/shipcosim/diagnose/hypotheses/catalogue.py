@@ -204,12 +204,12 @@ def hypotheses_of(
     found = [_on(cause, place, model) for cause in causes for place in places[cause.for_each]]
     hypotheses = [hypothesis for hypothesis in found if hypothesis]
     alone = {path for one in hypotheses if one.component for path in one.paths}
-    return [one for one in hypotheses if not _says_the_same(one, alone)]
-
-
-def _says_the_same(hypothesis: Hypothesis, alone: set[str]) -> bool:
-    """Whether a cause of all azimuth thrusters together is that of the only one."""
-    return hypothesis.component is None and len(hypothesis.paths) == 1 and hypothesis.paths <= alone
+    # Whether a cause of all azimuth thrusters together is that of the only one.
+    return [
+        one
+        for one in hypotheses
+        if not (one.component is None and len(one.paths) == 1 and one.paths <= alone)
+    ]
 
 
 def _on(cause: Cause, component: str | None, model: ShipModel) -> Hypothesis | None:

@@ -4,7 +4,7 @@ About a motion near the measured one the ship is a linear system that varies in 
 rows of a log and over several logs; only the filter goes from row to row.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -53,6 +53,17 @@ class Regressor:
     def gives_way(self, taken: Collection[str]) -> bool:
         """Whether a cause that changes these numbers speaks for what this one would say of them."""
         return not self.beside and not self.changes.keys().isdisjoint(taken)
+
+
+def moved(
+    columns: Iterable[Regressor], shares: Iterable[float], get: Callable[[str], float]
+) -> dict[str, float]:
+    """Numbers of the ship where columns move them to, each by its share of its changes."""
+    found: dict[str, float] = {}
+    for column, share in zip(columns, shares, strict=True):
+        for path, size in column.changes.items():
+            found[path] = found.get(path, get(path)) + float(share) * size
+    return found
 
 
 class Linear(NamedTuple):

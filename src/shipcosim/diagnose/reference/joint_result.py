@@ -108,6 +108,10 @@ class JointDiagnosis:
     basis: JointBasis | None = field(default=None, repr=False)
     folder: object = field(default=None, repr=False, compare=False)
 
+    def of_kind(self, kind: str) -> list[Finding]:
+        """What the common findings of a kind, ``"data"`` or ``"physics"``, name."""
+        return [one.what for one in self.findings if one.what.kind == kind]
+
     @property
     def crafts_without(self) -> dict[str, LearnedCraft]:
         """By log, the craft as the others teach her."""

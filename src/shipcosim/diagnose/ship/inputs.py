@@ -1,5 +1,7 @@
 """A repaired log as arrays in SI: what was measured of the ship, and what drove her, on an even grid of times."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -15,6 +17,7 @@ from shipcosim.diagnose.ship.stretches import rows_averaged, stretches_of
 from shipcosim.diagnose.ship.third_party_fmu import ThirdPartyFmu
 from shipcosim.diagnose.ship.time_scales import fastest_rate, response_times
 from shipcosim.errors import Problem, ShipcosimError, error_at
+from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Motion
 
@@ -99,6 +102,18 @@ class Record:
         found = np.zeros(self.time.size, bool)
         found[[rows.stop - 1 for rows in self.stretches]] = True
         return found
+
+    def part(self, rows: Any) -> Record:
+        """Some rows, as an index of an array gives them."""
+        wind = None if self.wind is None else tuple(series[rows] for series in self.wind)
+        return replace(
+            self,
+            time=self.time[rows],
+            measured=self.measured[rows],
+            units=part_of(self.units, rows),
+            wind=wind,
+            known=self.known[rows],
+        )
 
     def substeps(self, model: ShipModel) -> int:
         """Number of integration steps from row to row; more than one for a small or stiff ship."""
@@ -449,10 +464,7 @@ def first_motion(record: Record, model: ShipModel, smooth: float = 4.0) -> Motio
     if np.isnan(r).any():
         r = rate_of(psi, record)
     if np.isnan(u).any() or np.isnan(v).any():
-        north = rate_of(x, record)
-        east = rate_of(y, record)
-        u = np.cos(psi) * north + np.sin(psi) * east
-        v = np.cos(psi) * east - np.sin(psi) * north
+        u, v = to_body(psi, rate_of(x, record), rate_of(y, record))
     return Motion(x, y, psi, u, v, r)
 
 
