@@ -165,6 +165,11 @@ def part_of(units: Mapping[str, tuple], rows: Any) -> dict[str, tuple]:
     return {name: tuple(series[rows] for series in pair) for name, pair in units.items()}
 
 
+def source_of(log: xarray.Dataset) -> str:
+    """The file that a log is from, for messages."""
+    return str(log.attrs.get("source", "log"))
+
+
 def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     """Arrays of a repaired log.
 
@@ -189,12 +194,12 @@ def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     # One row has no step; of two or more `_check_length` says what this ship would need.
     if rows < 2:
         right = f"A diagnosis takes {_FEWEST_ROWS} rows at the least."
-        raise error_at(str(log.attrs.get("source", "log")), f"{rows} rows.", right)
+        raise error_at(source_of(log), f"{rows} rows.", right)
     missing = [role for role in ("north", "east", "heading") if role not in log]
     if missing:
         found = f"no channel {', '.join(missing)}."
         right = "A diagnosis needs north, east and heading."
-        raise error_at(str(log.attrs.get("source", "log")), found, right)
+        raise error_at(source_of(log), found, right)
     # Measurements in SI units, with the heading unwrapped.
     measured = np.stack(
         [_column(log, role, rows) * si for role, si in zip(CHANNELS, _TO_SI, strict=True)], axis=-1
@@ -306,7 +311,7 @@ def _check_length(log: xarray.Dataset, model: ShipModel, motion: Motion) -> None
         )
         found = f"{rows} rows over {span:.0f} s, of a ship {answer}."
         right = f"It takes {_FEWEST_ROWS} rows over {least:.0f} s at the least, better twenty times that."
-        raise error_at(str(log.attrs.get("source", "log")), found, right)
+        raise error_at(source_of(log), found, right)
 
 
 def _thinned(record: Record, rows: int, model: ShipModel) -> Record:
@@ -370,7 +375,7 @@ def _check_third_party(log: xarray.Dataset, model: ShipModel) -> None:
     drives = [
         (name, f"{name}_{kind}") for name, one in model.third_party.items() for kind in one.drives
     ]
-    where = str(log.attrs.get("source", "log"))
+    where = source_of(log)
     remedy = "Log it under this name, or name its column in a channel file."
     lacking = [
         Problem(where, f"no channel {role}, which drives '{name}'.", remedy)

@@ -207,7 +207,7 @@ def sailed_from(
     found = replay(
         one.system,
         table,
-        times - lag,
+        (times - lag).tolist(),
         step_size * ceil(seconds / step_size - 1e-6),
         states=states,
         step_size=step_size,
