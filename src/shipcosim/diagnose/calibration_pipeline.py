@@ -167,7 +167,6 @@ def calibrate(
         named = {name: _named_in(problem) for name, problem in problems.items()}
         say("what does the calibrated ship get wrong?")
         errors = remaining_errors(fitted)
-    told = {name: ReferenceLog(**_about(name, one)) for name, one in found.items()}
     ship = next(iter(found.values())).ship
     # Unmodelled errors that such logs have anyway: later logs must exceed them.
     ordinary = {
@@ -177,7 +176,7 @@ def calibrate(
         fitted,
         ship,
         ordinary,
-        list(told.values()),
+        _reference_logs(found),
         system=given.name,
         version=shipcosim.__version__,
     )
@@ -190,11 +189,7 @@ def calibrate(
     # A reference is only written if nothing speaks against it.
     refusals, remarks = _judged(reference, fitted, suspects)
     refusals = (*_reasons_not_to_trust(each, named), *refusals)
-    result = CalibratedShip(reference, each, refusals, remarks)
-    if out is not None and not result.refusals:
-        write_parameter_set(given, reference, Path(out) / SET)
-        reference.write(Path(out) / FILE)
-    return result
+    return _written(CalibratedShip(reference, each, refusals, remarks), given, out)
 
 
 def _calibrated_craft(
@@ -214,9 +209,8 @@ def _calibrated_craft(
         what = "Numbers learned from the others predict a log, or a part of it, no better than the system for sure."
         right = "Give more logs, with turns and with thrust ahead and astern."
         raise error_at(", ".join(found), what, right)
-    told = {name: ReferenceLog(**_about(name, one)) for name, one in found.items()}
     reference = learned_reference(
-        craft, ship, list(told.values()), given.name, shipcosim.__version__
+        craft, ship, _reference_logs(found), given.name, shipcosim.__version__
     )
     # With several logs each is predicted by what the others taught (cross-validation).
     each = craft.each_without or (craft,)
@@ -228,10 +222,7 @@ def _calibrated_craft(
         logs.append(CalibratedLog(name, one.faults, {}, errors, {}))
     refusals = tuple(_reasons_not_to_trust(logs, {}))
     result = CalibratedShip(reference, tuple(logs), refusals, (_ANOTHER_CRAFT,))
-    if out is not None and not refusals:
-        write_parameter_set(given, reference, Path(out) / SET)
-        reference.write(Path(out) / FILE)
-    return result
+    return _written(result, given, out)
 
 
 def _check_usable(found: dict[str, Identification]) -> None:
@@ -291,16 +282,23 @@ def problems_of(
     return found
 
 
-def _about(name, one):
-    """What a reference says of a log that it was made from."""
-    time = one.log["time"].values
-    span = float(time[0]), float(time[-1])
-    return {
-        "name": name,
-        "sha256": one.log.encoding.get("sha256", ""),
-        "rows": int(time.size),
-        "span_s": span,
-    }
+def _reference_logs(found: Mapping[str, Identification]) -> list[ReferenceLog]:
+    """What a reference says of the logs that it was made from."""
+    logs = []
+    for name, one in found.items():
+        time = one.log["time"].values
+        span = (float(time[0]), float(time[-1]))
+        sha256 = one.log.encoding.get("sha256", "")
+        logs.append(ReferenceLog(name=name, sha256=sha256, rows=int(time.size), span_s=span))
+    return logs
+
+
+def _written(result: CalibratedShip, given: System, out: AnyPath | None) -> CalibratedShip:
+    """The same, once its files are in a folder; nothing is written where nobody asks, or the logs are refused."""
+    if out is not None and not result.refusals:
+        write_parameter_set(given, result.reference, Path(out) / SET)
+        result.reference.write(Path(out) / FILE)
+    return result
 
 
 def _weather(fit: JointFit, name: str) -> dict[str, float]:
@@ -312,7 +310,7 @@ def _named_in(problem: Identification) -> list[Finding]:
     """Causes in the ship, none of the day's weather, that a diagnosis names in a log."""
     found = causes_in(problem, problem.ship, lambda *_: None)
     of_day = {one.label for one in problem.problem.hypotheses if is_of_day(one)}
-    return [one for one in found.findings if one.kind == "physics" and one.label not in of_day]
+    return [one for one in found.physics if one.label not in of_day]
 
 
 def _reasons_not_to_trust(

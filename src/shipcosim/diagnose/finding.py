@@ -1,6 +1,7 @@
 """What a diagnosis names: causes with their parameters, candidates, and where simulation and log differ."""
 
-from dataclasses import asdict, dataclass, field
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
 
 Segment = tuple[float, float]
 """First and last time of a part of a log. [s]"""
@@ -30,6 +31,11 @@ class ParameterEstimate:
         if self.given is None:
             del entry["given"]
         return entry
+
+
+def estimates_as_json(estimates: Mapping[str, ParameterEstimate]) -> dict[str, dict]:
+    """Estimates by parameter, as diagnosis.json has them."""
+    return {name: estimate.as_json() for name, estimate in estimates.items()}
 
 
 @dataclass(frozen=True)
@@ -94,24 +100,36 @@ class Finding:
     def as_json(self) -> dict:
         """The finding as an entry of diagnosis.json; what does not apply is left out."""
         entry = {key: getattr(self, key) for key in ("cause", "component", "kind", "probability")}
-        entry["parameters"] = {name: value.as_json() for name, value in self.parameters.items()}
+        entry["parameters"] = estimates_as_json(self.parameters)
         if self.at_reference:
-            entry["at_reference"] = {
-                name: value.as_json() for name, value in self.at_reference.items()
-            }
+            entry["at_reference"] = estimates_as_json(self.at_reference)
+        segments = [list(segment) for segment in self.segments]
         if self.kind == "data":
-            entry["segments"] = [list(segment) for segment in self.segments]
+            entry["segments"] = segments
             entry["channels"] = list(self.channels)
         if self.onset is not None:
             entry["onset"] = self.onset
         if self.course:
             entry["course"] = self.course
-            entry["segments"] = [list(segment) for segment in self.segments]
+            entry["segments"] = segments
         if self.note:
             entry["note"] = self.note
         if self.alternatives:
             entry["alternatives"] = list(self.alternatives)
         return entry
+
+
+def log_fault(
+    cause: str,
+    channels: tuple[str, ...],
+    note: str,
+    segments: tuple[Segment, ...] = (),
+    probability: float = 1.0,
+    parameters: dict[str, ParameterEstimate] | None = None,
+) -> Finding:
+    """The finding that some channels of a log are wrong, in segments or throughout."""
+    found = Finding(cause, None, "data", probability, parameters or {}, segments, channels)
+    return replace(found, note=note)
 
 
 @dataclass(frozen=True)

@@ -123,7 +123,7 @@ def diagnose_jointly(
     # Each log is predicted with what the other logs say, so that it does not judge its own fit.
     if found.basis:
         errors = errors_by_log(
-            cast(JointFit, found.basis.verdict.judgement.fit),
+            found.basis.verdict.fit,
             found.basis.verdict.logs,
             given,
             lambda name: _findings_without(found, name),
@@ -153,17 +153,17 @@ def _findings_without(found: JointDiagnosis, name: str) -> tuple[list[Finding], 
     if basis is None or len(basis.verdict.logs.problems) < 2:
         return [], []
     crude = []
-    judgement = basis.verdict.judgement
+    fit = basis.verdict.fit
     # Size of the common ratio without this log, if the ratio was named.
     if basis.has_ratio and (ratio := basis.ratios.without(name)):
         crude = list(ratio_findings(ratio.ratio, ratio.std, found.causes))
     said = {shared.what.label for shared in found.findings}
-    named = [one for one in judgement.fit.hypotheses if one.label in said]
+    named = [one for one in fit.hypotheses if one.label in said]
     if not named:
         return crude, []
     # Causes of the ship sized by the other logs, those of the weather by the log itself.
-    of_ship = sizes_without(basis.verdict.logs, name, named, judgement.fit.values)
-    return [*crude, *of_ship], weather_of(cast(JointFit, judgement.fit), name, named)
+    of_ship = sizes_without(basis.verdict.logs, name, named, fit.values)
+    return [*crude, *of_ship], weather_of(fit, name, named)
 
 
 def find_common_causes(
@@ -385,7 +385,7 @@ def _sizes(basis: JointBasis, crude: Sequence[Finding], causes: Sequence[Finding
     }
     if not causes:
         return sizes
-    fit = basis.verdict.judgement.fit
+    fit = basis.verdict.fit
     said = {one.label for one in causes}
     named = [one for one in fit.hypotheses if one.label in said]
     return sizes | sizes_by_log(basis.verdict.logs, named, fit.values)
@@ -414,8 +414,8 @@ def _prescription(basis: JointBasis) -> ExperimentDesign | None:
     ):  # with those no manoeuvre can be prescribed
         return None
     of_ship = [fit for fit in judgement.rivals if not all(map(is_in_one_log, fit.hypotheses))]
-    best = cast(JointFit, judgement.fit)
     parts = [cast(JointFit, fit).parts[name] for fit in of_ship]
+    best = basis.verdict.fit
     return design_experiment(problems[name], best.parts[name], parts) if parts else None
 
 

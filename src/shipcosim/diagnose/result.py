@@ -140,9 +140,12 @@ class Diagnosis:
     @property
     def is_named(self) -> bool:
         """Whether causes of the physics are named, and nothing else is the matter."""
-        return self.verdict == "named" and any(
-            finding.kind == "physics" for finding in self.findings
-        )
+        return self.verdict == "named" and bool(self.physics)
+
+    @property
+    def physics(self) -> list[Finding]:
+        """The causes that are named; the other findings are faults of the log."""
+        return [finding for finding in self.findings if finding.kind == "physics"]
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -108,7 +108,7 @@ def named_if_better(found: Diagnosis, predicted: PredictedLog) -> tuple[Diagnosi
     without, within = (rms(comparison.errors, "position", model) for model in ("plain", "extended"))
     if within <= WORSE * without:
         return found, predicted
-    names = ", ".join(one.label for one in found.findings if one.kind == "physics")
+    names = ", ".join(one.label for one in found.physics)
     remark = (
         f"{names}: likeliest by its evidence, and not named, since on rows that it was not fitted on the ship with it "
         f"misses the log by {within:.2g} m, without it by {without:.2g} m."

@@ -273,7 +273,7 @@ def axes_of(felt: Felt, commanded: Commanded, model: ShipModel) -> list[Axis]:
     # Blocks longer than the kernel, as smoothing correlates the errors within it, and at most
     # MOST_BLOCKS of them.
     block = max(int(BLOCK_WIDTHS * kernel.width / kernel.step), int(rows.sum() / MOST_BLOCKS), 1)
-    thrust = sum(commanded.thrusters.values(), np.zeros_like(commanded.hull))
+    thrust = commanded.thrust
     found = []
     wind = np.zeros_like(commanded.hull) if commanded.wind is None else commanded.wind
     for i, (listed, sign) in enumerate(rest_of(motion, commanded)):

@@ -7,6 +7,7 @@ import numpy as np
 from shipcosim.diagnose.comparison.measured_force import Felt
 from shipcosim.diagnose.ship.dynamics import loads
 from shipcosim.diagnose.ship.inputs import Record
+from shipcosim.diagnose.ship.measured_motion import at_rows
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.ship.hull import hull_loads
@@ -30,6 +31,11 @@ class Commanded:
     hull: np.ndarray
     wind: np.ndarray | None
 
+    @property
+    def thrust(self) -> np.ndarray:
+        """Load of all thrusters together, (3, n) array."""
+        return sum(self.thrusters.values(), np.zeros_like(self.hull))
+
 
 def commanded_by(record: Record, felt: Felt, model: ShipModel) -> Commanded:
     """The loads of a model along what a log shows.
@@ -50,7 +56,7 @@ def commanded_by(record: Record, felt: Felt, model: ShipModel) -> Commanded:
     # Inputs belong to the steps between rows: the motion at their beginning.
     motion = felt.motion
     size = record.time.size
-    steps = type(motion)(*(value[:-1] for value in motion))
+    steps = at_rows(motion, slice(-1))
     # Loads by the model at the measured velocities; only the thrusters and the wind are taken from
     # them.
     found = {name: _rows(load, size) for name, load in loads(steps, inputs, model).items()}

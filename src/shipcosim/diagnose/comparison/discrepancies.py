@@ -90,11 +90,6 @@ def discrepancies_of(
     ]
 
 
-def is_of_damping(one: Discrepancy) -> bool:
-    """Whether a discrepancy is one of the water's damping."""
-    return one.what.startswith(_DAMPING)
-
-
 def _wrong_signs(labels: Labels, gains: Sequence[AxisGain]) -> Iterator[Discrepancy]:
     """Axes on which the thrusters do the opposite of what they are commanded, as logged; else the labels themselves."""
     # Interpretations that would correct wrong labels: the best, and those that cannot be told from
@@ -122,15 +117,11 @@ def _wrong_signs(labels: Labels, gains: Sequence[AxisGain]) -> Iterator[Discrepa
         told |= because
         text = f"{FORCES[axis.name]}: wrong sign" + (f", as with {why}" if because else "")
         # Share of the unexplained mean square that the negative gain removes.
-        share = float(
-            np.clip(1.0 - fit.squares / axis.unexplained(np.zeros(before.size)), 0.0, 1.0)
-        )
+        share = _gone(fit.squares, axis.unexplained(np.zeros(before.size)))
         yield Discrepancy(text, None, axis.name, gain, std, "1", share)
     # Labels that are wrong without a reversed axis are reported once, for the ship as a whole.
     if why and not told:
-        gained = float(
-            np.clip(1.0 - labels.logged.support / max(labels.best.support, 1e-9), 0.0, 1.0)
-        )
+        gained = _gone(labels.logged.support, max(labels.best.support, 1e-9))
         yield Discrepancy(
             f"thrust does not go with its command, but with {why}",
             None,
@@ -149,9 +140,14 @@ def in_words(change: LabelError) -> str:
     return f"{change.thrusters[0]} running the other way"
 
 
+def _gone(left: float, before: float) -> float:
+    """Share of what was there before that is gone, from 0 to 1."""
+    return float(np.clip(1.0 - left / before, 0.0, 1.0))
+
+
 def _explained_by_gain(one: AxisGain) -> float:
     """Share of the error that goes with the gain, the water's load as the log has it."""
-    return float(np.clip(1.0 - one.fit.squares / one.axis.unexplained(one.total), 0.0, 1.0))
+    return _gone(one.fit.squares, one.axis.unexplained(one.total))
 
 
 def _weak(one: AxisGain) -> Iterator[Discrepancy]:

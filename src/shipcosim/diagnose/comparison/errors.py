@@ -12,9 +12,9 @@ from shipcosim.diagnose.comparison.thresholds import (
     SHORTEST_ANSWER,
 )
 from shipcosim.diagnose.inference.predictions import missing, predicted, replayable
-from shipcosim.diagnose.numerics import root_mean_square
+from shipcosim.diagnose.numerics import root_mean_square, running_sums
 from shipcosim.diagnose.ship.inputs import Record
-from shipcosim.diagnose.ship.measured_motion import readings, true_motion
+from shipcosim.diagnose.ship.measured_motion import at_rows, readings, true_motion
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.smoothing import froude_time
 from shipcosim.diagnose.ship.time_scales import response_times
@@ -77,12 +77,11 @@ def errors_of(record: Record, felt: Felt, model: ShipModel) -> dict[str, list[fl
         horizons = tuple(0.5 * horizon for horizon in horizons)
         rows = starts_of(record, felt, horizons[-1])
     # The smoothed measurements serve as initial state and as truth.
-    motion = felt.motion
-    seen = Motion(*(felt.kernel.smooth(value) for value in motion))
+    seen = felt.smooth_motion
     counts = [max(1, round(horizon / record.step)) for horizon in horizons]
     # Errors of the predictions by channel, (horizons, s) arrays.
     logged, ship = replayable(record, model, seen)
-    start = true_motion(Motion(*(value[rows] for value in seen)), ship)
+    start = true_motion(at_rows(seen, rows), ship)
     found = predicted(start, rows, logged, ship, counts)
     off = missing(readings(found, ship), seen, rows + np.array(counts)[:, None])
     return {
@@ -111,8 +110,7 @@ def errors_over_none(
     """
     # The same starts as the simulation's, so that the errors compare.
     rows = starts_of(record, felt, errors["horizon_s"][-1])
-    motion = felt.motion
-    seen = Motion(*(felt.kernel.smooth(value) for value in motion))
+    seen = felt.smooth_motion
     counts = np.array([max(1, round(horizon / record.step)) for horizon in errors["horizon_s"]])[
         1:, None
     ]
@@ -147,7 +145,7 @@ def starts_of(record: Record, felt: Felt, horizon: float) -> np.ndarray:
     # Starts whose horizon reaches no row with unknown inputs, by cumulative counts.
     reach = round(horizon / record.step)
     rows = np.arange(0, record.time.size - reach)
-    lost = np.concatenate([[0], np.cumsum(~record.known)])
+    lost = running_sums(~record.known)
     good = rows[(lost[rows + reach] == lost[rows]) & felt.usable[rows] & felt.usable[rows + reach]]
     # Gaps in the motion matter less: they are accepted where there are too few starts.
     good = good if good.size >= FEWEST_STARTS else rows[lost[rows + reach] == lost[rows]]

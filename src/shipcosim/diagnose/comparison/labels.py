@@ -102,11 +102,15 @@ class _Weighed:
     likelihood: float
     drives: float
 
+    @property
+    def measures(self) -> np.ndarray:
+        """What the three measures say, (3,) array."""
+        return np.array([self.fit, self.foresight, self.likelihood])
+
     def over(self, other: _Weighed) -> np.ndarray:
         """By how much it is better, (3,) array, the least first."""
         # Differences by measure in ascending order.
-        own = self.fit, self.foresight, self.likelihood
-        return np.sort(np.subtract(own, (other.fit, other.foresight, other.likelihood)))
+        return np.sort(self.measures - other.measures)
 
     def beats(self, other: _Weighed, least: float) -> bool:
         """Whether two measures prefer it by `least`, the third does not speak against it, nor all three together."""
@@ -128,8 +132,7 @@ class _Weighed:
         """Whether they do the same but for the number of changes."""
         # Undo the cost of changes: compare what the measures themselves give.
         cost = CHANGE_COST * (len(self.reading.changes) - len(other.reading.changes))
-        own = np.array([self.fit, self.foresight, self.likelihood]) + cost
-        return bool(np.abs(own - (other.fit, other.foresight, other.likelihood)).max() < ALIKE)
+        return bool(np.abs(self.measures + cost - other.measures).max() < ALIKE)
 
 
 def read_labels(record: Record, felt: Felt, axes: Sequence[Axis], model: ShipModel) -> Labels:
@@ -201,7 +204,7 @@ def _drives(commanded: Commanded, felt: Felt) -> float:
     Sway does not count: a rudder pushes against the drift of a turning ship.
     """
     # Power: load times velocity, normalised, over usable rows.
-    loads = sum(commanded.thrusters.values(), np.zeros_like(commanded.hull))[:, felt.usable]
+    loads = commanded.thrust[:, felt.usable]
     found = []
     for load, speed in ((loads[0], felt.motion.u), (loads[2], felt.motion.r)):
         speed = np.asarray(speed)[felt.usable]

@@ -28,6 +28,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     THRUSTER_WIDTH,
     WAY_WIDTH,
 )
+from shipcosim.diagnose.numerics import running_sums
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.smoothing import froude_time
 
@@ -83,10 +84,7 @@ class Blocks:
 
 def smoothed(felt: Felt) -> Felt:
     """The same with a smoothed motion, so that noise of the velocities does not go with the loads that they make."""
-    motion = felt.motion
-    return replace(
-        felt, motion=type(motion)(*(felt.kernel.smooth(np.asarray(one, float)) for one in motion))
-    )
+    return replace(felt, motion=felt.smooth_motion)
 
 
 def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
@@ -105,10 +103,10 @@ def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
     """
     length = model.length
     # Loads from the smoothed motion, accelerations from block means: their noise is not correlated.
-    motion = smoothed(felt).motion
+    motion = felt.smooth_motion
     count = max(1, round(CAUSAL_STEP * froude_time(length) / felt.kernel.step))
     # Average over blocks of a share of the ship's response time.
-    speeds = blocks(np.stack([felt.motion.u, felt.motion.v, felt.motion.r]), count)
+    speeds = blocks(felt.velocity, count)
     usable = blocks(felt.usable.astype(float), count) > 1.0 - 1e-9
     rows = _with_past(usable[1:] & usable[:-1])
     # Force that the motion needs between two blocks: M nu_dot + C_RB(nu) nu.
@@ -151,7 +149,7 @@ def _between(series: np.ndarray) -> np.ndarray:
 
 def _with_past(usable: np.ndarray) -> np.ndarray:
     # Cumulative count of bad steps: equal at both ends where the past is complete.
-    bad = np.cumsum(np.r_[0, ~usable])
+    bad = running_sums(~usable)
     rows = np.arange(CAUSAL_ORDER, usable.size)
     return rows[bad[rows + 1] == bad[rows - CAUSAL_ORDER]]
 

@@ -31,6 +31,16 @@ class Felt:
     usable: np.ndarray
     kernel: Kernel
 
+    @property
+    def smooth_motion(self) -> Motion:
+        """The motion, averaged by the kernel."""
+        return Motion(*(self.kernel.smooth(np.asarray(value, float)) for value in self.motion))
+
+    @property
+    def velocity(self) -> np.ndarray:
+        """Surge, sway and yaw rate, (3, n) array."""
+        return np.stack([self.motion.u, self.motion.v, self.motion.r])
+
 
 def felt_by(record: Record, length: float) -> Felt:
     """The acceleration that a log shows.
@@ -51,7 +61,7 @@ def felt_by(record: Record, length: float) -> Felt:
     # Kernel in proportion to the ship's time scale, but of some rows at least.
     kernel = Kernel(max(KERNEL * froude_time(length), SHORTEST_KERNEL * record.step), record.step)
     motion, bad = unsmoothed(record, kernel)
-    motion = type(motion)(*(averaged(series) for series in motion))  # as what drives her is
+    motion = Motion(*(averaged(series) for series in motion))  # as what drives her is
     # Derivative of the smoothed velocities.
     rates = kernel.rate(np.stack([motion.u, motion.v, motion.r]))
     # Without velocities: second derivative of positions in body axes, and the acceleration of the

@@ -185,9 +185,7 @@ def _noise(felt: Felt, model: ShipModel) -> np.ndarray:
     # White noise from third differences, by the median: their variance is 20 times that of the
     # noise.
     kernel = felt.kernel
-    third = np.asarray(
-        np.diff(np.stack([felt.motion.u, felt.motion.v, felt.motion.r]), 3, axis=1), float
-    )
+    third = np.asarray(np.diff(felt.velocity, 3, axis=1), float)
     white = np.sqrt(np.median(third**2, axis=1) / 0.455 / 20.0)
     # Derivative by a Gaussian kernel of n rows divides white noise by h sqrt(4 sqrt(pi) n^3);
     # inertia turns it into a load.

@@ -34,9 +34,13 @@ class _HeldOut:
         # Jackknife: the error without each part, of both crafts; the variance of their difference.
         without = _logs(self.squares, self.counts)
         each = without[one] - without[other]
-        parts = each.size - 1
-        std = np.sqrt((parts - 1) / parts * ((each[:-1] - each[:-1].mean()) ** 2).sum())
-        return float(each[-1]), float(std)
+        return float(each[-1]), float(_jackknife(each[:-1]))
+
+
+def _jackknife(without: np.ndarray) -> np.ndarray:
+    """Standard deviation of values by what they are without each part, along the first axis."""
+    parts = len(without)
+    return np.sqrt((parts - 1) / parts * ((without - without.mean(0)) ** 2).sum(0))
 
 
 def _logs(squares: np.ndarray, counts: np.ndarray) -> np.ndarray:
@@ -64,7 +68,8 @@ def learn(logs: Sequence[CraftLog]) -> LearnedCraft | None:
     while True:
         normal = fitted(logs, numbers, free, near)
         near = normal.solved(free)[-1]
-        tries = [free, *_with_one_more(numbers, free)]
+        # Sets with one more number.
+        tries = [free, *[[*free, i] for i in range(len(numbers)) if i not in free]]
         found = _held_out(logs, normal, tries)
         best = _best(found, tries, normal, logs)
         if best is None or len(free) >= MOST_NUMBERS:
@@ -83,11 +88,6 @@ def _typical(logs: Sequence[CraftLog]) -> dict[str, np.ndarray]:
         for name in each[0]
         if all(name in one for one in each)
     }
-
-
-def _with_one_more(numbers: Sequence[CraftNumber], free: list[int]) -> list[list[int]]:
-    """Sets with one more number."""
-    return [[*free, i] for i in range(len(numbers)) if i not in free]
 
 
 def _held_out(logs: Sequence[CraftLog], normal: Normal, tries: Sequence[Sequence[int]]) -> _HeldOut:
@@ -183,8 +183,7 @@ def _stated(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> Learne
     in_current = rival.values(rival.solved(range(len(current)))[None])
     alike = _errors(logs, current, in_current)
     # Jackknife standard deviation of each number.
-    parts = len(each) - 1
-    spread = np.sqrt((parts - 1) / parts * ((each[:-1] - each[:-1].mean(0)) ** 2).sum(0))
+    spread = _jackknife(each[:-1])
     gains = [float(np.exp(found.gain(k, 0)[0])) for k in range(1, len(tries) - 1)]
 
     def craft(values: np.ndarray) -> LearnedCraft:

@@ -15,7 +15,7 @@ from shipcosim.diagnose.craft.thresholds import FEWEST_PARTS, MOST_PARTS, MOST_S
 from shipcosim.diagnose.inference.predictions import predicted, replayable
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.diagnose.ship.inputs import Inputs, Record
-from shipcosim.diagnose.ship.measured_motion import readings, true_motion
+from shipcosim.diagnose.ship.measured_motion import at_rows, readings, true_motion
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.models.core.motion import Motion
 
@@ -95,7 +95,7 @@ class CraftLog:
         model = with_numbers(self.model, numbers, values)
         rows = self.rows
         # Predictions of all crafts from the same smoothed states.
-        start = true_motion(Motion(*(value[rows] for value in self.seen)), self.model)
+        start = true_motion(at_rows(self.seen, rows), self.model)
         start = Motion(*(value + np.zeros((values.shape[1], 1)) for value in start))
         found = readings(predicted(start, rows, self.record, model, self.counts), model)
         ends = (rows + np.array(self.counts)[:, None])[:, None]
@@ -107,9 +107,9 @@ class CraftLog:
     def typical(self) -> dict[str, np.ndarray]:
         """Root mean squares of the velocities and of what is commanded, and of the wind where it is logged."""
         usable = self.felt.usable
-        motion = np.stack([self.felt.motion.u, self.felt.motion.v, self.felt.motion.r])[:, usable]
+        motion = self.felt.velocity[:, usable]
         told = commanded_by(self.record, self.felt, self.model)
-        total = sum(told.thrusters.values(), np.zeros((3, usable.size)))[:, usable]
+        total = told.thrust[:, usable]
         # The larger of commanded and needed load: thrusters may be idle or too weak.
         needed = np.diag(self.model.mass_matrix)[:, None] * self.felt.rates[:, usable]
         loads = np.sqrt((np.maximum(np.abs(total), np.abs(needed)) ** 2).mean(1))
@@ -141,7 +141,7 @@ def craft_log(
     """
     # Parts long enough for predictions within each; too few parts cannot be held out.
     felt = felt_by(record, model.length)
-    seen = Motion(*(felt.kernel.smooth(value) for value in felt.motion))
+    seen = felt.smooth_motion
     counts = [max(1, round(horizon / record.step)) for horizon in horizons]
     size = record.time.size
     count = int(min(MOST_PARTS, size // (PART * counts[-1])))

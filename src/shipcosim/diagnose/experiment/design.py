@@ -21,11 +21,11 @@ from shipcosim.diagnose.experiment.manoeuvres import (
 from shipcosim.diagnose.hypotheses.catalogue import paths_of
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 from shipcosim.diagnose.inference.innovations import innovations
-from shipcosim.diagnose.inference.linearisation import linearise, rows_first
+from shipcosim.diagnose.inference.linearisation import linearise, moved, rows_first
 from shipcosim.diagnose.inference.parts import beside
 from shipcosim.diagnose.ship.dynamics import with_steady_current
 from shipcosim.diagnose.ship.inputs import part_of
-from shipcosim.diagnose.ship.measured_motion import readings
+from shipcosim.diagnose.ship.measured_motion import at_rows, readings
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
 from shipcosim.models.core.motion import Motion
@@ -176,11 +176,7 @@ def _in_true_wind(model: ShipModel) -> ShipModel:
 def _fitted_ship(fit: Fit) -> ShipModel:
     """The ship of a fit: its causes, and all known numbers at their most likely."""
     # Shift all numbers of the fit by its posterior mean.
-    values = {}
-    for column, share in zip(fit.columns, fit.left, strict=True):
-        for path, size in column.changes.items():
-            values[path] = values.get(path, fit.model.get(path)) + float(share) * size
-    return _in_true_wind(fit.model.with_values(values))
+    return _in_true_wind(fit.model.with_values(moved(fit.columns, fit.left, fit.model.get)))
 
 
 def _shared_columns(fits):
@@ -261,7 +257,7 @@ def _simulated(problem, models, manoeuvres):
     motion, units = kept_on_track(ships, many * len(models), tracks, side_by_side, dp, held=held)
     for i in range(len(models)):
         part = slice(i * many, (i + 1) * many)
-        motions.append(Motion(*(value[part] for value in motion)))
+        motions.append(at_rows(motion, part))
         here = part_of(units, part)
         records.append(replace(record, units=here))
         through.append(keeps_track(motions[-1], track, manoeuvres, dp))

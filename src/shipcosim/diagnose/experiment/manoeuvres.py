@@ -12,9 +12,11 @@ from shipcosim.diagnose.inference.innovations import Noise
 from shipcosim.diagnose.numerics import gaussian_filter
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.diagnose.ship.inputs import Inputs, Record
+from shipcosim.diagnose.ship.measured_motion import at_rows
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.diagnose.ship.track_keeping import DpController
+from shipcosim.models.core.kinematics import to_body, to_ned
 from shipcosim.models.core.motion import Motion
 
 LONGEST = 15.0
@@ -237,7 +239,7 @@ def planned(
     shape = len(manoeuvres), rows
     series = None if wind is None else (np.full(shape, wind[0]), np.full(shape, wind[1]))
     plans = [
-        _thrusters(one, time, Motion(*(value[i] for value in track)), start, wind, dp)
+        _thrusters(one, time, at_rows(track, i), start, wind, dp)
         for i, one in enumerate(manoeuvres)
     ]
     units = {
@@ -282,14 +284,7 @@ def _track(manoeuvre, time, start):
     y = east + s * found[0] + c * found[1]
     psi = heading + found[2]
     x_dot, y_dot, r = (np.gradient(value, time) for value in (x, y, psi))
-    return Motion(
-        x,
-        y,
-        psi,
-        np.cos(psi) * x_dot + np.sin(psi) * y_dot,
-        np.cos(psi) * y_dot - np.sin(psi) * x_dot,
-        r,
-    )
+    return Motion(x, y, psi, *to_body(psi, x_dot, y_dot), r)
 
 
 def _inside(spans, time):
@@ -415,10 +410,7 @@ def true_wind(record: Record, motion: Motion, model: ShipModel) -> tuple[float, 
         # Relative to true wind: add the ship's velocity, then turn to north and east.
         u = motion.u - speed * np.cos(direction)
         v = motion.v - speed * np.sin(direction)
-        c = np.cos(motion.psi)
-        s = np.sin(motion.psi)
-        north = c * u - s * v
-        east = s * u + c * v
+        north, east = to_ned(motion.psi, u, v)
     # Mean of the components, as directions wrap.
     north = float(np.mean(north))
     east = float(np.mean(east))

@@ -40,7 +40,7 @@ from shipcosim.diagnose.inference.fitting import (
     prepared,
 )
 from shipcosim.diagnose.inference.innovations import inner_products
-from shipcosim.diagnose.inference.linearisation import Regressor
+from shipcosim.diagnose.inference.linearisation import Regressor, moved
 from shipcosim.diagnose.inference.parts import InParts, beside, linearised_by_parts
 from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.inference.regressors import placed, regressors_of, screening_regressors
@@ -280,11 +280,7 @@ def _tries(problem: IdentificationProblem, base: Fit, linear: InParts) -> list[_
 
 def _values(problem, group, theta) -> dict[str, float]:
     """What numbers of the ship are with the columns of a group at some θ."""
-    found: dict[str, float] = {}
-    for column, share in zip(group, theta, strict=True):
-        for path, size in column.changes.items():
-            found[path] = found.get(path, problem.model.get(path)) + float(share) * size
-    return found
+    return moved(group, theta, problem.model.get)
 
 
 def _fitted(problem: IdentificationProblem, one: _Try, linear: InParts) -> _Fitted | None:
@@ -540,7 +536,7 @@ def _estimates(hypothesis, columns, theta, covariance) -> dict[str, ParameterEst
         value = of.neutral + float(sizes @ theta[which])
         # Standard deviation of a linear combination of the columns.
         std = float(np.sqrt(sizes @ covariance[np.ix_(which, which)] @ sizes))
-        found[of.name] = ParameterEstimate(value * of.factor, abs(std * of.factor), of.unit)
+        found[of.name] = of.estimate(value, std)
     return found
 
 

@@ -22,6 +22,7 @@ from shipcosim.diagnose.ship.inputs import Record, first_motion, part_of
 from shipcosim.diagnose.ship.measured_motion import readings
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
+from shipcosim.models.core.kinematics import to_ned
 from shipcosim.models.core.motion import Motion
 
 
@@ -189,6 +190,4 @@ def _shown_waves(waves, psi):
     """Waves' place and velocity in the ship's axes as the channels show them, all (n, m, 6)."""
     # Turn the place from the ship's axes to north and east.
     x, y, *others = np.moveaxis(waves, -1, 0)
-    return np.stack(
-        [np.cos(psi) * x - np.sin(psi) * y, np.sin(psi) * x + np.cos(psi) * y, *others], axis=-1
-    )
+    return np.stack([*to_ned(psi, x, y), *others], axis=-1)

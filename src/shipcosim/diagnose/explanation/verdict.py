@@ -11,7 +11,7 @@ from shipcosim.diagnose.explanation.course import CourseFound
 from shipcosim.diagnose.explanation.null_distribution import null_gains
 from shipcosim.diagnose.explanation.search import ExplainedLog, names, without_causes
 from shipcosim.diagnose.explanation.unmodelled import FORCES, unmodelled_gains
-from shipcosim.diagnose.finding import Candidate, Finding, ParameterEstimate
+from shipcosim.diagnose.finding import Candidate, Finding
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 from shipcosim.diagnose.inference.thresholds import (
@@ -451,10 +451,9 @@ def _candidates(chances):
 def _finding(hypothesis, fit, candidates):
     parameters = {
         # of the log, and of a model that knows no number better than within its tolerance
-        k.name: ParameterEstimate(
-            fit.values[k.path] * k.factor,
-            float(abs(np.hypot(fit.std[k.path], k.tolerance) * k.factor)),
-            k.unit,
+        k.name: k.estimate(
+            fit.values[k.path],
+            float(np.hypot(fit.std[k.path], k.tolerance)),
             None if k.neutral in (0.0, 1.0) else k.neutral * k.factor,
         )
         for k in hypothesis.parameters

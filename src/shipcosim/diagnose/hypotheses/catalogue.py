@@ -10,7 +10,7 @@ from typing import Literal
 
 from pydantic import ValidationError
 
-from shipcosim.diagnose.finding import label_of
+from shipcosim.diagnose.finding import ParameterEstimate, label_of
 from shipcosim.diagnose.hypotheses.cause import Cause, CauseParameter, Fault
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.errors import Problem, ShipcosimError, error_at
@@ -48,6 +48,10 @@ class HypothesisParameter:
     def path(self) -> str:
         """The first of the numbers, which stands for all of them."""
         return self.paths[0]
+
+    def estimate(self, value: float, std: float, given: float | None = None) -> ParameterEstimate:
+        """An estimate in the unit that is reported, from a value and its deviation in that of the numbers."""
+        return ParameterEstimate(value * self.factor, abs(std * self.factor), self.unit, given)
 
 
 @dataclass(frozen=True)
@@ -200,12 +204,12 @@ def hypotheses_of(
     found = [_on(cause, place, model) for cause in causes for place in places[cause.for_each]]
     hypotheses = [hypothesis for hypothesis in found if hypothesis]
     alone = {path for one in hypotheses if one.component for path in one.paths}
-    return [one for one in hypotheses if not _says_the_same(one, alone)]
-
-
-def _says_the_same(hypothesis: Hypothesis, alone: set[str]) -> bool:
-    """Whether a cause of all azimuth thrusters together is that of the only one."""
-    return hypothesis.component is None and len(hypothesis.paths) == 1 and hypothesis.paths <= alone
+    # Whether a cause of all azimuth thrusters together is that of the only one.
+    return [
+        one
+        for one in hypotheses
+        if not (one.component is None and len(one.paths) == 1 and one.paths <= alone)
+    ]
 
 
 def _on(cause: Cause, component: str | None, model: ShipModel) -> Hypothesis | None:

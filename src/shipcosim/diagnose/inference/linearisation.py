@@ -4,7 +4,7 @@ About a motion near the measured one the ship is a linear system that varies in 
 rows of a log and over several logs; only the filter goes from row to row.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from shipcosim.diagnose.ship.dynamics import loads, motion_rates, rate_difference
 from shipcosim.diagnose.ship.inputs import Inputs, Record
-from shipcosim.diagnose.ship.measured_motion import readings
+from shipcosim.diagnose.ship.measured_motion import at_rows, readings
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.models.core.integrate import rk4
 from shipcosim.models.core.motion import Motion
@@ -53,6 +53,17 @@ class Regressor:
     def gives_way(self, taken: Collection[str]) -> bool:
         """Whether a cause that changes these numbers speaks for what this one would say of them."""
         return not self.beside and not self.changes.keys().isdisjoint(taken)
+
+
+def moved(
+    columns: Iterable[Regressor], shares: Iterable[float], get: Callable[[str], float]
+) -> dict[str, float]:
+    """Numbers of the ship where columns move them to, each by its share of its changes."""
+    found: dict[str, float] = {}
+    for column, share in zip(columns, shares, strict=True):
+        for path, size in column.changes.items():
+            found[path] = found.get(path, get(path)) + float(share) * size
+    return found
 
 
 class Linear(NamedTuple):
@@ -178,10 +189,10 @@ def linearise(
     rows = slice(0, last + 1) if rows is None else rows
     steps = slice(rows.start, min(rows.stop, last))
     # The model's next row against the motion's own: its defect drives the deviations.
-    start = _at(motion, steps)
-    after = _at(motion, slice(steps.start + 1, steps.stop + 1))
+    start = at_rows(motion, (..., steps))
+    after = at_rows(motion, (..., slice(steps.start + 1, steps.stop + 1)))
     base = advanced(start, record, model, steps)
-    seen = readings(_at(motion, rows), model)
+    seen = readings(at_rows(motion, (..., rows)), model)
     driven = np.empty((steps.stop - steps.start, *lead, 6, 1 + p))
     out = np.zeros((rows.stop - rows.start, *lead, 6, 1 + p))
     driven[..., 0] = rows_first(base) - rows_first(after)
@@ -212,7 +223,7 @@ def linearise(
             ):
                 slope[...] = apart
         else:
-            up, down = (readings(_at(motion, rows), ship) for ship in pair)
+            up, down = (readings(at_rows(motion, (..., rows)), ship) for ship in pair)
             out[..., 1 + j] = rows_first(_apart(up, down)) / (2.0 * shares[j])
     # A constant acceleration over the step moves the state as the unexplained acceleration does:
     # reuse those columns of the transition. The sign is that of δ' = A δ + b - B θ.
@@ -222,12 +233,9 @@ def linearise(
     # Where inputs are unknown the equations say nothing of the step.
     driven[~record.known[steps]] = 0.0
     out *= whole[..., None]
-    return Linear(transition, driven, _output(_at(motion, rows), seen, model), out, whole)
-
-
-def _at(motion: Motion, rows: slice) -> Motion:
-    """Some rows of a motion."""
-    return Motion(*(value[..., rows] for value in motion))
+    return Linear(
+        transition, driven, _output(at_rows(motion, (..., rows)), seen, model), out, whole
+    )
 
 
 def _slopes(pair, middle, where, inputs, like):

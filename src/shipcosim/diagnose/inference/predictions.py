@@ -13,7 +13,7 @@ from shipcosim.diagnose.inference.linearisation import Linear, advanced, rows_fi
 from shipcosim.diagnose.inference.thresholds import FASTEST, FASTEST_TURN, REFERENCE_JOLTS
 from shipcosim.diagnose.ship.inputs import Record, part_of
 from shipcosim.diagnose.ship.instruments import LAGS
-from shipcosim.diagnose.ship.measured_motion import readings, true_motion
+from shipcosim.diagnose.ship.measured_motion import at_rows, readings, true_motion
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.models.core.kinematics import to_body, to_ned
 from shipcosim.models.core.motion import Motion
@@ -38,7 +38,7 @@ class Known:
 
     def of(self, which: Any) -> Known:
         """What some of the observers knew, those on the first axis."""
-        return Known(Motion(*(value[which] for value in self.motion)), self.force[which])
+        return Known(at_rows(self.motion, which), self.force[which])
 
 
 def replayable(record: Record, model: ShipModel, seen: Motion) -> tuple[Record, ShipModel]:
@@ -116,9 +116,9 @@ def restarted(linear: Linear, motion: Motion, record: Record, model: ShipModel) 
     """The problem of a ship model that differs little from the one that was linearised, about the same motion."""
     # Transition and output are kept; only the defect of the model and the residuals are evaluated
     # anew.
-    ahead = advanced(Motion(*(value[:-1] for value in motion)), record, model)
+    ahead = advanced(at_rows(motion, slice(-1)), record, model)
     driven = np.zeros((*linear.driven.shape[:-1], 1))
-    driven[:, :6, 0] = rows_first(ahead) - rows_first(Motion(*(value[1:] for value in motion)))
+    driven[:, :6, 0] = rows_first(ahead) - rows_first(at_rows(motion, slice(1, None)))
     # Steps with unknown inputs drive nothing.
     driven *= record.known[:-1, None, None]
     seen = np.where(linear.whole, record.measured - rows_first(readings(motion, model)), 0.0)

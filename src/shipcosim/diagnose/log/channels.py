@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from difflib import get_close_matches
 from itertools import pairwise
 from pathlib import Path
@@ -110,10 +110,9 @@ def read_channels(path: str | os.PathLike) -> ChannelFile:
         try:
             form = FileLayout.model_validate(content.pop("file"))
         except ValidationError as error:
-            known = f"It can have {', '.join(FileLayout.model_fields)}."
-            problems += [
-                replace(_field_problem(f"{path}, file", e), remedy=known) for e in error.errors()
-            ]
+            problems += _field_problems(
+                f"{path}, file", error, f"It can have {', '.join(FileLayout.model_fields)}."
+            )
     for name, entry in content.items():
         where = f"{path}, {name}"
         problems += _misspelt(where, name)
@@ -122,7 +121,9 @@ def read_channels(path: str | os.PathLike) -> ChannelFile:
                 {"column": entry} if isinstance(entry, str) else entry
             )
         except ValidationError as error:
-            problems += [_field_problem(where, detail) for detail in error.errors()]
+            problems += _field_problems(
+                where, error, f"A channel can have {', '.join(Channel.model_fields)}."
+            )
     problems += _together(path, content) if content or form == FileLayout() else ()
     if problems:
         raise ShipcosimError(problems)
@@ -157,8 +158,8 @@ def _together(path, names):
         )
 
 
-def _field_problem(where, detail):
-    part = ".".join(map(str, detail["loc"]))
-    remedy = f"A channel can have {', '.join(Channel.model_fields)}."
-    said = detail["msg"].removeprefix("Value error, ")
-    return Problem(f"{where}.{part}" if part else where, f"{said}.", remedy)
+def _field_problems(where, error, remedy):
+    """What is wrong with the fields of an entry."""
+    for detail in error.errors():
+        said = detail["msg"].removeprefix("Value error, ")
+        yield Problem(".".join(map(str, (where, *detail["loc"]))), f"{said}.", remedy)

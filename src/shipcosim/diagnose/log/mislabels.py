@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shipcosim.angles import wrap_series
-from shipcosim.diagnose.finding import Finding, Segment
+from shipcosim.diagnose.finding import Finding, Segment, log_fault
 from shipcosim.diagnose.log.checks.samples import noise_of, quantum
 from shipcosim.diagnose.log.degree_size import metres_per_degree
 from shipcosim.diagnose.log.rows import inside
@@ -238,16 +238,7 @@ def possible(labels: Iterable[Mislabel], log: Container[str]) -> list[Mislabel]:
 def finding_of(mislabel: Mislabel, probability: float, segment: Segment | None = None) -> Finding:
     """The finding that a log has a mislabel, in a segment (from, to) [s] or throughout."""
     segments = (segment,) if segment else ()
-    return Finding(
-        mislabel.cause,
-        None,
-        "data",
-        probability,
-        {},
-        segments,
-        mislabel.channels,
-        note=mislabel.sentence,
-    )
+    return log_fault(mislabel.cause, mislabel.channels, mislabel.sentence, segments, probability)
 
 
 def mislabel_of(finding: Finding) -> Mislabel | None:

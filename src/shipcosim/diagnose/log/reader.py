@@ -26,7 +26,7 @@ from shipcosim.diagnose.log.names.units import unit_for
 from shipcosim.diagnose.log.roles import NAVIGATION, OVER_EARTH, role_of
 from shipcosim.diagnose.log.thresholds import LATEST, SHORTEST_STEP
 from shipcosim.diagnose.log.values import LARGEST, WrongUnit, values_of
-from shipcosim.diagnose.numerics import finite
+from shipcosim.diagnose.numerics import finite, usual_rise
 from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.series import make_table
 
@@ -274,8 +274,7 @@ def _check_time(source, time):
         remedy = f'Say the unit in a channel file: time = {{column = "...", unit = "{epoch}"}}.'
         raise error_at(f"{source}, time", found, remedy)
     # What follows takes as many rows as an even series of this step has, so a wrong unit would fill the memory.
-    steps = np.diff(known)
-    step = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else np.inf
+    step = usual_rise(known, np.inf)
     if step < SHORTEST_STEP:
         found = f"its rows are {step:.2g} s apart: is the unit right?"
         remedy = 'Say it in a channel file: time = {column = "...", unit = "s"}.'

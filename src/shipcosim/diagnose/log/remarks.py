@@ -4,7 +4,7 @@ import numpy as np
 import xarray
 
 from shipcosim.diagnose.log.checks.samples import outliers
-from shipcosim.diagnose.log.rows import usable_rows
+from shipcosim.diagnose.log.rows import arrays_of, usable_rows
 from shipcosim.diagnose.log.thresholds import HOLE, UNEVEN
 from shipcosim.diagnose.numerics import finite
 
@@ -36,9 +36,7 @@ def remarks(log: xarray.Dataset) -> list[str]:
     for name, variable in log.data_vars.items():
         if empty := int(np.sum(~np.isfinite(variable.values[rows]))):
             said.append(f"{name}: {_rows(empty)} without a number.")
-    far = outliers(
-        {str(name): np.asarray(v.values[rows], float) for name, v in log.data_vars.items()}
-    )
+    far = outliers(arrays_of(log.isel(time=rows)))
     said += [
         f"{role}: {_rows(int(bad.sum()))} far off both neighbours: left out."
         for role, bad in far.items()

@@ -12,6 +12,7 @@ from shipcosim.diagnose.log.mislabels import mislabel_of, undone
 from shipcosim.diagnose.log.roles import role_of
 from shipcosim.diagnose.log.rows import inside, usable_rows, usual_distance, usual_step
 from shipcosim.diagnose.log.thresholds import HOLE, LONGEST_SPAN
+from shipcosim.diagnose.numerics import running_sums
 from shipcosim.errors import error_at
 from shipcosim.series import make_table
 
@@ -61,14 +62,13 @@ def repaired(log: xarray.Dataset, findings: Sequence[Finding] = ()) -> xarray.Da
     _check_span(time, step)
     grid = time[0] + step * np.arange(int(np.floor((time[-1] - time[0]) / step + 1e-6)) + 1)
     place = _Place(time, grid, np.diff(base) > HOLE * usual_distance(base))
-    columns = [
-        (n, place(v, _is_angle(n)), log[n].attrs["units"], log[n].attrs["long_name"])
-        for n, v in channels.items()
-    ]
+    even = {name: place(values, _is_angle(name)) for name, values in channels.items()}
     # Headings are interpolated by the shorter way round, which can leave [0, 360).
+    if "heading" in even:
+        even["heading"] = np.mod(even["heading"], 360.0)
     columns = [
-        (n, np.mod(v, 360.0) if n == "heading" else v, unit, meaning)
-        for n, v, unit, meaning in columns
+        (name, values, log[name].attrs["units"], log[name].attrs["long_name"])
+        for name, values in even.items()
     ]
     table = make_table(grid, columns, attributes)
     origin = {"units": "s", "long_name": "time as logged"}
@@ -138,7 +138,7 @@ def _true_time(logged, base, findings, step):
                 / max(lasts, step)
             )
     # True time is the integral of the rate.
-    return base[0] + np.r_[0.0, np.cumsum(rates * np.diff(base))]
+    return base[0] + running_sums(rates * np.diff(base))
 
 
 def _put_right(time, channels, findings):

@@ -18,7 +18,7 @@ from shipcosim.diagnose.log.files.times import EPOCHS, epoch_unit, seconds_of, s
 from shipcosim.diagnose.log.names.units import name_and_unit, unit_for
 from shipcosim.diagnose.log.roles import role_of
 from shipcosim.diagnose.log.thresholds import SHORTEST_STEP
-from shipcosim.diagnose.numerics import finite
+from shipcosim.diagnose.numerics import finite, usual_rise
 from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
 from shipcosim.series import conversion
 
@@ -197,8 +197,7 @@ def _time(channel, column, stated, log, form):
 def _check_steps(column, times):
     """Raise ShipcosimError where rows would be so close or far apart that the numbers can hardly be seconds."""
     # Median of the positive steps: repeated times and steps back say nothing of the unit.
-    steps = np.diff(finite(times))
-    step = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 1.0
+    step = usual_rise(finite(times), 1.0)
     if _STEPS[0] <= step <= _STEPS[1]:
         return
     unit, name, size = ("d", "days", 86400.0) if step < _STEPS[0] else ("ms", "milliseconds", 1e-3)
@@ -214,7 +213,7 @@ def _without_summer_time(times):
     known = np.flatnonzero(np.isfinite(times))
     steps = np.diff(times[known])
     falls = np.flatnonzero(steps < 0.0)
-    usual = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 0.0
+    usual = usual_rise(times[known], 0.0)
     if len(falls) != 1 or not 0.0 <= steps[falls[0]] + 3600.0 <= 3.0 * usual:
         return times, []
     row = int(known[falls[0] + 1])

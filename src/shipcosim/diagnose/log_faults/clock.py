@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray
 
-from shipcosim.diagnose.finding import Finding, ParameterEstimate
+from shipcosim.diagnose.finding import Finding, ParameterEstimate, log_fault
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor, fitted, prepared
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import rows_first
@@ -34,7 +34,7 @@ from shipcosim.diagnose.log_faults.thresholds import (
     TYPICAL_RATE,
     TYPICAL_SEGMENT,
 )
-from shipcosim.diagnose.numerics import survival
+from shipcosim.diagnose.numerics import running_sums, survival
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.models.core.motion import Motion
 
@@ -51,7 +51,7 @@ class _Blocks:
 
     def with_run(self, first, last):
         """Inner products of a run with every other: (k + 1, k + 1) array."""
-        sums = np.r_[0.0, np.cumsum(self.gram[:, first:last].sum(axis=1))]
+        sums = running_sums(self.gram[:, first:last].sum(axis=1))
         return differences(sums)
 
 
@@ -205,7 +205,7 @@ def _most_likely(blocks):
         )
     }
     note = "the ship answers thrusters and wind at another rate than logged"
-    return float(gain), Finding("clock", None, "data", 0.98, rate, segments, ("time",), note=note)
+    return float(gain), log_fault("clock", ("time",), note, segments, 0.98, rate)
 
 
 def _best(match, energy, allowed):

@@ -40,6 +40,7 @@ from shipcosim.diagnose.log_faults.thresholds import (
     SHORTEST_INPUT,
     WHOLE,
 )
+from shipcosim.diagnose.numerics import running_sums
 from shipcosim.diagnose.ship.inputs import Record, record_of, with_inputs_of
 from shipcosim.diagnose.ship.instruments import LAGS
 
@@ -267,7 +268,7 @@ def where_best(
 def best_run(gain: np.ndarray, least: int) -> tuple[int, int, float]:
     """First and last row of the run of at least `least` rows whose gains add up to most, and the sum."""
     # Maximum subarray of a minimal length: the running minimum stays this many rows behind.
-    total = np.concatenate([[0.0], np.cumsum(gain)])
+    total = running_sums(gain)
     lowest = 0
     first = 0
     best = (0, 0, -np.inf)

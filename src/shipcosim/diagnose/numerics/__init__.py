@@ -6,9 +6,10 @@ They are few and small, so that SciPy need not be installed; the tests hold them
 from shipcosim.diagnose.numerics.bands import Bands
 from shipcosim.diagnose.numerics.chi_square import log_survival, survival
 from shipcosim.diagnose.numerics.filters import gaussian_filter, moving_average
-from shipcosim.diagnose.numerics.finite import finite
+from shipcosim.diagnose.numerics.finite import finite, usual_rise
 from shipcosim.diagnose.numerics.least_squares import least_squares
 from shipcosim.diagnose.numerics.root_mean_square import root_mean_square
+from shipcosim.diagnose.numerics.sequences import running_sums, runs
 from shipcosim.diagnose.numerics.splines import spline_integral
 from shipcosim.diagnose.numerics.tridiagonal import solve_tridiagonal
 
@@ -20,7 +21,10 @@ __all__ = [
     "log_survival",
     "moving_average",
     "root_mean_square",
+    "running_sums",
+    "runs",
     "solve_tridiagonal",
     "spline_integral",
     "survival",
+    "usual_rise",
 ]

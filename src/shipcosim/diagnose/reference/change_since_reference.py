@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from shipcosim.diagnose.finding import Finding, ParameterEstimate
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of
 from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.reference.reference import Reference, with_reference
@@ -39,9 +39,7 @@ def with_sizes_at_reference(
         # The size of each cause follows from the reference's estimate of its number.
         hypothesis = hypotheses.get(finding.label) if finding.kind == "physics" else None
         before = {
-            of.name: ParameterEstimate(
-                known[of.path].estimate * of.factor, known[of.path].std * abs(of.factor), of.unit
-            )
+            of.name: of.estimate(known[of.path].estimate, known[of.path].std)
             for of in (hypothesis.parameters if hypothesis else ())
             if of.path in known
         }

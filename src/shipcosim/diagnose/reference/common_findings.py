@@ -13,6 +13,7 @@ from shipcosim.diagnose.comparison.labels import Labels
 from shipcosim.diagnose.comparison.thresholds import COMMON_SPREAD
 from shipcosim.diagnose.finding import Discrepancy, Finding, ParameterEstimate
 from shipcosim.diagnose.log.mislabels import DRIVES, mislabel_in, undone
+from shipcosim.diagnose.log.rows import arrays_of
 from shipcosim.diagnose.numerics import survival
 from shipcosim.diagnose.reference.thresholds import APART, SAME_RATIO
 
@@ -117,7 +118,7 @@ def with_right_labels(log: xarray.Dataset, faults: Sequence[Finding]) -> xarray.
         Mislabels, as `mislabel_in` takes them.
     """
     # Correct one fault after the other, each on the result of the one before.
-    columns = {str(name): log[name].values for name in ("time", *log.data_vars)}
+    columns = arrays_of(log)
     for fault in faults:
         columns = undone(columns, mislabel_in(fault), ())
     changed = log.copy()

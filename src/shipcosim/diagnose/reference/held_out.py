@@ -213,8 +213,7 @@ def _log_errors(
     try:
         tracks = _cosimulated(log, given, causes, progress)
     except ShipcosimError as error:
-        remark = "; ".join(f"{p.where}: {p.found} {p.remedy}".rstrip() for p in error.problems)
-        remark = f"{log.name} was not co-simulated: {remark}"
+        remark = f"{log.name} was not co-simulated: {'; '.join(map(str, error.problems))}"
         log = replace(log, own=[], others=())
         try:
             tracks = tracks_by_models(

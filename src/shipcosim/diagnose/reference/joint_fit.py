@@ -19,7 +19,7 @@ from shipcosim.diagnose.inference.fitting import (
     tolerated,
 )
 from shipcosim.diagnose.inference.innovations import Gram, inner_products
-from shipcosim.diagnose.inference.linearisation import Regressor
+from shipcosim.diagnose.inference.linearisation import Regressor, moved
 from shipcosim.diagnose.inference.parts import beside
 from shipcosim.diagnose.inference.regressors import regressors_of
 from shipcosim.diagnose.inference.screening import Gain, gains
@@ -207,11 +207,8 @@ def _posterior(logs, hypotheses, own, values, layout, found):
 
 def _at_the_mean(fit: JointFit, common: np.ndarray) -> dict[str, float]:
     """Every known number of the ship where the logs would have it."""
-    found = {}
-    for column, left in ((fit.columns[i], fit.left[i]) for i in np.flatnonzero(common)):
-        for path, size in column.changes.items():
-            found[path] = found.get(path, fit.model.get(path)) + size * left
-    return found
+    columns = [fit.columns[i] for i in np.flatnonzero(common)]
+    return moved(columns, fit.left[common], fit.model.get)
 
 
 def screened_jointly(logs: SeveralLogs, fit: JointFit) -> list[Gain]:

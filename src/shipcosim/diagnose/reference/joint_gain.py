@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from shipcosim.diagnose.reference.held_out import LogErrors
-from shipcosim.diagnose.validation.gain import resampled_sums, share_explained
+from shipcosim.diagnose.validation.gain import gain_entry, resampled_sums, roots, share_explained
 
 
 def joint_baseline(errors: Mapping[str, LogErrors]) -> dict[str, list[float]] | None:
@@ -64,31 +64,12 @@ def joint_gain(errors: Mapping[str, LogErrors]) -> dict[str, Any] | None:
     if not squares:
         return None
     # Mean squares with equal weight for each log.
-    before, after, floor = _roots(np.mean([of.mean(axis=1) for of in squares.values()], axis=0))
+    before, after, floor = roots(np.mean([of.mean(axis=1) for of in squares.values()], axis=0))
     # Bootstrap: draw predictions within each log with replacement, for the interval of the share.
     rng = np.random.default_rng(1)
-    drawn = _roots(
+    drawn = roots(
         np.mean([resampled_sums(of, rng) / of.shape[1] for of in squares.values()], axis=0)
     )
-    # Share of the explainable error: from before to the
-    # noise floor. It is not defined if both nearly agree.
-    share = share_explained(before, after, floor)
-    some = bool(np.isfinite(share))
-    return {
-        "horizon_s": float(next(iter(judged.values())).horizon[-1]),
-        "before_m": float(before),
-        "bias_observer_m": None,
-        "after_m": float(after),
-        "noise_floor_m": float(floor),
-        "share_of_explainable": float(share) if some else None,
-        "ci95": [float(q) for q in np.nanquantile(share_explained(*drawn), (0.025, 0.975))]
-        if some
-        else None,
-        "logs": list(squares),
-    }
-
-
-def _roots(means: np.ndarray) -> np.ndarray:
-    """Roots of mean squares; no perfect model misses more than a model that there is."""
-    before, after, floor = np.sqrt(means)
-    return np.stack([before, after, np.minimum(floor, after)])
+    horizon = float(next(iter(judged.values())).horizon[-1])
+    entry = gain_entry(horizon, (before, after, floor), share_explained(*drawn))
+    return entry | {"logs": list(squares)}

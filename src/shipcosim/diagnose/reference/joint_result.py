@@ -12,6 +12,7 @@ from shipcosim.diagnose.finding import (
     Discrepancy,
     Finding,
     VisibleSize,
+    estimates_as_json,
 )
 from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.reference.common_findings import RatioOfLogs, Shared
@@ -108,6 +109,10 @@ class JointDiagnosis:
     basis: JointBasis | None = field(default=None, repr=False)
     folder: object = field(default=None, repr=False, compare=False)
 
+    def of_kind(self, kind: str) -> list[Finding]:
+        """What the common findings of a kind, ``"data"`` or ``"physics"``, name."""
+        return [one.what for one in self.findings if one.what.kind == kind]
+
     @property
     def crafts_without(self) -> dict[str, LearnedCraft]:
         """By log, the craft as the others teach her."""
@@ -153,8 +158,7 @@ class JointDiagnosis:
             entry["put_right_in"] = list(one.put_right)
         if own := self.sizes.get(one.what.label):
             entry["by_log"] = {
-                name: {key: value.as_json() for key, value in parameters.items()}
-                for name, parameters in own.items()
+                name: estimates_as_json(parameters) for name, parameters in own.items()
             }
         return entry
 

@@ -52,6 +52,11 @@ class JointVerdict:
     unmodelled: dict[str, float]
     null_gains: dict[str, float]
 
+    @property
+    def fit(self) -> JointFit:
+        """The set of causes that the verdict rests on."""
+        return cast(JointFit, self.judgement.fit)
+
 
 def judged_jointly(logs: SeveralLogs) -> JointVerdict:
     """The sets of causes that explain several logs together, and the verdict on them.

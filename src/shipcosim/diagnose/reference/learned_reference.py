@@ -12,12 +12,10 @@ from shipcosim.diagnose.reference.reference import (
     ReferenceLog,
     fingerprint,
 )
-from shipcosim.diagnose.reference.remaining_errors import RemainingErrors
+from shipcosim.diagnose.reference.remaining_errors import RemainingErrors, errors_by_models
 from shipcosim.diagnose.reference.thresholds import USUAL_FORM
 from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.model import ShipModel
-from shipcosim.diagnose.validation.tracks import errors_of, fitting_horizon, tracks_by_models
-from shipcosim.errors import ShipcosimError
 
 _LEAST_SPREAD = (
     0.05  # of a number's size: what logs agree upon by chance is no better known. Assumed
@@ -86,10 +84,4 @@ def learned_errors(
     """
     # Predictions by the system, by the craft without this log, and by the craft with all logs.
     models = {"before": ship, "after": others.on(ship), "floor": craft.on(ship)}
-    try:
-        errors = errors_of(tracks_by_models(record, models, fitting_horizon(record, ship)))
-    except ShipcosimError:
-        return None
-    of = {one: tuple(map(float, errors["position"].sel(simulation=one).values)) for one in models}
-    times = tuple(map(float, errors["after"].values))
-    return RemainingErrors(times, of["before"], of["after"], of["floor"], tuple(names))
+    return errors_by_models(record, models, names)

@@ -1,13 +1,12 @@
 """What a calibrated ship still gets wrong, in each log: by numbers that this log did not give."""
 
-from dataclasses import dataclass, replace
-
-import numpy as np
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from shipcosim.diagnose.reference.calibration import Calibration, numbers_of
 from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
-from shipcosim.diagnose.ship.inputs import Record, part_of
+from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.validation.gain import calibrated
 from shipcosim.diagnose.validation.split import first_rows, trained
@@ -82,9 +81,7 @@ def _of_last_rows(found: Calibration, name: str) -> RemainingErrors | None:
     fit = fitted_jointly(
         early, found.fit.hypotheses, found.fit.values, scale=found.scale, about_all=True
     )
-    return _errors(
-        found, name, _rows_of(problem.record, ~rows), _with_numbers(found, name, fit), ()
-    )
+    return _errors(found, name, problem.record.part(~rows), _with_numbers(found, name, fit), ())
 
 
 def _with_numbers(found: Calibration, name: str, fit: JointFit) -> ShipModel:
@@ -106,23 +103,21 @@ def _errors(found, name, record, after, others) -> RemainingErrors | None:
     model = found.logs.problems[name].model
     part = found.fit.parts[name]
     models = {"before": model, "after": after, "floor": calibrated(part)}
+    return errors_by_models(record, models, others)
+
+
+def errors_by_models(
+    record: Record, models: Mapping[str, ShipModel], fitted_on: Sequence[str]
+) -> RemainingErrors | None:
+    """Errors of the predictions of a log by the ships ``"before"``, ``"after"`` and ``"floor"``.
+
+    None where no stretch of the log is whole.
+    """
     try:
-        errors = errors_of(tracks_by_models(record, models, fitting_horizon(record, model)))
+        horizon = fitting_horizon(record, models["before"])
+        errors = errors_of(tracks_by_models(record, models, horizon))
     except ShipcosimError:
         return None
+    times = tuple(map(float, errors["after"].values))
     of = {one: tuple(map(float, errors["position"].sel(simulation=one).values)) for one in models}
-    return RemainingErrors(
-        tuple(map(float, errors["after"].values)), of["before"], of["after"], of["floor"], others
-    )
-
-
-def _rows_of(record: Record, rows: np.ndarray) -> Record:
-    """Some rows of a record that follow each other."""
-    return replace(
-        record,
-        time=record.time[rows],
-        measured=record.measured[rows],
-        units=part_of(record.units, rows),
-        wind=None if record.wind is None else tuple(series[rows] for series in record.wind),
-        known=record.known[rows],
-    )
+    return RemainingErrors(times, of["before"], of["after"], of["floor"], tuple(fitted_on))

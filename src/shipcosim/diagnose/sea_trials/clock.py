@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from shipcosim.diagnose.numerics import moving_average
+from shipcosim.diagnose.numerics import moving_average, running_sums
 from shipcosim.diagnose.sea_trials import thresholds
 
 
@@ -59,7 +59,7 @@ def own_clock(time: np.ndarray, measured: np.ndarray, length: float) -> tuple[np
     scale = float(np.nanmedian(rate)) / _clock_by_heading(rate, measured, step, length, rows)
     # Integrate the rate to times.
     rate = np.clip(np.where(moving, rate / scale, 1.0), 0.2, 5.0)
-    return np.concatenate(([0.0], np.cumsum(rate * step))), scale
+    return running_sums(rate * step), scale
 
 
 def _clock_by_heading(rate, measured, step, length, rows):

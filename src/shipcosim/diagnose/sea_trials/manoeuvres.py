@@ -134,7 +134,7 @@ def catalogue(model: ShipModel) -> list[PlannedTrial]:
         _planned("thrusters stopped at full speed", "change of speed", _FULL, Leg(10.0, 0.0)),
         _planned("crash stop from full speed", "change of speed", _FULL, Leg(6.0, -_FULL)),
     ]
-    sideways = (_pushes_sideways(dp_thruster_of(model, name)) for name in model.thrusters)
+    sideways = (dp_thruster_of(model, name).pushes_sideways for name in model.thrusters)
     return [*found, *_with_bow_thruster(speeds)] if any(sideways) else found
 
 
@@ -152,10 +152,6 @@ def _with_bow_thruster(speeds):
         ):
             legs = Leg(45.0, power, np.radians(angle), bow)
             yield _planned(f"turning circle {how} at {name}", "turning circle", power, legs)
-
-
-def _pushes_sideways(unit):
-    return not unit.pointed and abs(np.cos(unit.axis)) < 0.5
 
 
 def as_trials(
@@ -237,7 +233,7 @@ def _orders(model, shafts, power, helm, bow):
     found = {}
     for name in model.thrusters:
         unit = dp_thruster_of(model, name)
-        if _pushes_sideways(unit):
+        if unit.pushes_sideways:
             found[name] = (bow * unit.most, 0.0)
         elif unit.pointed:
             found[name] = (power * shafts.get(name, 0.0), -helm if unit.x < 0.0 else 0.0)

@@ -33,7 +33,7 @@ from shipcosim.diagnose.sea_trials.separation import (
     separations,
 )
 from shipcosim.diagnose.sea_trials.windows import SeaTrial, as_ordered, sea_trials_of
-from shipcosim.diagnose.ship.inputs import record_of
+from shipcosim.diagnose.ship.inputs import record_of, source_of
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.errors import error_at
@@ -284,7 +284,7 @@ def study(
     if not any(trial.kind == "turning circle" for trial in trials):
         found = f"no turning circle among {len(trials)} manoeuvres: {', '.join(t.name for t in trials) or 'none'}."
         right = f"A circle is an order held until she has turned by {thresholds.CIRCLE:.0f} deg, from a straight course."
-        raise error_at(str(read.repaired.attrs.get("source", "log")), found, right)
+        raise error_at(source_of(read.repaired), found, right)
     return studied(
         trials,
         read.ship,

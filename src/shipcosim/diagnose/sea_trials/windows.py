@@ -9,7 +9,7 @@ import xarray
 
 from shipcosim.angles import unwrap_series
 from shipcosim.diagnose.finding import Segment
-from shipcosim.diagnose.numerics import moving_average
+from shipcosim.diagnose.numerics import moving_average, running_sums, runs
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.clock import own_clock
 from shipcosim.diagnose.ship.inputs import Record, ThrusterSeries
@@ -88,7 +88,7 @@ def sea_trials_of(
         whole &= (record.time < first - record.step) | (record.time > last + record.step)
     # Circles and zig-zags first, straight runs between them.
     found = [*_circles(helm, measured), *_zig_zags(helm, measured, length)]
-    busy = _merged([rows for _, rows in found])
+    busy = [rows for _, rows in found]
     found += _straight_runs(helm, record, measured, length, busy)
     # Only whole manoeuvres in which the ship makes way.
     kept = [(kind, rows) for kind, rows in found if whole[rows].all()]
@@ -169,7 +169,7 @@ def steering(record: Record, model: ShipModel) -> np.ndarray:
             if "thrust" in model.drives(name)
             else speed * abs(speed) * np.where(speed < 0, unit.astern, unit.ahead)
         )
-        if not unit.pointed and abs(np.cos(unit.axis)) < 0.5:
+        if unit.pushes_sideways:
             continue  # a tunnel thruster: no trial is steered with it
         angle = unit.axis + direction if unit.pointed else unit.axis
         moment = moment + thrust * (unit.x * np.sin(angle) - unit.y * np.cos(angle))
@@ -198,13 +198,12 @@ def _bridged(measured):
 
 def _way(measured):
     """Distance sailed until each row. [m]"""
-    return np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(measured[:, :2], axis=0).T))))
+    return running_sums(np.hypot(*np.diff(measured[:, :2], axis=0).T))
 
 
 def _runs(mask):
     """Runs of rows where a mask holds: slices."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], mask.astype(int), [0]))))
-    return [slice(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+    return [slice(int(first), int(last)) for first, last in runs(mask)]
 
 
 def _circles(helm, measured):
@@ -253,10 +252,6 @@ def _zig_zags(helm, measured, length):
         ):
             start -= 1
         yield "zig-zag", slice(max(start - 1, 0), chain[-1].start + 1)
-
-
-def _merged(slices):
-    return sorted(slices, key=lambda rows: rows.start)
 
 
 def _straight_runs(helm, record, measured, length, busy):

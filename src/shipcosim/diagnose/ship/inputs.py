@@ -1,5 +1,7 @@
 """A repaired log as arrays in SI: what was measured of the ship, and what drove her, on an even grid of times."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -15,6 +17,7 @@ from shipcosim.diagnose.ship.stretches import rows_averaged, stretches_of
 from shipcosim.diagnose.ship.third_party_fmu import ThirdPartyFmu
 from shipcosim.diagnose.ship.time_scales import fastest_rate, response_times
 from shipcosim.errors import Problem, ShipcosimError, error_at
+from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Motion
 
@@ -100,6 +103,18 @@ class Record:
         found[[rows.stop - 1 for rows in self.stretches]] = True
         return found
 
+    def part(self, rows: Any) -> Record:
+        """Some rows, as an index of an array gives them."""
+        wind = None if self.wind is None else tuple(series[rows] for series in self.wind)
+        return replace(
+            self,
+            time=self.time[rows],
+            measured=self.measured[rows],
+            units=part_of(self.units, rows),
+            wind=wind,
+            known=self.known[rows],
+        )
+
     def substeps(self, model: ShipModel) -> int:
         """Number of integration steps from row to row; more than one for a small or stiff ship."""
         # Steps short enough for the size of the ship and
@@ -150,6 +165,11 @@ def part_of(units: Mapping[str, tuple], rows: Any) -> dict[str, tuple]:
     return {name: tuple(series[rows] for series in pair) for name, pair in units.items()}
 
 
+def source_of(log: xarray.Dataset) -> str:
+    """The file that a log is from, for messages."""
+    return str(log.attrs.get("source", "log"))
+
+
 def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     """Arrays of a repaired log.
 
@@ -174,12 +194,12 @@ def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     # One row has no step; of two or more `_check_length` says what this ship would need.
     if rows < 2:
         right = f"A diagnosis takes {_FEWEST_ROWS} rows at the least."
-        raise error_at(str(log.attrs.get("source", "log")), f"{rows} rows.", right)
+        raise error_at(source_of(log), f"{rows} rows.", right)
     missing = [role for role in ("north", "east", "heading") if role not in log]
     if missing:
         found = f"no channel {', '.join(missing)}."
         right = "A diagnosis needs north, east and heading."
-        raise error_at(str(log.attrs.get("source", "log")), found, right)
+        raise error_at(source_of(log), found, right)
     # Measurements in SI units, with the heading unwrapped.
     measured = np.stack(
         [_column(log, role, rows) * si for role, si in zip(CHANNELS, _TO_SI, strict=True)], axis=-1
@@ -291,7 +311,7 @@ def _check_length(log: xarray.Dataset, model: ShipModel, motion: Motion) -> None
         )
         found = f"{rows} rows over {span:.0f} s, of a ship {answer}."
         right = f"It takes {_FEWEST_ROWS} rows over {least:.0f} s at the least, better twenty times that."
-        raise error_at(str(log.attrs.get("source", "log")), found, right)
+        raise error_at(source_of(log), found, right)
 
 
 def _thinned(record: Record, rows: int, model: ShipModel) -> Record:
@@ -355,7 +375,7 @@ def _check_third_party(log: xarray.Dataset, model: ShipModel) -> None:
     drives = [
         (name, f"{name}_{kind}") for name, one in model.third_party.items() for kind in one.drives
     ]
-    where = str(log.attrs.get("source", "log"))
+    where = source_of(log)
     remedy = "Log it under this name, or name its column in a channel file."
     lacking = [
         Problem(where, f"no channel {role}, which drives '{name}'.", remedy)
@@ -449,10 +469,7 @@ def first_motion(record: Record, model: ShipModel, smooth: float = 4.0) -> Motio
     if np.isnan(r).any():
         r = rate_of(psi, record)
     if np.isnan(u).any() or np.isnan(v).any():
-        north = rate_of(x, record)
-        east = rate_of(y, record)
-        u = np.cos(psi) * north + np.sin(psi) * east
-        v = np.cos(psi) * east - np.sin(psi) * north
+        u, v = to_body(psi, rate_of(x, record), rate_of(y, record))
     return Motion(x, y, psi, u, v, r)
 
 

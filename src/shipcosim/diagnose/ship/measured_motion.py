@@ -1,8 +1,15 @@
 """What the instruments show of a ship's motion, and the motion of which they show it."""
 
+from typing import Any
+
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.ship import instruments
+
+
+def at_rows(motion: Motion, rows: Any) -> Motion:
+    """Some rows of a motion, as an index of its arrays gives them."""
+    return Motion(*(value[rows] for value in motion))
 
 
 def readings(motion: Motion, model: ShipModel) -> Motion:

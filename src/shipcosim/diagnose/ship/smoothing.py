@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shipcosim.diagnose.numerics import gaussian_filter
+from shipcosim.diagnose.numerics import gaussian_filter, runs
 from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.motion import Motion
@@ -78,12 +78,8 @@ def unsmoothed(record: Record, kernel: Kernel) -> tuple[Motion, np.ndarray]:
         whole = np.isfinite(series)
         if is_measured(record, channel):
             # Rows of gaps that are longer than what the kernel averages over anyway.
-            gap = ~whole
-            edges = np.flatnonzero(np.diff(np.r_[0, gap.astype(int), 0]))
-            long = np.zeros(gap.size, bool)
-            for first, last in edges.reshape(-1, 2):
-                long[first:last] = (last - first) * kernel.step > kernel.width
-            bad |= ~whole & long
+            for first, last in runs(~whole):
+                bad[first:last] |= (last - first) * kernel.step > kernel.width
             series = np.interp(rows, rows[whole], series[whole])
         columns.append(series)
     # At the ends of stretches the kernel mixes rows that do not follow each other.

@@ -42,6 +42,11 @@ class DpThruster(NamedTuple):
     astern: float
     most: float
 
+    @property
+    def pushes_sideways(self) -> bool:
+        """Whether it is one across the ship, as in a tunnel."""
+        return not self.pointed and bool(abs(np.cos(self.axis)) < 0.5)
+
 
 def dp_thruster_of(model: ShipModel, name: str) -> DpThruster:
     """A thruster of a ship as her DP controller knows it.

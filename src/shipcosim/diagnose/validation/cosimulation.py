@@ -1,7 +1,7 @@
 """The predictions of a gain as co-simulations: the system itself, from what was known at the start of each segment."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil
 from typing import Any
 
@@ -10,7 +10,8 @@ import xarray
 
 from shipcosim.cosim import replay
 from shipcosim.diagnose.inference.predictions import missing, predicted
-from shipcosim.diagnose.ship.measured_motion import readings
+from shipcosim.diagnose.ship.inputs import CHANNELS
+from shipcosim.diagnose.ship.measured_motion import at_rows, readings
 from shipcosim.diagnose.ship.third_party_fmu import DRIVES, drives_of
 from shipcosim.diagnose.validation.gain import Comparison, Predictor
 from shipcosim.diagnose.validation.split import HORIZONS, in_rows
@@ -27,7 +28,6 @@ _CALM = {
     "wind_speed_rate": WEATHER_RATE,
     "wind_turn_rate": WEATHER_RATE,
 }
-_SHOWN = ("north", "east", "heading", "surge", "sway", "yaw_rate")
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ def simulated(
 
 def in_array_form(predictor: Predictor, rows: np.ndarray) -> Motion:
     """What a model predicts the log to show after the horizons, (horizons, s) arrays."""
-    motion = Motion(*(value[rows] for value in predictor.motion))
+    motion = at_rows(predictor.motion, rows)
     found = predicted(motion, rows, predictor.record, predictor.model, in_rows(predictor.record))
     return readings(found, predictor.model)
 
@@ -145,42 +145,78 @@ def replayed(
     ShipcosimError
         If the system has no inputs for what the log says of its thrusters.
     """
-    ship = predictor.model.vessel
     record = predictor.record
     # Instruments show the ship late by the navigation lag: the replay starts that much earlier.
     lag = predictor.original.parts["instruments"].navigation_lag
-    table, states = driving_table(one.system, predictor, step_size, lag)
-    states |= {
-        f"{ship}.{name}_start": value[rows]
-        for name, value in zip(_STATE, predictor.motion, strict=True)
-    }
-    signals = (
-        [one.signals[role] for role in _SHOWN]
-        if one.signals
-        else [f"{ship}.{name}" for name in _STATE]
-    )
     late = lag if one.signals else 0.0
+    known = replace(predictor, motion=at_rows(predictor.motion, rows))
+    time, channels = sailed_from(
+        one,
+        known,
+        record.time[rows],
+        HORIZONS[-1] + late,
+        lag,
+        step_size=step_size,
+        progress=progress,
+    )
+    # Horizons count from the start as shown, so the delay is added.
+    ends = late + record.step * np.array(in_rows(record))
+    motion = Motion(*(np.array([_at(series, time, end) for end in ends]) for series in channels))
+    return motion if one.signals else readings(motion, predictor.model)
+
+
+def sailed_from(
+    one: Replayed,
+    start: Predictor,
+    times: np.ndarray,
+    seconds: float,
+    lag: float,
+    *,
+    step_size: float = STEP,
+    progress: CountProgress | None = None,
+) -> tuple[np.ndarray, list[np.ndarray]]:
+    """What a system shows, run from some states of its ship with what drove her in a log.
+
+    Parameters
+    ----------
+    one : Replayed
+    start : Predictor
+        Gives the table, and the ship's motion where each run starts, (s,) arrays.
+    times : (s,) array
+        Where the runs start in the log. [s]
+    seconds : float
+        How long they last, rounded up to whole steps. [s]
+    lag : float
+        By how much the log's times are late. [s]
+    step_size : float
+        [s]
+    progress : callable, optional
+        Called with (runs done, runs in all).
+
+    Returns
+    -------
+    (k,) array, list of six (s, k) arrays
+        Times since the start [s], and position, heading without jumps, and velocity. [SI]
+    """
+    ship = start.model.vessel
+    table, states = driving_table(one.system, start, step_size, lag)
+    states |= {f"{ship}.{name}_start": value for name, value in start.motion._asdict().items()}
+    signals = [f"{ship}.{name}" for name in Motion._fields]
+    if one.signals:
+        signals = [one.signals[role] for role in CHANNELS]
     found = replay(
         one.system,
         table,
-        record.time[rows] - lag,
-        step_size * ceil((HORIZONS[-1] + late) / step_size - 1e-6),
+        (times - lag).tolist(),
+        step_size * ceil(seconds / step_size - 1e-6),
         states=states,
         step_size=step_size,
         signals=signals,
         progress=progress,
     )
-    # Horizons count from the start as shown, so the delay is added.
-    ends = late + record.step * np.array(in_rows(record))
-    time = found["time"].values
     channels = [found[name].values for name in signals]
-    # Unwrap before interpolating, then take the channels at the horizons.
     channels[2] = np.unwrap(channels[2], axis=1)
-    motion = Motion(*(np.array([_at(series, time, end) for end in ends]) for series in channels))
-    return motion if one.signals else readings(motion, predictor.model)
-
-
-_STATE = ("x", "y", "psi", "u", "v", "r")
+    return found["time"].values, channels
 
 
 def _at(series, time, end):
@@ -232,7 +268,9 @@ def driving_table(
             fed = _input(system, name, variable)
             if fed:
                 columns.append((fed, values, unit, ""))
-            elif np.ptp(values) == 0.0 and not _connected(system, name, variable):
+            elif np.ptp(values) == 0.0 and not any(
+                c.target == (name, variable) for c in system.connections
+            ):
                 states[f"{name}.{variable}"] = values[0]
             else:
                 found = f"no input of the system feeds '{name}.{variable}', which the log has."
@@ -269,10 +307,6 @@ def _input(system, component, variable):
     """Input of the system that feeds a variable; None where there is none."""
     feeding = (c.source for c in system.connections if c.target == (component, variable))
     return next((name for owner, name in feeding if owner is None), None)
-
-
-def _connected(system, component, variable):
-    return any(c.target == (component, variable) for c in system.connections)
 
 
 def _weather(system, ship, record):

@@ -1,6 +1,6 @@
 """What naming the cause is worth: how far predictions with each model are off, on rows that nothing was fitted on."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -20,7 +20,7 @@ from shipcosim.diagnose.inference.predictions import (
 )
 from shipcosim.diagnose.inference.thresholds import DRAWS
 from shipcosim.diagnose.ship.inputs import Record
-from shipcosim.diagnose.ship.measured_motion import readings
+from shipcosim.diagnose.ship.measured_motion import at_rows, readings
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.validation.split import (
     HORIZONS,
@@ -229,7 +229,7 @@ class _Model:
             self.record,
             self.model,
             original,
-            Motion(*(value[number] for value in self.known.motion)),
+            at_rows(self.known.motion, number),
         )
 
     def missed(self, rows, seen, holds):
@@ -328,10 +328,10 @@ def sailed(comparison: Comparison, model: ShipModel) -> Motion:
     """
     predictor = comparison.predictors["plain"]
     rows = comparison.rows
-    start = Motion(*(value[rows] for value in predictor.motion))
+    start = at_rows(predictor.motion, rows)
     horizon = in_rows(predictor.record)[-1:]
     there = readings(predicted(start, rows, predictor.record, model, horizon), model)
-    return Motion(*(value[0] for value in there))
+    return at_rows(there, 0)
 
 
 def baseline(errors: xarray.Dataset) -> dict[str, list[float]]:
@@ -381,21 +381,44 @@ def gain(errors: xarray.Dataset, seed: int = 1, fewest: int = 1) -> dict[str, An
     # Root mean square errors of the models, and the share of the explainable error that the cause
     # removes.
     times = errors["start_time"].values
-    before, rival, after, floor = _roots(squares.mean(1))
-    share = share_explained(before, after, floor)
+    before, rival, after, floor = roots(squares.mean(1))
     # Block bootstrap for its confidence interval: neighbouring predictions overlap, so blocks are
     # drawn instead of segments.
-    drawn = share_explained(*_roots(_resampled(squares, times, seed))[[0, 2, 3]])
+    drawn = share_explained(*roots(_resampled(squares, times, seed))[[0, 2, 3]])
+    entry = gain_entry(int(HORIZONS[-1]), (before, after, floor), drawn, float(rival))
+    if _blocks(times).max() + 1 < fewest:
+        entry["ci95"] = None
+    return entry
+
+
+def gain_entry(
+    horizon: float, errors: Sequence[float], drawn: np.ndarray, rival: float | None = None
+) -> dict[str, Any]:
+    """The entry ``gain`` of diagnosis.json.
+
+    Parameters
+    ----------
+    horizon : float
+        [s]
+    errors : sequence of three floats
+        Before, after, and of a perfect model. [m]
+    drawn : (n,) array
+        Share of the explainable error that is gone, by draws of the predictions.
+    rival : float, optional
+        Error of the bias observer. [m]
+    """
+    before, after, floor = map(float, errors)
+    # The share is not defined where before and noise floor nearly agree.
+    share = float(share_explained(before, after, floor))
     some = np.isfinite(share)
-    sure = some and _blocks(times).max() + 1 >= fewest
     return {
-        "horizon_s": int(HORIZONS[-1]),
-        "before_m": float(before),
-        "bias_observer_m": float(rival),
-        "after_m": float(after),
-        "noise_floor_m": float(floor),
-        "share_of_explainable": float(share) if some else None,
-        "ci95": [float(q) for q in np.nanquantile(drawn, (0.025, 0.975))] if sure else None,
+        "horizon_s": horizon,
+        "before_m": before,
+        "bias_observer_m": rival,
+        "after_m": after,
+        "noise_floor_m": floor,
+        "share_of_explainable": share if some else None,
+        "ci95": [float(q) for q in np.nanquantile(drawn, (0.025, 0.975))] if some else None,
     }
 
 
@@ -461,10 +484,10 @@ def parts(errors: xarray.Dataset, names: str = "regime") -> dict[Any, xarray.Dat
     }
 
 
-def _roots(means):
-    """Roots of mean squares; no perfect model misses more than a model that there is."""
-    before, rival, after, floor = np.sqrt(means)
-    return np.stack([before, rival, after, np.minimum(floor, after)])
+def roots(means: np.ndarray) -> np.ndarray:
+    """Roots of mean squares, the last two after and of a perfect model: it misses no more than one that there is."""
+    *others, after, floor = np.sqrt(means)
+    return np.stack([*others, after, np.minimum(floor, after)])
 
 
 def share_explained(

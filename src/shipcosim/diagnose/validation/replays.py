@@ -7,7 +7,7 @@ import xarray
 
 from shipcosim.diagnose.extension.extend import extend
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem
-from shipcosim.diagnose.finding import Finding, ParameterEstimate
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.inference.fitting import Fit
 from shipcosim.diagnose.validation.conditions import PredictedLog
 from shipcosim.diagnose.validation.cosimulation import MOST, Replayed, simulated
@@ -73,8 +73,8 @@ def with_cosimulation(
         first = {
             (p.found, p.remedy): p for p in reversed(error.problems)
         }  # that of many segments is said once
-        said = (f"{p.where}: {p.found} {p.remedy}".rstrip() for p in reversed(first.values()))
-        remarks = tuple(f"The system was not co-simulated: {text}" for text in said)
+        said = reversed(first.values())
+        remarks = tuple(f"The system was not co-simulated: {problem}" for problem in said)
         return SimulatedLog(log.comparison.errors, in_array_form, False, remarks)
     return SimulatedLog(errors, held_out, True)
 
@@ -102,11 +102,7 @@ def findings_of(fit: Fit) -> list[Finding]:
             hypothesis.cause,
             hypothesis.component,
             parameters={
-                of.name: ParameterEstimate(
-                    fit.values[of.path] * of.factor,
-                    abs(fit.std[of.path] * of.factor),
-                    of.unit,
-                )
+                of.name: of.estimate(fit.values[of.path], fit.std[of.path])
                 for of in hypothesis.parameters
             },
         )

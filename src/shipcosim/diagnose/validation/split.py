@@ -6,7 +6,9 @@ import numpy as np
 
 from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.parts import InParts
-from shipcosim.diagnose.ship.inputs import Record, part_of
+from shipcosim.diagnose.numerics import running_sums
+from shipcosim.diagnose.ship.inputs import Record
+from shipcosim.diagnose.ship.measured_motion import at_rows
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.validation.thresholds import (
     IDLE,
@@ -78,7 +80,7 @@ def starts(record: Record) -> np.ndarray:
         round(SETTLED / h), record.time.size - horizons[-1], max(1, round(START_STEP / h))
     )
     # Cumulative count of rows with unknown inputs: equal at both ends where there is none between.
-    lost = np.concatenate([[0], np.cumsum(~record.known)])
+    lost = running_sums(~record.known)
     # Position and heading must be measured near the start and near each horizon.
     measured = np.isfinite(record.measured[:, :3]).all(-1)
     near = np.convolve(measured, np.ones(2 * round(MEASURED_WITHIN / h) + 1), "same") > 0.0
@@ -106,7 +108,7 @@ def sorted_by(train: np.ndarray, rows: np.ndarray, record: Record) -> tuple[np.n
     """
     last = in_rows(record)[-1]
     # Training rows in each prediction, by a cumulative count.
-    used = np.concatenate([[0], np.cumsum(train)])
+    used = running_sums(train)
     used = used[rows + last + 1] - used[rows]
     return rows[used == last + 1], rows[used == 0]
 
@@ -130,13 +132,11 @@ def trained(problem: IdentificationProblem, train: np.ndarray) -> Identification
     base = problem.linear
     # A step needs both of its rows to be training rows; other steps and measurements get no weight.
     steps = train[:-1] & train[1:]
+    cut = record.part(slice(n))
     cut = replace(
-        record,
-        time=record.time[:n],
-        measured=np.where(train[:, None], record.measured[:n], np.nan),
-        units=part_of(record.units, slice(n)),
-        wind=None if record.wind is None else tuple(series[:n] for series in record.wind),
-        known=record.known[:n] & np.append(steps, True),
+        cut,
+        measured=np.where(train[:, None], cut.measured, np.nan),
+        known=cut.known & np.append(steps, True),
     )
 
     def part(rows):
@@ -150,9 +150,7 @@ def trained(problem: IdentificationProblem, train: np.ndarray) -> Identification
         )
 
     linear = InParts(n, base.columns, part)
-    return replace(
-        problem, record=cut, motion=Motion(*(value[:n] for value in problem.motion)), base=linear
-    )
+    return replace(problem, record=cut, motion=at_rows(problem.motion, slice(n)), base=linear)
 
 
 def conditions(

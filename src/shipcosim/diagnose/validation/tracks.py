@@ -7,17 +7,16 @@ import numpy as np
 import xarray
 
 from shipcosim.angles import wrap_series
-from shipcosim.cosim import replay
 from shipcosim.diagnose.explanation.verdict import JudgedLog
 from shipcosim.diagnose.inference.predictions import predicted, replayable
 from shipcosim.diagnose.log.roles import ROLES
 from shipcosim.diagnose.ship.inputs import CHANNELS, Record, first_motion
 from shipcosim.diagnose.ship.instruments import Instruments
-from shipcosim.diagnose.ship.measured_motion import readings, true_motion
+from shipcosim.diagnose.ship.measured_motion import at_rows, readings, true_motion
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.third_party_fmu import number_of
 from shipcosim.diagnose.ship.time_scales import response_times
-from shipcosim.diagnose.validation.cosimulation import Replayed, driving_table
+from shipcosim.diagnose.validation.cosimulation import Replayed, sailed_from
 from shipcosim.diagnose.validation.gain import Predictor
 from shipcosim.diagnose.validation.thresholds import (
     LEAST_SHARE,
@@ -106,7 +105,7 @@ def tracks_by_models(record: Record, models: Mapping[str, ShipModel], horizon: f
         # Smoothed measurements give the start; inputs are those of the log without delay.
         seen = _seen(record, model, horizon)
         driven, neutral = replayable(record, model, seen)
-        start = true_motion(Motion(*(value[rows] for value in seen)), model)
+        start = true_motion(at_rows(seen, rows), model)
         ahead = readings(predicted(start, rows, driven, neutral, range(1, count + 1)), model)
         first = readings(start, model)
         # The start itself is the first row of each prediction.
@@ -170,33 +169,12 @@ def _cosimulated(record, model, one, rows, horizon, progress):
     # The system's instruments have errors of their own: take them out of the start values.
     errors, lag = _instruments(one)
     own = model.with_values({f"instruments.{key}": value for key, value in errors.items()})
-    start = true_motion(Motion(*(value[rows] for value in seen)), own)
-    table, states = driving_table(one.system, Predictor(driven, neutral, own, start), STEP, lag)
-    states |= {
-        f"{model.vessel}.{key}_start": value
-        for key, value in zip(Motion._fields, start, strict=True)
-    }
-    signals = (
-        [one.signals[role] for role in CHANNELS]
-        if one.signals
-        else [f"{model.vessel}.{name}" for name in Motion._fields]
+    start = true_motion(at_rows(seen, rows), own)
+    # Long enough for the instruments' delay.
+    known = Predictor(driven, neutral, own, start)
+    time, channels = sailed_from(
+        one, known, record.time[rows], horizon + lag, lag, progress=progress
     )
-    # Whole steps, long enough for the instruments' delay.
-    duration = STEP * np.ceil((horizon + lag) / STEP - 1e-6)
-    starts = record.time[rows] - lag
-    run = replay(
-        one.system,
-        table,
-        starts,
-        duration,
-        states=states,
-        step_size=STEP,
-        signals=signals,
-        progress=progress,
-    )
-    time = run["time"].values
-    channels = [run[signal].values for signal in signals]
-    channels[2] = np.unwrap(channels[2], axis=1)
     # Unwrapped headings may differ by full turns from the log's: shift them to its start.
     channels[2] += (
         2.0 * np.pi * np.round((seen.psi[rows] - channels[2][:, 0]) / (2.0 * np.pi))[:, None]
@@ -276,10 +254,9 @@ def errors_of(tracks: Tracks, shares: tuple[float, ...] = (1.0 / 6.0, 0.5, 1.0))
         ``after`` [s]; NaN where the log has nothing.
     """
     names = list(tracks.predicted)
-    after = [
-        _nearest(next(iter(tracks.predicted.values()))["time"].values, s * tracks.horizon)
-        for s in shares
-    ]
+    # Times of the predictions that are nearest to the parts of the horizon.
+    times = next(iter(tracks.predicted.values()))["time"].values
+    after = [float(times[np.abs(times - share * tracks.horizon).argmin()]) for share in shares]
     found = {
         name: np.full((len(names), len(after)), np.nan) for name in ("position", *CHANNELS[2:])
     }
@@ -307,10 +284,6 @@ def misses_at_end(tracks: Tracks, name: str) -> tuple[np.ndarray, np.ndarray]:
     """
     one = tracks.predicted[name]
     return one["start_time"].values, _misses(tracks, one, tracks.horizon)["position"]
-
-
-def _nearest(times: np.ndarray, time: float) -> float:
-    return float(times[np.argmin(np.abs(times - time))])
 
 
 def _missed(tracks: Tracks, one: xarray.Dataset, end: float) -> dict[str, float]:

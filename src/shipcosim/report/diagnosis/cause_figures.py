@@ -9,10 +9,10 @@ from shipcosim.diagnose.explanation.course import CourseFound
 from shipcosim.diagnose.explanation.summary import LAGS, Evidence
 from shipcosim.diagnose.inference.thresholds import ENOUGH, UNMODELLED
 from shipcosim.report.diagnosis.estimates import shown_unit
-from shipcosim.report.diagnosis.words import course_of, title
+from shipcosim.report.diagnosis.words import course_of, title, title_of
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import TIME, limit, line, rounded
-from shipcosim.report.theme.views import Figure
+from shipcosim.report.theme.views import Figure, PlotlyDict
 
 CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw rate")
 COLOURS = (palette.BLUE, palette.SKY, palette.PURPLE, palette.GREEN, palette.OLIVE, palette.ORANGE)
@@ -35,16 +35,9 @@ def evidence_figure(evidence: Evidence) -> Figure:
     names = [
         "\n+ ".join(title(cause, component) for cause, component in one.causes) for one in sets
     ]
-    gains = [max(one.gain, 0.0) for one in sets]
-    bars = {
-        "type": "bar",
-        "orientation": "h",
-        "y": names,
-        "x": rounded(gains, 4),
-        "marker": {"color": [palette.BLUE if one.is_chosen else palette.FAINT for one in sets]},
+    colours = [palette.BLUE if one.is_chosen else palette.FAINT for one in sets]
+    bars = _bars(names, [one.gain for one in sets], colours) | {
         "hovertemplate": "%{y}: %{x:.1f} nats",
-        "named": False,
-        "showlegend": False,
         "text": [f"{one.gain:.1f}" for one in sets],
         "textposition": "auto",
     }
@@ -62,13 +55,24 @@ def evidence_figure(evidence: Evidence) -> Figure:
     return Figure("Evidence of the best sets of causes", "nats", (bars,), layout, note, height)
 
 
+def _bars(names: list[str], gains: list[float], colours: list[str]) -> PlotlyDict:
+    """Gains as horizontal bars; a loss has none."""
+    return {
+        "type": "bar",
+        "orientation": "h",
+        "y": names,
+        "x": rounded([max(gain, 0.0) for gain in gains], 4),
+        "marker": {"color": colours},
+        "named": False,
+        "showlegend": False,
+    }
+
+
 def estimate_figure(evidence: Evidence) -> Figure:
     """Estimates of a set's parameters in typical sizes, with two standard deviations."""
     # In units of the size that matters, parameters of any unit share one axis.
     parameters = evidence.sizes[::-1]
-    names = [
-        f"{title(of.cause, of.component)}:\n{of.parameter.replace('_', ' ')}" for of in parameters
-    ]
+    names = [f"{title_of(of)}:\n{of.parameter.replace('_', ' ')}" for of in parameters]
     size = [of.size for of in parameters]
     wide = [2.0 * of.std for of in parameters]
     marks = {
@@ -123,7 +127,7 @@ def course_figures(found: CourseFound) -> tuple[Figure, ...]:
         curve = factor * (neutral + (full - neutral) * share)
         figures.append(
             Figure(
-                f"{title(finding.cause, finding.component)}: {one.parameter.replace('_', ' ')} over time",
+                f"{title_of(finding)}: {one.parameter.replace('_', ' ')} over time",
                 unit,
                 (line(f"as found: {course_of(finding)}", time, curve, palette.VERMILLION), marks),
                 {"xaxis": TIME},
@@ -137,27 +141,17 @@ def unmodelled_figure(unmodelled: Mapping[str, float]) -> Figure:
     """Gain of errors that no cause describes, in addition to the chosen causes."""
     # Above the threshold something unknown acts: these bars are coloured.
     names = [UNMODELLED_KINDS.get(kind, kind) for kind in unmodelled]
-    bars = {
-        "type": "bar",
-        "orientation": "h",
-        "y": names,
-        "x": rounded([max(gain, 0.0) for gain in unmodelled.values()], 4),
-        "marker": {
-            "color": [
-                palette.VERMILLION if gain > UNMODELLED else palette.FAINT
-                for gain in unmodelled.values()
-            ]
-        },
-        "showlegend": False,
-        "named": False,
+    gains = list(unmodelled.values())
+    colours = [palette.VERMILLION if gain > UNMODELLED else palette.FAINT for gain in gains]
+    bars = _bars(names, gains, colours) | {
         "hovertemplate": "%{x:.1f} nats",
-        "text": ["none" if g <= 0.0 else f"{g:.1f}" for g in unmodelled.values()],
+        "text": ["none" if gain <= 0.0 else f"{gain:.1f}" for gain in gains],
         "textposition": "outside",
     }
     axes = {
         "xaxis": {
             "title": {"text": "nats"},
-            "range": [0.0, 1.15 * max(UNMODELLED, *unmodelled.values())],
+            "range": [0.0, 1.15 * max(UNMODELLED, *gains)],
         },
         "yaxis": {"automargin": True},
     }

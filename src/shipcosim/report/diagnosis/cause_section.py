@@ -16,7 +16,7 @@ from shipcosim.report.diagnosis.cause_figures import (
 from shipcosim.report.diagnosis.form_section import FormSection, form_section
 from shipcosim.report.diagnosis.manoeuvre_steps import manoeuvre_steps
 from shipcosim.report.diagnosis.testability import not_testable_rows, visible_rows
-from shipcosim.report.diagnosis.words import course_of, estimate_rows, size_rows, title
+from shipcosim.report.diagnosis.words import course_of, estimate_rows, size_rows, title_of
 from shipcosim.report.theme.numbers import percent, plain
 from shipcosim.report.theme.views import Figure, Table
 
@@ -110,7 +110,7 @@ def cause_section(diagnosis: Diagnosis, evidence: Evidence) -> CauseSection:
 
 
 def _found(diagnosis: Diagnosis) -> str:
-    names = [title(f.cause, f.component) for f in diagnosis.findings if f.kind == "physics"]
+    names = [title_of(f) for f in diagnosis.physics]
     return ", ".join(names) or {
         "consistent": "none",
         "named": "none",
@@ -119,12 +119,10 @@ def _found(diagnosis: Diagnosis) -> str:
 
 
 def _estimates(diagnosis: Diagnosis) -> Table:
-    physics = [finding for finding in diagnosis.findings if finding.kind == "physics"]
+    physics = diagnosis.physics
     if any(finding.at_reference for finding in physics):
         rows = [
-            (title(f.cause, f.component), *row, percent(f.probability))
-            for f in physics
-            for row in size_rows(f)
+            (title_of(f), *row, percent(f.probability)) for f in physics for row in size_rows(f)
         ]
         return Table(
             rows,
@@ -132,7 +130,7 @@ def _estimates(diagnosis: Diagnosis) -> Table:
             tight=(1, 2, 3),
         )
     rows = [
-        (title(f.cause, f.component), name, value, f"± {std}", unit, percent(f.probability))
+        (title_of(f), name, value, f"± {std}", unit, percent(f.probability))
         for f in physics
         for name, value, std, unit in estimate_rows(f)
     ]
@@ -149,13 +147,13 @@ def _gains(evidence: Evidence) -> Table:
         healthy = (
             f"up to {plain(of.null_gain, 2)} nats" if known else "far above what healthy ships show"
         )
-        rows.append((title(of.cause, of.component), plain(of.gain), healthy))
+        rows.append((title_of(of), plain(of.gain), healthy))
     head = ("Cause", "Makes the log likelier by [nats]", "The same on healthy ships on this track")
     return Table(rows, head, tight=(1,))
 
 
 def _chances(candidates: Iterable[Candidate]) -> Table:
-    rows = tuple((title(c.cause, c.component), percent(c.probability, 1)) for c in candidates)
+    rows = tuple((title_of(c), percent(c.probability, 1)) for c in candidates)
     return Table(rows, head=("Cause", "Probability"))
 
 

@@ -44,8 +44,7 @@ class ExtensionSection:
 
 def extension_section(diagnosis: Diagnosis) -> ExtensionSection:
     """Section 4 of the page for the template."""
-    is_found = any(finding.kind == "physics" for finding in diagnosis.findings)
-    section = section_of(diagnosis.extension, diagnosis.changes, is_found)
+    section = section_of(diagnosis.extension, diagnosis.changes, bool(diagnosis.physics))
     if diagnosis.verdict == "form":
         section = replace(section, content="Those numbers of the other form that the FMUs have")
     return section

@@ -24,7 +24,7 @@ def key_figures(diagnosis: Diagnosis) -> tuple[KeyFigure, ...]:
     tuple of KeyFigure
     """
     # The least certain cause decides.
-    sure = [f.probability for f in diagnosis.findings if f.kind == "physics"]
+    sure = [finding.probability for finding in diagnosis.physics]
     chance = [KeyFigure(percent(min(sure)), "probability that the cause is right")] if sure else []
     return (*chance, *_errors(diagnosis))
 

@@ -4,8 +4,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from shipcosim.diagnose.craft.learned import LearnedCraft
 from shipcosim.diagnose.experiment.design import ExperimentDesign
-from shipcosim.diagnose.explanation.summary import LoadForm
-from shipcosim.diagnose.finding import Finding, ParameterEstimate
+from shipcosim.diagnose.explanation.summary import CauseGain, LoadForm, SizeEstimate
+from shipcosim.diagnose.finding import Candidate, Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, read_faults
 from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.result import Diagnosis
@@ -32,6 +32,11 @@ def title(cause: str, component: str | None = None) -> str:
     """
     text = cause.replace("_", " ")
     return text[:1].upper() + text[1:] + (f" of {component}" if component else "")
+
+
+def title_of(one: Finding | Candidate | SizeEstimate | CauseGain) -> str:
+    """Name of a cause at its place for readers."""
+    return title(one.cause, one.component)
 
 
 def told(finding: Finding, causes: Mapping[str, Cause] | None = None) -> str:
@@ -125,7 +130,7 @@ def outcome(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None = None) -> 
 def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[str, str]:
     # Faults of the log and causes in the physics are told apart.
     data = [told(f) for f in diagnosis.findings if f.kind == "data" and not f.alternatives]
-    physics = [told(f, causes) for f in diagnosis.findings if f.kind == "physics"]
+    physics = [told(f, causes) for f in diagnosis.physics]
     log = f" The log itself is faulty: {listed(data)}." if data else ""
     # An unknown cause comes first: it puts everything else in doubt.
     if diagnosis.verdict == "unknown":
@@ -138,7 +143,7 @@ def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[
         )
     # Next, causes that this log cannot tell apart.
     if diagnosis.verdict == "ambiguous":
-        names = [title(c.cause, c.component).lower() for c in diagnosis.indistinguishable]
+        names = [title_of(c).lower() for c in diagnosis.indistinguishable]
         besides = f" Certain is: {listed(physics)}." if physics else ""
         return (
             "AMBIGUOUS",
@@ -227,7 +232,7 @@ def _unknown(diagnosis: Diagnosis, physics: Sequence[str]) -> str:
     said = f" Certain is: {listed(physics)}." if physics else ""
     likely = [one for one in diagnosis.candidates if one.probability >= LIKELY]
     if likely:
-        names = [title(one.cause, one.component).lower() for one in likely]
+        names = [title_of(one).lower() for one in likely]
         said += f" Of the known ones {listed(names)} explain{'s' * (len(names) == 1)} most."
     if not diagnosis.discrepancies:
         return f"The simulation is wrong by more than noise, and none of the known causes explains it.{said}"
@@ -298,9 +303,8 @@ def next_steps(
             f"Correct the logging where it is wrong ({where}); this diagnosis used a repaired copy."
         )
     # Steps that the causes' files recommend.
-    physics = [f for f in diagnosis.findings if f.kind == "physics"]
     causes = read_catalogue() if causes is None else causes
-    steps += cause_steps(physics, causes)
+    steps += cause_steps(diagnosis.physics, causes)
     # A manoeuvre that separates causes, better logs, or a look at the missing force.
     if diagnosis.verdict == "ambiguous" and not misread:
         steps.append(manoeuvre_step(diagnosis.prescription))
@@ -386,7 +390,7 @@ def size_rows(finding: Finding) -> list[tuple[str, str]]:
 def finding_rows(findings: Iterable[Finding]) -> Iterator[tuple[str, ...]]:
     """Rows of texts: cause, certainty, and each parameter's size; for a fault, its place."""
     for finding in findings:
-        name = title(finding.cause, finding.component)
+        name = title_of(finding)
         sure = f"{100 * finding.probability:.0f} %"
         # Cause and certainty only in the first row of a finding.
         rows = size_rows(finding) if finding.kind == "physics" else []

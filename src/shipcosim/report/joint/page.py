@@ -7,7 +7,7 @@ from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 from shipcosim.report.diagnosis.extension_section import ExtensionSection, section_of
 from shipcosim.report.diagnosis.testability import visible_rows
 from shipcosim.report.diagnosis.track_figures import track_figure
-from shipcosim.report.diagnosis.words import title
+from shipcosim.report.diagnosis.words import title, title_of
 from shipcosim.report.joint.words import (
     cause_rows,
     discrepancy_rows,
@@ -94,19 +94,12 @@ def render(found: JointDiagnosis) -> str:
 
 
 def _page(found: JointDiagnosis) -> JointPage:
-    of_ship = [
-        one
-        for one in found.findings
-        if one.what.kind == "physics" and one.what.component not in found.logs
-    ]
-    extension = section_of(found.extension, found.changes, bool(of_ship))
+    of_ship = any(one.component not in found.logs for one in found.of_kind("physics"))
+    extension = section_of(found.extension, found.changes, of_ship)
     tracks = _track_figures(found.errors)
     errors = _error_figures(found.errors)
     steps = next_steps(found, extension.system if extension.state == "extended" else None)
-    alike = tuple(
-        (title(one.cause, one.component), percent(one.probability, 1))
-        for one in found.indistinguishable
-    )
+    alike = tuple((title_of(one), percent(one.probability, 1)) for one in found.indistinguishable)
     silent = tuple(
         (title(name), found.causes[name].sentence if name in found.causes else "")
         for name in found.not_testable
@@ -167,7 +160,7 @@ def _facts(found: JointDiagnosis) -> tuple[Fact, ...]:
 
 def _found(found: JointDiagnosis) -> list[str]:
     """What each section found, in a few words."""
-    causes = [title(one.what.cause, one.what.component) for one in found.findings]
+    causes = [title_of(one.what) for one in found.findings]
     worst = max((one.position["before"][-1] for one in found.errors.values()), default=None)
     agree = sum(one.verdict == "consistent" for one in found.logs.values())
     return [
@@ -183,7 +176,7 @@ def _found(found: JointDiagnosis) -> list[str]:
 
 def key_figures(found: JointDiagnosis) -> tuple[KeyFigure, ...]:
     """The numbers that matter most: how sure, and the errors of the worst and of all logs."""
-    sure = [one.what.probability for one in found.findings if one.what.kind == "physics"]
+    sure = [one.probability for one in found.of_kind("physics")]
     figures = (
         [KeyFigure(percent(min(sure)), "probability that the causes are right")] if sure else []
     )

@@ -16,6 +16,7 @@ from shipcosim.report.diagnosis.words import (
     say_nothing,
     size_rows,
     title,
+    title_of,
     told,
 )
 from shipcosim.report.theme.numbers import metres, percent, plain
@@ -46,9 +47,7 @@ def _sentence(found: JointDiagnosis, physics: list[str], has_faults: bool) -> st
     if found.verdict == "ambiguous":
         if not found.indistinguishable:
             return f"{logs} say nothing of the ship: their channels may be misread. Each log's own line says how."
-        names = listed(
-            [title(one.cause, one.component).lower() for one in found.indistinguishable], "or"
-        )
+        names = listed([title_of(one).lower() for one in found.indistinguishable], "or")
         certain = f" Certain is: {listed(physics)}." if physics else ""
         return f"Something is wrong, and {logs} cannot tell which: {names}.{certain}"
     if physics:
@@ -183,9 +182,7 @@ def log_rows(found: JointDiagnosis) -> list[tuple[str, ...]]:
     rows = []
     for name, one in found.logs.items():
         faults = [fault.sentence or told(fault) for fault in found.own_faults(name)]
-        causes = [
-            told(finding, found.causes) for finding in one.findings if finding.kind == "physics"
-        ]
+        causes = [told(finding, found.causes) for finding in one.physics]
         first = one.discrepancies[0].what if one.discrepancies else "none"
         base = one.baseline
         error = (
@@ -216,7 +213,7 @@ def next_steps(found: JointDiagnosis, extended: str | None = None) -> list[str]:
         Path of the extended system, where something in it is other than it was.
     """
     steps = []
-    faults = [one.what for one in found.findings if one.what.kind == "data"]
+    faults = found.of_kind("data")
     if faults:
         what = listed(list(dict.fromkeys(one.note or told(one) for one in faults)))
         steps.append(f"Correct the channel file or the logging, for all logs at once: {what}.")
@@ -225,7 +222,7 @@ def next_steps(found: JointDiagnosis, extended: str | None = None) -> list[str]:
         steps.append(
             f"Look at the faults of single logs: {', '.join(own)}. This diagnosis used repaired copies."
         )
-    physics = [one.what for one in found.findings if one.what.kind == "physics"]
+    physics = found.of_kind("physics")
     steps += dict.fromkeys(cause_steps(physics, found.causes))
     if found.verdict == "ambiguous" and found.indistinguishable:
         steps.append(manoeuvre_step(found.prescription))

@@ -16,6 +16,7 @@ from shipcosim.report.diagnosis.words import (
     next_steps,
     outcome,
     title,
+    title_of,
 )
 from shipcosim.report.joint import words as joint
 from shipcosim.report.notebook.card import Block, Card
@@ -35,10 +36,7 @@ def diagnosis_card(found: Diagnosis, name: str) -> Card:
     name : str
         Its title.
     """
-    alike = tuple(
-        (title(c.cause, c.component), f"{100 * c.probability:.0f} %")
-        for c in found.indistinguishable
-    )
+    alike = tuple((title_of(c), f"{100 * c.probability:.0f} %") for c in found.indistinguishable)
     silent = tuple(title(cause) for cause in found.not_testable)
     steps = next_steps(found, None, found.causes)
     if found.extended is not None:

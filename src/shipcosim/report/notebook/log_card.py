@@ -8,7 +8,7 @@ import numpy as np
 from xarray import Dataset
 
 from shipcosim.diagnose.finding import Finding
-from shipcosim.report.diagnosis.words import title, where
+from shipcosim.report.diagnosis.words import title_of, where
 from shipcosim.report.notebook.card import Block, Card
 from shipcosim.report.theme.numbers import plain
 from shipcosim.report.theme.views import Fact, Outcome, Table
@@ -39,7 +39,7 @@ def log_card(
     span = f"{len(time)} rows, {plain(float(np.nanmin(time)))} to {plain(float(np.nanmax(time)))} s"
     steps = np.diff(time[np.isfinite(time)])
     facts = (Fact("Rows", span), Fact("Usual step", f"{plain(float(np.median(steps)))} s"))
-    found = tuple((title(one.cause, one.component), where(one), one.sentence) for one in faults)
+    found = tuple((title_of(one), where(one), one.sentence) for one in faults)
     return Card(
         title=name,
         facts=facts,

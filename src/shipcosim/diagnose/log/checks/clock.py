@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shipcosim.diagnose.finding import Finding, ParameterEstimate
+from shipcosim.diagnose.finding import Finding, ParameterEstimate, log_fault
 from shipcosim.diagnose.log.checks.kinematics import (
     Filter,
     Motion,
@@ -34,7 +34,7 @@ from shipcosim.diagnose.log.thresholds import (
     SCALE_SLAB,
     SHORTEST_BLOCK,
 )
-from shipcosim.diagnose.numerics import Bands
+from shipcosim.diagnose.numerics import Bands, running_sums
 
 _AT_ONCE = (
     8  # columns that are whitened together, over the rows in which any of them is not nothing
@@ -221,7 +221,7 @@ def sums_of_runs(match: np.ndarray, gram: np.ndarray) -> tuple[np.ndarray, np.nd
     grams = np.pad(np.cumsum(np.cumsum(gram, axis=0), axis=1), ((1, 0), (1, 0)))
     own = np.diag(grams)
     return (
-        differences(np.r_[0.0, np.cumsum(match)]),
+        differences(running_sums(match)),
         own[None, :] + own[:, None] - grams - grams.T,
     )
 
@@ -330,7 +330,5 @@ def _findings(segments):
         std = float(np.hypot(weight.sum() ** -0.5, RATE_UNSURE * abs(rate - 1.0)))
         rates = {"rate": ParameterEstimate(rate, std, "1")}
         note = "positions and headings go at another rate than speeds and yaw rates say"
-        found.append(
-            Finding("clock", None, "data", probability, rates, spans, ("time",), note=note)
-        )
+        found.append(log_fault("clock", ("time",), note, spans, probability, rates))
     return found

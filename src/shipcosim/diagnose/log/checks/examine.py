@@ -17,7 +17,7 @@ from shipcosim.diagnose.log.checks.yaw_rate import silent_rate
 from shipcosim.diagnose.log.mislabels import mislabel_in, undone
 from shipcosim.diagnose.log.readings.reading import explained, is_as_labelled, misread
 from shipcosim.diagnose.log.repair import rate_of, read_anew, without_findings
-from shipcosim.diagnose.log.rows import inside, usable_rows
+from shipcosim.diagnose.log.rows import arrays_of, inside, usable_rows
 from shipcosim.diagnose.log.thresholds import SEGMENT_COST
 
 
@@ -129,12 +129,8 @@ def _is_the_clock(label, clock, time):
 
 def _arrays(log):
     """The log as a dict of arrays, rows in order of time."""
-    rows = usable_rows(log["time"].values)
-    table = {
-        str(name): np.array(variable.values[rows], float)
-        for name, variable in log.data_vars.items()
-    }
-    return {"time": log["time"].values[rows], **table}
+    ordered = log.isel(time=usable_rows(log["time"].values))
+    return {role: np.array(values, float) for role, values in arrays_of(ordered).items()}
 
 
 def _with_even_heading(table):

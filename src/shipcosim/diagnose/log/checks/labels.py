@@ -42,6 +42,7 @@ from shipcosim.diagnose.log.thresholds import (
     SEGMENT_COST,
     SHORTEST_LABEL,
 )
+from shipcosim.diagnose.numerics import running_sums
 
 
 @dataclass(frozen=True)
@@ -140,7 +141,7 @@ def best_segment(time: np.ndarray, gains: np.ndarray) -> tuple[float, Segment | 
         Of each row. [s, nats]
     """
     # Maximum subarray: the largest rise of the cumulated gains, by the running minimum.
-    total = np.r_[0.0, np.cumsum(gains)]
+    total = running_sums(gains)
     lowest = np.minimum.accumulate(total)
     last = int(np.argmax(total - lowest))
     first = int(np.argmin(total[: last + 1]))

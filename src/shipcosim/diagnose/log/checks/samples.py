@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shipcosim.angles import wrap_series
-from shipcosim.diagnose.finding import Finding
+from shipcosim.diagnose.finding import Finding, log_fault
 from shipcosim.diagnose.log.roles import NAVIGATION
 from shipcosim.diagnose.log.thresholds import (
     CHANGES,
@@ -23,7 +23,7 @@ from shipcosim.diagnose.log.thresholds import (
     RUN_CHANCE,
     SHORTEST_GAP,
 )
-from shipcosim.diagnose.numerics import finite
+from shipcosim.diagnose.numerics import finite, runs
 
 LIFELESS = "values never change, while others say that they should: not used"
 LEAPING = "the ship leaps many times faster than she goes"
@@ -84,11 +84,12 @@ def lifeless(log: dict) -> list[Finding]:
     """
     constant = [role for role in NAVIGATION if role in log and _is_constant(log[role])]
     # Motion that other channels show: change of position, turning, and speed.
-    moved = any(role in log and _changes(log[role]) for role in ("north", "east"))
+    alive = {role for role in NAVIGATION if role in log and _changes(log[role])}
+    moved = bool(alive & {"north", "east"})
     turned = "heading" in log and _changes(
         np.degrees(np.unwrap(np.radians(finite(log["heading"]))))
     )
-    sailed = any(role in log and _changes(log[role]) for role in ("surge", "sway"))
+    sailed = bool(alive & {"surge", "sway"})
     # A channel should change if the one that is its integral or rate does.
     should = {
         "surge": moved,
@@ -96,11 +97,11 @@ def lifeless(log: dict) -> list[Finding]:
         "yaw_rate": turned,
         "north": sailed,
         "east": sailed,
+        "heading": "yaw_rate" in alive,
     }
-    should["heading"] = "yaw_rate" in log and _changes(log["yaw_rate"])
     roles = tuple(role for role in constant if should[role])
     whole = ((float(log["time"][0]), float(log["time"][-1])),)
-    return [Finding("gap", None, "data", 1.0, {}, whole, roles, note=LIFELESS)] if roles else []
+    return [log_fault("gap", roles, LIFELESS, whole)] if roles else []
 
 
 def _is_constant(values):
@@ -160,7 +161,7 @@ def _missing(log):
 def _finding(time, run):
     step = np.median(np.diff(time)) if run.kind == NO_ROWS else 0.0
     segment = (float(time[run.first] + step), float(time[run.last] - step))
-    return Finding("gap", None, "data", 1.0, {}, (segment,), run.channels, note=run.kind)
+    return log_fault("gap", run.channels, run.kind, (segment,))
 
 
 def _joined(found):
@@ -171,7 +172,7 @@ def _joined(found):
     joined = []
     for (channels, note), group in groups.items():
         segments = tuple(sorted(finding.segments[0] for finding in group))
-        joined.append(Finding("gap", None, "data", 1.0, {}, segments, channels, note=note))
+        joined.append(log_fault("gap", channels, note, segments))
     return joined
 
 
@@ -252,13 +253,6 @@ def quantum(values: np.ndarray) -> float:
     steps = np.diff(levels)
     steps = steps[steps > 1e-9 * (np.abs(levels).max(initial=0.0) + 1e-300)]
     return float(np.quantile(steps, 0.01)) if len(steps) and len(steps) < 0.8 * len(values) else 0.0
-
-
-def runs(flags: np.ndarray) -> np.ndarray:
-    """First and one past the last index of each run of true values: (k, 2)."""
-    # Edges of runs are where the flags change, with 0 before and after.
-    edges = np.flatnonzero(np.diff(np.r_[0, np.asarray(flags, np.int8), 0]))
-    return edges.reshape(-1, 2)
 
 
 def _long_runs(flags, least):
@@ -343,11 +337,7 @@ def wraps(log: dict) -> list[Finding]:
     bad |= _round_south(log, faster)
     segments = tuple((float(time[first]), float(time[last - 1])) for first, last in runs(bad))
     note = "samples lie on the long way round between both sides of north"
-    return (
-        [Finding("heading_wrap", None, "data", 1.0, {}, segments, ("heading",), note=note)]
-        if segments
-        else []
-    )
+    return [log_fault("heading_wrap", ("heading",), note, segments)] if segments else []
 
 
 def _long_way(time, heading, a, b, tolerance, faster):

@@ -66,7 +66,7 @@ def mislabelled_wind(log: dict) -> list[Finding]:
     velocity = (surge + 1j * sway) * np.exp(1j * np.radians(heading))
     angles = {BOW: wind_from + heading, MIRRORED: heading - wind_from, NORTH: wind_from}
     winds = {name: _axes(speed * np.exp(1j * np.radians(angle))) for name, angle in angles.items()}
-    motion = _still(time, _axes(velocity))
+    motion = _Wind(time, _axes(velocity), _axes(velocity), {}, after_gaps(time, 4.5))
     # The wind sensor averages, so compare with the velocity averaged over the same time.
     slow = motion.slow(motion.velocity)
     # What is left is the wind over ground: a random walk
@@ -82,10 +82,6 @@ def mislabelled_wind(log: dict) -> list[Finding]:
 
 def _axes(vector):
     return np.column_stack([vector.real, vector.imag])
-
-
-def _still(time, velocity):
-    return _Wind(time, velocity, velocity, {}, after_gaps(time, 4.5))
 
 
 class _Wind(Motion):

@@ -9,6 +9,7 @@ import numpy as np
 
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.checks.kinematics import complete_rows
+from shipcosim.diagnose.log.checks.wind import ROLES
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
 from shipcosim.diagnose.log.thresholds import (
     BETWEEN_JUMPS,
@@ -17,8 +18,6 @@ from shipcosim.diagnose.log.thresholds import (
     LARGEST_JUMPS,
     STEADINESS_LAG,
 )
-
-ROLES = ("wind_speed", "wind_from", "heading", "surge", "sway")
 
 
 def jumping_wind(log: dict) -> list[Finding]:

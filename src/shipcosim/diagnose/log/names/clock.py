@@ -11,7 +11,7 @@ from shipcosim.diagnose.log.files.times import epoch_unit, seconds_of
 from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, Guess
 from shipcosim.diagnose.log.names.vocabulary import words_of
 from shipcosim.diagnose.log.values import CLOCK_NUMBER
-from shipcosim.diagnose.numerics import finite
+from shipcosim.diagnose.numerics import finite, usual_rise
 from shipcosim.errors import ShipcosimError
 
 _STEPS = (0.002, 30.0)  # s between rows of a log that a unit is chosen by. Assumed.
@@ -103,33 +103,20 @@ def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
         "gps",
         "day",
     }:
-        unit = {"unit": CLOCK_NUMBER}
         why = "123519 is taken for 12:35:19"
-        return replace(
-            guess,
-            channel=guess.channel.model_copy(update=unit),
-            rank=GUESS,
-            why=why,
-            unit=CLOCK_NUMBER,
-        )
+        unit = CLOCK_NUMBER
+        return guess.read_as({"unit": unit}, rank=GUESS, why=why, unit=unit)
     if _is_date(guess.column):
         return None
     # Without a stated unit, choose one in which the rows are a usual step apart.
-    steps = np.diff(known)
-    step = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 0.0
+    step = usual_rise(known, 0.0)
     if step == 0.0 or _STEPS[0] <= step <= _STEPS[1]:
         return guess
     unit = next((u for u, size in _UNITS.items() if _STEPS[0] <= step * size <= _STEPS[1]), None)
     if unit is None:
         return guess
     why = f"no unit is stated: rows are {step * _UNITS[unit]:g} s apart in {unit}, and {step:g} s in s"
-    return replace(
-        guess,
-        channel=guess.channel.model_copy(update={"unit": unit}),
-        rank=GUESS,
-        why=why,
-        unit=unit,
-    )
+    return guess.read_as({"unit": unit}, rank=GUESS, why=why, unit=unit)
 
 
 def _is_clock_number(known):
@@ -172,9 +159,8 @@ def _stamps(
     is_clock = ":" in str(told[0]) and len(str(told[0]).split(":")[0].strip()) <= 2
     dates = [other for other in log.values if _is_date(other) and other != name]
     if is_clock and dates:
-        channel = guess.channel.model_copy(update={"date": dates[0]})
-        return replace(guess, channel=channel, rank=min(guess.rank, SURE), why="")
+        guess = guess.read_as({"date": dates[0]})
     # A constant date without a clock time is no time.
-    if ":" not in str(told[0]) and len(set(map(str, sample))) < 2:
+    elif ":" not in str(told[0]) and len(set(map(str, sample))) < 2:
         return None
     return replace(guess, rank=min(guess.rank, SURE), why="")

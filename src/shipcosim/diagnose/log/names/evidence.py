@@ -4,6 +4,8 @@ from typing import Any
 
 import numpy as np
 
+from shipcosim.diagnose.numerics import running_sums
+
 _SPEEDS = {"m/s": 1.0, "kn": 1852.0 / 3600.0, "km/h": 1.0 / 3.6}
 _RATES = {"deg/s": 1.0, "rad/s": 180.0 / np.pi, "deg/min": 1.0 / 60.0}
 _FAR = 0.15  # by which a ratio may be off a unit's, as a logarithm: units of speed differ by 1.85
@@ -30,7 +32,7 @@ def unit_of_speed(
         In the unknown unit.
     """
     # Rows in which all channels have values; the distance made in k rows is the reference.
-    rows = np.isfinite(time) & np.isfinite(north) & np.isfinite(east) & np.isfinite(speed)
+    rows = _all_known(time, north, east, speed)
     t = time[rows]
     way = (north + 1j * east)[rows]
     return _unit_by(t, speed[rows], lambda k: np.abs(way[k:] - way[:-k]), _SPEEDS)
@@ -45,12 +47,17 @@ def unit_of_rate(time: np.ndarray, heading: np.ndarray, rate: np.ndarray) -> str
     >>> unit_of_rate(t, 30.0 * np.sin(t / 20), np.radians(1.5 * np.cos(t / 20)))
     'rad/s'
     """
-    rows = np.isfinite(time) & np.isfinite(heading) & np.isfinite(rate)
+    rows = _all_known(time, heading, rate)
     if rows.sum() < 4 * _SPANS[0]:
         return None
     # Unwrapped heading: its change over k rows is the reference.
     turned = np.unwrap(heading[rows], period=360.0)
     return _unit_by(time[rows], rate[rows], lambda k: turned[k:] - turned[:-k], _RATES)
+
+
+def _all_known(*series):
+    """Rows in which all of some series have a value."""
+    return np.isfinite(series).all(axis=0)
 
 
 def _unit_by(time, rate, change, units):
@@ -59,7 +66,7 @@ def _unit_by(time, rate, change, units):
     if len(time) < 4 * _SPANS[0] or not (steps > 0.0).all():
         return None
     # Integral of the reported rate by the trapezium rule.
-    told = np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * steps)))
+    told = running_sums(0.5 * (rate[1:] + rate[:-1]) * steps)
     best = 0.0
     ratio = None
     # Compare changes over several spans: short ones drown in noise,
@@ -121,7 +128,7 @@ def frame_of_angle(
     for name, heading in readings.items():
         # Direction in which the craft should go under this reading.
         course = np.radians(heading) + (0.0 if drift is None else drift)
-        rows = np.isfinite(time) & np.isfinite(north) & np.isfinite(east) & np.isfinite(course)
+        rows = _all_known(time, north, east, course)
         way = (north + 1j * east)[rows]
         bow = np.exp(1j * course[rows])
         best = 0.0 + 0.0j

@@ -1,7 +1,10 @@
 """One column by itself: the roles that its name and its unit allow, and how sure that is."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -56,6 +59,10 @@ class Guess:
     kind: str = ""
     unit: str = ""
     said: tuple[str, ...] = field(default=())
+
+    def read_as(self, settings: Mapping[str, Any], **more: Any) -> Guess:
+        """The same column read by other settings of its channel, and what else changes of the guess."""
+        return replace(self, channel=self.channel.model_copy(update=settings), **more)
 
     @property
     def is_guess(self) -> bool:

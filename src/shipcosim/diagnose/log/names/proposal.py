@@ -19,7 +19,7 @@ from shipcosim.diagnose.log.names.guesses import (
     guesses_of,
 )
 from shipcosim.diagnose.log.names.units import unit_for
-from shipcosim.diagnose.log.names.unstated_units import settled
+from shipcosim.diagnose.log.names.unstated_units import are_axes_open, exchange_axes, settled
 from shipcosim.diagnose.log.names.vocabulary import words_of
 from shipcosim.diagnose.numerics import finite
 
@@ -199,27 +199,20 @@ def _by_convention_of_ros(chosen, log):
         return
 
     def turned(role, why, **update):
-        guess = chosen[role]
-        chosen[role] = replace(
-            guess, channel=guess.channel.model_copy(update=update), why=f"{why} (REP 103)"
-        )
+        chosen[role] = chosen[role].read_as(update, why=f"{why} (REP 103)")
 
     # Only guesses follow the convention; what is sure stays as it is.
     is_open = {role for role, guess in chosen.items() if guess.rank == GUESS}
-    if {"north", "east"} <= is_open and all(
-        chosen[role].why.startswith("x north") for role in ("north", "east")
-    ):
-        north = chosen["north"]
-        east = chosen["east"]
-        chosen["north"] = replace(north, column=east.column, channel=east.channel)
-        chosen["east"] = replace(east, column=north.column, channel=north.channel)
+    if {"north", "east"} <= is_open and are_axes_open(chosen):
+        exchange_axes(chosen)
         turned("north", "y is assumed to be north")
         turned("east", "x is assumed to be east")
     if "heading" in is_open and chosen["heading"].channel.quaternion:
         turned("heading", "of a quaternion, assumed from ENU", frame="ENU")
     elif "heading" in is_open and chosen["heading"].why.startswith("yaw"):
-        in_degrees = chosen["heading"].unit and unit_for(chosen["heading"].unit, "deg") == "deg"
-        unit = {} if chosen["heading"].unit else {"unit": "rad"}
+        stated = chosen["heading"].unit
+        in_degrees = stated and unit_for(stated, "deg") == "deg"
+        unit = {} if stated else {"unit": "rad"}
         offset = 90.0 if in_degrees else np.pi / 2.0
         turned("heading", "assumed anticlockwise from east", sign=-1, offset=offset, **unit)
     for role in is_open & {"sway", "yaw_rate"}:
@@ -237,9 +230,7 @@ def _with_hemispheres(chosen, log, left):
         guess = chosen[role]
         # Whole degrees beside a column of minutes are only a part of a position.
         minutes = [
-            n
-            for n in order
-            if {role, "min"} <= set(words_of(n)) or {role, "minutes"} <= set(words_of(n))
+            n for n in order if role in words_of(n) and set(words_of(n)) & {"min", "minutes"}
         ]
         if minutes and guess.rank != EXACT and guess.column not in minutes:
             why = f"its minutes may stand in '{minutes[0]}'"
@@ -252,8 +243,7 @@ def _with_hemispheres(chosen, log, left):
         ]
         for name in (*after, *named):
             if hemisphere_signs(log.values[name], role) is not None:
-                channel = guess.channel.model_copy(update={"hemisphere": name})
-                chosen[role] = replace(guess, channel=channel)
+                chosen[role] = guess.read_as({"hemisphere": name})
                 left = [one for one in left if one.column != name]
                 break
     return left
@@ -271,6 +261,7 @@ def _of_one_kind(chosen, log):
     def drop(roles, why):
         for role in roles:
             if role in chosen:
+                why = why.replace("_", " ")
                 left.append(replace(chosen.pop(role), role="", channel=UNUSED, why=why))
 
     # Pairs need both of their roles.
@@ -278,31 +269,20 @@ def _of_one_kind(chosen, log):
         there = [role for role in pair if role in chosen]
         if len(there) == 1:
             other = next(role for role in pair if role not in there)
-            drop(
-                there,
-                f"it is {there[0].replace('_', ' ')}, and no column is {other.replace('_', ' ')}",
-            )
+            drop(there, f"it is {there[0]}, and no column is {other}")
     # Of two positions keep the surer one.
     whole = [pair for pair in _POSITIONS if pair[0] in chosen]
     if len(whole) == 2:
         ranks = [max(chosen[role].rank for role in pair) for pair in whole]
-        worse = whole[1] if ranks[0] <= ranks[1] or ranks[0] < GUESS else whole[0]
-        best = whole[0] if worse is whole[1] else whole[1]
-        drop(worse, f"{best[0]} and {best[1]} are used instead")
+        best, worse = whole if ranks[0] <= ranks[1] or ranks[0] < GUESS else reversed(whole)
+        drop(worse, f"{' and '.join(best)} are used instead")
     # Of several velocities keep one that changes, then the surer one.
     ways = [
         pair for pair in (("surge", "sway"), *_PAIRS[:1:-1]) if all(role in chosen for role in pair)
     ]
     dead = {pair: all(_never_changes(chosen[role], log) for role in pair) for pair in ways}
     ways.sort(key=lambda pair: (dead[pair], max(chosen[role].rank for role in pair) == GUESS))
-    for pair in ways[1:]:
-        drop(
-            pair,
-            f"{ways[0][0].replace('_', ' ')} and {ways[0][1].replace('_', ' ')} are used instead",
-        )
-    if ways and ways[0] != ("surge", "sway"):
-        drop(
-            ("surge", "sway"),
-            f"{ways[0][0].replace('_', ' ')} and {ways[0][1].replace('_', ' ')} are used instead",
-        )
+    for pair in [*ways[1:], ("surge", "sway")] if ways else ():
+        if pair != ways[0]:
+            drop(pair, f"{' and '.join(ways[0])} are used instead")
     return left

@@ -1,5 +1,6 @@
 """Units and frames that nobody stated: by what the channels say of each other, or left as guesses."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -92,17 +93,14 @@ def _finite(values):
 
 def _guess(chosen, role, unit, why):
     guess = chosen[role]
-    channel = guess.channel.model_copy(update={"unit": unit})
-    chosen[role] = replace(
-        guess, channel=channel, rank=GUESS, why="; ".join(filter(None, (guess.why, why)))
-    )
+    why = "; ".join(filter(None, (guess.why, why)))
+    chosen[role] = guess.read_as({"unit": unit}, rank=GUESS, why=why)
 
 
 def _told(chosen, role, why, **update):
     """Settled by the log itself."""
     guess = chosen[role]
-    channel = guess.channel.model_copy(update=update)
-    chosen[role] = replace(guess, channel=channel, rank=SURE, why="", said=(*guess.said, why))
+    chosen[role] = guess.read_as(update, rank=SURE, why="", said=(*guess.said, why))
 
 
 def _values(chosen, role, log, form) -> Any:
@@ -199,14 +197,25 @@ def _settle_heading(chosen, log, form, motion):
     _told(chosen, "heading", said, **update)
 
 
+def are_axes_open(chosen: Mapping[str, Guess]) -> bool:
+    """Whether x and y of a log are read as north and east, and may be the other way round."""
+    pair = [chosen[role] for role in ("north", "east") if role in chosen]
+    return len(pair) == 2 and all(guess.why.startswith("x north") for guess in pair)
+
+
+def exchange_axes(chosen: dict[str, Guess]) -> None:
+    """Exchange the columns of north and east, in place."""
+    north = chosen["north"]
+    east = chosen["east"]
+    chosen["north"] = replace(north, column=east.column, channel=east.channel)
+    chosen["east"] = replace(east, column=north.column, channel=north.channel)
+
+
 def _settle_axes(chosen, log, form, motion):
     """Whether x is north and y east, or the other way round, by the heading."""
-    pair = [chosen.get(role) for role in ("north", "east")]
-    if motion is None or motion[1] is None or "heading" not in chosen or not all(pair):
+    if motion is None or motion[1] is None or "heading" not in chosen:
         return
-    if not all(guess.why.startswith("x north") for guess in pair):
-        return
-    if chosen["heading"].rank == GUESS:
+    if not are_axes_open(chosen) or chosen["heading"].rank == GUESS:
         return
     # The heading tells which axis is north: with exchanged axes it looks counted from east.
     heading = _values(chosen, "heading", log, form)
@@ -217,9 +226,7 @@ def _settle_axes(chosen, log, form, motion):
         for role in ("north", "east"):
             _told(chosen, role, "x is north and y east, as the heading says")
     elif found == "ENU":
-        north, east = pair
-        chosen["north"] = replace(north, column=east.column, channel=east.channel)
-        chosen["east"] = replace(east, column=north.column, channel=north.channel)
+        exchange_axes(chosen)
         for role in ("north", "east"):
             _told(chosen, role, "x is east and y north, as the heading says")
 
@@ -241,14 +248,11 @@ def _settle_speed(chosen, role, log, form, motion):
             )
             speed = np.hypot(raw, beside) if beside.dtype.kind == "f" else np.abs(raw)
         unit = unit_of_speed(motion[0], motion[1], motion[2], speed)
-    if unit == "m/s":
-        chosen[role] = replace(chosen[role], said=(*chosen[role].said, "in m/s, as positions say"))
-    elif unit is not None:
+    if unit is not None:
         guess = chosen[role]
-        channel = guess.channel.model_copy(update={"unit": unit})
-        chosen[role] = replace(
-            guess, channel=channel, said=(*guess.said, f"in {unit}, as positions say")
-        )
+        # The role's own unit needs no entry in the channel.
+        settings = {} if unit == "m/s" else {"unit": unit}
+        chosen[role] = guess.read_as(settings, said=(*guess.said, f"in {unit}, as positions say"))
     elif role in _IN_KNOTS:
         _guess(chosen, role, "kn", "no unit is stated: kn or m/s")
 
@@ -276,7 +280,5 @@ def _settle_rate(chosen, log, form, motion):
         usual = "deg/min" if is_rot else "rad/s" if is_ros else ROLES["yaw_rate"].unit
         _guess(chosen, "yaw_rate", usual, "no unit is stated")
         return
-    channel = guess.channel.model_copy(update={"unit": unit})
-    chosen["yaw_rate"] = replace(
-        guess, channel=channel, said=(*guess.said, f"in {unit}, as the heading says")
-    )
+    said = (*guess.said, f"in {unit}, as the heading says")
+    chosen["yaw_rate"] = guess.read_as({"unit": unit}, said=said)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from shipcosim.diagnose.finding import Finding, ParameterEstimate
+from shipcosim.diagnose.finding import Finding, ParameterEstimate, log_fault
 from shipcosim.diagnose.log.mislabels import (
     POSITION,
     POSITION_IN_DEGREES,
@@ -282,7 +282,7 @@ def _named(change, probability, readings, angle):
 def _clock(change, readings):
     rate, std = next(one.rate for one in readings if change in one.changes)
     rates = {"rate": ParameterEstimate(float(rate), float(std), "1")}
-    return Finding("clock", None, "data", 1.0, rates, (), ("time",), note=change.sentence)
+    return log_fault("clock", ("time",), change.sentence, parameters=rates)
 
 
 def _left_open(rests, rates):

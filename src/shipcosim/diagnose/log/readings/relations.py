@@ -16,7 +16,7 @@ from shipcosim.diagnose.log.thresholds import (
     LARGEST_TURN,
     TURNED_TOO_FAR,
 )
-from shipcosim.diagnose.numerics import spline_integral
+from shipcosim.diagnose.numerics import running_sums, spline_integral
 
 FORMS = {
     ("as is", "body"): lambda w, e: w * e,
@@ -109,7 +109,7 @@ def rate_relations(time: np.ndarray, headings: dict, rate: np.ndarray) -> dict:
             # follows them, unwrap the difference to the prediction instead.
             if not _can_be_followed(np.diff(told)) and np.quantile(np.abs(beside), 0.9) < ALONGSIDE:
                 change = np.diff(told) + beside
-            pairs[name] = np.r_[0.0, np.cumsum(change)].astype(complex), told.astype(complex)
+            pairs[name] = running_sums(change).astype(complex), told.astype(complex)
     return fitted(time[rows], pairs, 1.0, axes=1)
 
 
