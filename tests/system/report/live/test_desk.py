@@ -128,7 +128,7 @@ def test_alarms_come_at_their_time_and_are_acknowledged_once(craft):
         "desk.live.reach(12); desk.act('override', 'gear', 3); desk.live.reach(15); scene.grown(15); scene.go(15)"
     )
     craft.wait("return document.querySelectorAll('#alarm-list li').length === 1")
-    assert "shaft_faulty: the shaft <i>slips</i>" in craft.text("#alarm-list")
+    assert "shaft faulty (the shaft <i>slips</i>)" in craft.text("#alarm-list")
     # The entry stays the same element while the run goes on: a slow press reaches it.
     craft.ask("window.entry = document.querySelector('#alarm-list button'); scene.play()")
     craft.wait("return scene.time > 15.5")
@@ -201,3 +201,47 @@ def test_keys_go_through_all_speeds_and_back(craft):
     assert craft.ask("return document.getElementById('scene-speed').value") == "Infinity"
     ActionChains(craft.driver).send_keys("-").perform()
     assert craft.ask("return scene.speed") == 64
+
+
+def test_the_page_says_that_the_past_is_shown_and_goes_on_from_there(craft):
+    craft.ask("desk.live.reach(90); scene.grown(90); scene.go(90)")
+    assert craft.text("#past") == ""
+    craft.ask(
+        "[...document.querySelectorAll('button')].find(b => b.textContent === '−60 s').click()"
+    )
+    craft.wait("return scene.time === 30")
+    assert "Shown is 30.0 s of 90.0 s" in craft.text("#past")
+    craft.ask(
+        "[...document.querySelectorAll('button')].find(b => b.textContent === 'Continue from here').click()"
+    )
+    craft.wait("return desk.live.time.last === 30")
+    assert craft.text("#past") == ""
+
+
+def test_alarms_are_told_in_words_for_the_time_that_is_shown(craft):
+    craft.ask(
+        "desk.live.reach(12); desk.act('override', 'gear', 3); desk.live.reach(15); scene.grown(15); scene.go(15)"
+    )
+    craft.wait("return document.querySelector('#alarms strong').textContent === '1 alarm'")
+    assert "shaft faulty" in craft.text("#alarms p")
+    height = "return document.querySelector('#alarms').getBoundingClientRect().height"
+    loud = craft.ask(height)
+    craft.ask("scene.go(5)")
+    craft.wait("return document.querySelector('#alarms strong').textContent === 'No alarm'")
+    assert craft.text("#alarms p") == "1 to acknowledge"
+    # What stands below stays where it is, so that no click meets another field.
+    assert craft.ask(height) == loud
+    craft.ask("document.querySelector('#alarm-list button').click(); scene.refresh()")
+    assert "acknowledged" in craft.text("#alarm-list")
+
+
+def test_keys_go_through_time_after_a_button_and_a_list(craft):
+    craft.ask("desk.live.reach(60); scene.grown(60); scene.go(60)")
+    for place in ("#scene-speed", "#acknowledge-all", "#scene-play"):
+        before = craft.ask(
+            f"const at = document.querySelector('{place}'); at.hidden = false; at.focus(); return scene.time"
+        )
+        craft.ask(
+            "document.activeElement.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowLeft', bubbles: true}))"
+        )
+        assert craft.ask("return scene.time") < before

@@ -22,7 +22,7 @@
   // ---- keys
 
   const words = element("p", { className: "hint", id: "aim" }), value = element("output");
-  words.append("Set point: ", value, ` In the chart the arrow keys move it by ${STEP} m${signals[2] ? `, ← and → with Shift turn it by ${TURN}°` : ""}; or drag its cross.`);
+  words.append("Set point: ", value, ` In the chart the arrow keys move it by ${STEP} m${signals[2] ? `, ← and → with Shift turn it by ${TURN}°` : ""}; or drag its cross.${run.vessels[0].aims.reference ? " The reference travels there from where it is." : ""}`);
   document.getElementById("scene").append(words);
   Object.assign(chart, { tabIndex: 0, role: "application" });
   chart.setAttribute("aria-describedby", "aim");

@@ -30,11 +30,12 @@
 
   const step = element("button", { type: "button", className: "plain", textContent: "Step", title: "One row further" });
   const reset = element("button", { type: "button", className: "plain", textContent: "Start again" });
-  const back = element("button", { type: "button", className: "plain", textContent: "Go back to here", title: "Forget what came after the time that is shown" });
+  const back = element("button", { type: "button", className: "plain", textContent: "Continue from here", title: "Forget what came after the time that is shown" });
+  const minute = element("button", { type: "button", className: "plain", textContent: "−60 s", title: "Show a minute earlier" });
   const move = element("button", { type: "button", className: "plain", textContent: "Move set point", title: "Then click in the chart" });
   const save = element("button", { type: "button", className: "plain", textContent: "Save scenario" }), table = element("button", { type: "button", className: "plain", textContent: "Save table" });
   move.setAttribute("aria-pressed", "false");
-  by("scene-play").after(step, reset, back, move, save, table);
+  by("scene-play").after(step, reset, minute, back, move, save, table);
   const speed = by("scene-speed");
   speed.prepend(new Option("0.5×", 0.5));
   speed.append(new Option("as fast as it goes", Infinity));
@@ -44,6 +45,7 @@
   const go = (t) => { scene.grown(live.time.last); scene.go(t ?? live.time.last); };
   step.addEventListener("click", () => { scene.pause(); live.reach(live.time.last + 1e-6); go(); });
   reset.addEventListener("click", () => { scene.pause(); live.reset(); go(); changed(); });
+  minute.addEventListener("click", () => { scene.pause(); scene.go(scene.time - 60); });
   back.addEventListener("click", () => { scene.pause(); live.back(scene.time); go(); changed(); });
   addEventListener("live-failed", ({ detail }) => { const place = by("failure"); place.hidden = false; place.textContent = `The run stopped: ${detail}. Go back, or save what was done so far.`; });
 
@@ -85,25 +87,25 @@
   }
 
   function fieldOf(name, signal) {
-    const id = `input-${name}`, field = element("input", { id, inputMode: "decimal" }), follow = element("button", { type: "button", textContent: "Follow" });
+    const id = `input-${name}`, field = element("input", { id, inputMode: "decimal" }), release = element("button", { type: "button", textContent: "Release" });
     const label = element("label", { htmlFor: id, textContent: short(name), title: `${name}: ${signal.text}` }), remark = element("span", { className: "wrong", id: `wrong-${name}` });
     remark.setAttribute("aria-live", "polite");
     field.setAttribute("aria-describedby", remark.id);
-    const row = element("div", { className: "input" }, label, field, element("span", { textContent: unitOf(signal) }), follow, remark);
+    const row = element("div", { className: "input" }, label, field, element("span", { textContent: unitOf(signal) }), release, remark);
     row.dataset.words = `${name} ${signal.text}`.toLowerCase();
     field.setAttribute("aria-label", `${owner(name)}: ${short(name)}${unitOf(signal) && `, ${unitOf(signal)}`}`);
-    follow.setAttribute("aria-label", `${name} follows its own value again`);
+    release.setAttribute("aria-label", `Give ${name} back to its source or its start value`);
     field.addEventListener("change", () => {
       const value = valueIn(field, remark, signal);
       if (value !== null) act("override", name, value);
     });
     const clear = () => { remark.textContent = ""; field.removeAttribute("aria-invalid"); };
     field.addEventListener("keydown", ({ key }) => { if (key === "Escape") { clear(); field.value = digits(present(name) * factorOf(signal)); } });
-    follow.addEventListener("click", () => { clear(); act("reset", name); });
+    release.addEventListener("click", () => { clear(); act("reset", name); });
     rows.set(name, () => {
       const held = live.held(name);
       row.classList.toggle("held", Boolean(held));
-      follow.disabled = !held;
+      release.disabled = !held;
       if (document.activeElement !== field && !remark.textContent) field.value = digits(present(name) * factorOf(signal));
     });
     return row;
@@ -127,6 +129,7 @@
 
   function act(action, name, value) {  // what one does acts at the end of the record, so the view goes there
     live.act(action, name, value);
+    told = "";
     if (scene.time < live.time.last) go();
     changed();
   }
@@ -160,7 +163,9 @@
   const flags = Object.entries(about.signals).flatMap(([name, { kind, side, text }]) => {
     const short = name.slice(name.lastIndexOf(".") + 1), works = WORKS.test(short);
     if (kind !== "Boolean" || side !== 0 || !(works || ALARM.test(short))) return [];
-    return [{ name, rings: works ? 0 : 1, label: works ? `not ${name}` : name, text }];
+    // Words for people: "port: not available", and what is no longer true.
+    const label = `${owner(name)}: ${works ? "not " : ""}${short.replaceAll("_", " ")}`;
+    return [{ name, rings: works ? 0 : 1, label, text: works ? `no longer true: ${text}` : text }];
   });
   const acknowledged = new Set(), place = by("alarm-list"), box = by("alarms");
   let alarms = [], looked = 0;
@@ -168,16 +173,17 @@
   addEventListener("live-cut", forget);
 
   function itemOf(alarm) {  // an entry stays the same element: one may be about to press its button
-    const key = `${alarm.flag.name} ${alarm.since}`, over = element("span"), words = element("span", { className: "on", textContent: `${alarm.flag.label}: ${alarm.flag.text}` });
+    const key = `${alarm.flag.name} ${alarm.since}`, over = element("span"), words = element("span", { className: "on", textContent: `${alarm.flag.label} (${alarm.flag.text})` });
     const item = element("li", {}, element("span", { textContent: `${alarm.since.toFixed(1)} s` }), words, element("span", { className: "spacer" }), over);
     alarm.end = (t) => { alarm.until = t; words.className = ""; over.textContent = `over at ${t.toFixed(1)} s`; };
-    if (acknowledged.has(key)) return item;
+    const done = element("span", { textContent: "acknowledged" });
+    if (acknowledged.has(key)) { item.append(done); return item; }
     const button = element("button", { type: "button", textContent: "Acknowledge" });
     button.setAttribute("aria-label", `Acknowledge ${alarm.flag.label} of ${alarm.since.toFixed(1)} s`);
     button.addEventListener("click", () => {
       acknowledged.add(key);
       const all = [...place.querySelectorAll("button")], next = all[all.indexOf(button) + 1] || all[all.indexOf(button) - 1];
-      button.remove();
+      button.replaceWith(done);
       next?.focus();
     });
     item.append(button);
@@ -195,12 +201,25 @@
     }
     while (place.childElementCount > 60) place.lastElementChild.remove();
     by("no-alarms").hidden = alarms.length > 0;
-    const now = alarms.filter((one) => one.until === null);
-    const words = now.length ? [`${now.length} alarm${now.length > 1 ? "s" : ""}`, now.map(({ flag }) => flag.label).join(", ")] : ["No alarm", flags.length ? "" : "No component raises one."];
+    // The box speaks of the time that is shown, the list of the whole run.
+    const t = scene.time, now = alarms.filter(({ since, until }) => since <= t && (until === null || until > t));
+    const left = place.querySelectorAll("button").length, waiting = left ? `${left} to acknowledge` : flags.length ? "" : "No component raises one.";
+    by("acknowledge-all").hidden = left < 2;
+    const words = now.length ? [`${now.length} alarm${now.length > 1 ? "s" : ""}`, now.map(({ flag }) => flag.label).join("; ")] : ["No alarm", waiting];
     if (box.textContent === words.join("")) return;
     box.className = `verdict ${now.length ? "loud" : "quiet"}`;
     [box.querySelector("strong").textContent, box.querySelector("p").textContent] = words;
   }
+
+  by("acknowledge-all").addEventListener("click", () => { for (const button of place.querySelectorAll("button")) button.click(); });
+
+  // ---- whether the past is shown
+
+  function tell() {
+    const end = live.time.last, past = scene.time < end - 1e-6, words = past ? `Shown is ${scene.time.toFixed(1)} s of ${end.toFixed(1)} s. What you change acts at the end; “Continue from here” forgets what came after ${scene.time.toFixed(1)} s.` : told;
+    if (by("past").textContent !== words) by("past").textContent = words;
+  }
+  let told = "";
 
   // ---- trends
 
@@ -282,6 +301,7 @@
   function keep(name, text) {
     const address = URL.createObjectURL(new Blob([text], { type: "text/plain" })), link = element("a", { href: address, download: name });
     link.click();
+    told = `Saved as ${name}, ${(text.length / 1e6).toFixed(text.length > 1e6 ? 0 : 3)} MB.`;
     setTimeout(() => URL.revokeObjectURL(address), 1000);
   }
   // Who leaves the page with something done that is not saved is asked first.
@@ -296,6 +316,6 @@
 
   // Marks at what was done, on a time line that grows.
   const marked = () => scene.mark([...new Set(live.done.map(([step]) => live.engine.seconds(step)))].filter((t) => t <= scene.end));
-  scene.writes(() => { look(); draw(); marked(); for (const write of rows.values()) write(); });
+  scene.writes(() => { look(); tell(); draw(); marked(); for (const write of rows.values()) write(); });
   changed();
 })();

@@ -1,6 +1,6 @@
 // What comes of each loss, by simulation of this very system in a worker, again and again.
 (() => {
-  const { live } = report, { about } = live, { element } = window.desk, section = document.getElementById("losses"), body = section.querySelector("tbody"), said = document.getElementById("losses-said");
+  const { live } = report, { about } = live, { element, present } = window.desk, section = document.getElementById("losses"), body = section.querySelector("tbody"), said = document.getElementById("losses-said");
   const ahead = 120, run = report.data.scene[0], vessel = run.vessels[0], aim = vessel && (vessel.aims.reference || vessel.aims["set point"]);
   const name = (column) => run.recipes[column]?.signal, real = about.kinds.indexOf("Real");
   const columns = aim ? [...vessel.pose, ...aim].map((column) => about.columns[real].indexOf(name(column))) : [];
@@ -30,7 +30,11 @@
     worker.postMessage({ state: live.engine.state(), pending: live.pending, losses, steps, time: live.time.last, watch: { x: real, columns, ...limits } });
   }
 
-  function outcome({ error, crossed }) {
+  // A unit that is lost already is no further loss.
+  const isLost = ({ changes }) => changes.every(([, signal, value]) => present(signal) === Number(value));
+
+  function outcome({ name, error, crossed }) {
+    if (isLost(losses.find((one) => one.name === name))) return "is lost already";
     if (error) return `stops: ${error}`;
     if (!crossed) return "holds";
     return crossed.after === 0 ? `is beyond the limit of ${crossed.what} already` : `leaves the limit of ${crossed.what} after ${crossed.after.toFixed(0)} s`;

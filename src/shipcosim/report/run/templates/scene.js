@@ -211,9 +211,11 @@ const scene = (() => {
     ArrowRight: (far) => self.go(self.time + far * Math.min(self.speed, 64)), ArrowLeft: (far) => self.go(self.time - far * Math.min(self.speed, 64)),
   };
   addEventListener("keydown", (event) => {
-    const inside = section.contains(event.target), box = section.getBoundingClientRect();
-    const writes = event.target.closest("input:not([type=range]), textarea, select") || (!inside && event.target.closest("button, summary, a, input"));
-    const pressed = inside && event.target.closest("button") && event.key === " ";
+    const box = section.getBoundingClientRect();
+    // Fields, lists and what a blank presses keep their keys; a list of speeds leaves ← and → to the time.
+    const through = event.target === speed && /^Arrow(Left|Right)$/.test(event.key);
+    const writes = !through && event.target.closest("input:not([type=range]), textarea, select");
+    const pressed = event.key === " " && event.target.closest("button, summary, a");
     if (writes || pressed || !KEYS[event.key] || event.ctrlKey || event.metaKey || event.altKey || box.bottom < 0 || box.top > innerHeight) return;
     event.preventDefault();
     KEYS[event.key](event.shiftKey ? 10 : 1);
