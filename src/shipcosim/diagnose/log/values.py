@@ -84,13 +84,13 @@ def values_of(
     except ShipcosimError as error:
         found = f"its unit '{unit}' is none that converts to {target}."
         raise WrongUnit(Problem("", found, "Correct it, or say it in a channel file.")) from error
-    values, said = _without_no_values(values, name, column)
+    values, said = _without_placeholders(values, name, column)
     # -0.0 + 0.0 is 0.0, and the sign of a zero is all that is left of a rate in too large a unit
     values = factor * (channel.sign * values + (channel.offset or -0.0)) + (zero or -0.0)
     return values, target, said
 
 
-def _without_no_values(values, name, column):
+def _without_placeholders(values, name, column):
     """The values without numbers that stand for none, and what is to be said of them."""
     rows = values == NOT_AVAILABLE.get(name)
     if not rows.any():

@@ -138,8 +138,10 @@ class Draft:
         """
         # Only the outermost block checks: within it the system may be incomplete.
         if self._changing:
-            yield
-            self._assembled = None
+            try:
+                yield
+            finally:
+                self._assembled = None
             return
         # Errors that the system already had do not count.
         before = self._snapshot()

@@ -79,9 +79,9 @@ def parameters_of(system: System) -> list[ParameterValue]:
     for component in system.components.values():
         for variable in component.variables.values():
             value = component.start_value(variable.name)
-            if variable.causality not in ("parameter", "structuralParameter") or value is None:
+            if variable.causality not in ("parameter", "structuralParameter"):
                 continue
-            if variable.dimensions:
+            if value is None or variable.dimensions:
                 continue
             # An SSV holds an enumeration's value as the name of its item.
             names = {number: item for item, number in variable.items.items()}
@@ -90,7 +90,7 @@ def parameters_of(system: System) -> list[ParameterValue]:
                     f"{component.name}.{variable.name}",
                     variable.kind,
                     names.get(value, value) if variable.kind == "Enumeration" else value,
-                    find_unit(variable.unit),
+                    find_unit(variable.unit, component.fmu.units),
                     variable.description,
                     tolerance=component.tolerances.get(variable.name),
                 )

@@ -11,10 +11,9 @@ import numpy as np
 from shipcosim.diagnose.log.channels import Channel
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.thrusters import OF_A_MAP, Drive, drive_of, thrusters_named
-from shipcosim.diagnose.log.names.units import unit_after, unit_for
+from shipcosim.diagnose.log.names.units import converts, unit_after, unit_for
 from shipcosim.diagnose.log.names.vocabulary import meaning_of, words_of
 from shipcosim.diagnose.log.roles import ROLES, role_of
-from shipcosim.units import relation, spelled_unit
 
 Thrusters = Mapping[str, tuple[str, ...]]
 """Thrusters of a system by name, with what drives each: ``"rpm"``, ``"azimuth"``, ``"thrust"``."""
@@ -169,17 +168,7 @@ def _by_meaning(column, words, stated, values):
 
 
 def _measures(unit, role):
-    return _converts(unit, ROLES[role].unit) or unit_for(unit, ROLES[role].unit) in ("ft", "ft/s")
-
-
-def _converts(unit, target):
-    given = spelled_unit(unit_for(unit, target))
-    wanted = spelled_unit(target)
-    return (
-        given is not None
-        and wanted is not None
-        and relation(given, wanted) in ("same", "convertible")
-    )
+    return converts(unit, ROLES[role].unit) or unit_for(unit, ROLES[role].unit) in ("ft", "ft/s")
 
 
 def _of_thruster(
@@ -218,7 +207,7 @@ def _of_thruster(
                 )
             )
             continue
-        if stated and not _converts(stated, unit):
+        if stated and not converts(stated, unit):
             found.append(
                 Guess(column, why=f"its unit '{stated}' is none of {role}, which is in {unit}")
             )

@@ -6,10 +6,9 @@ from functools import cache
 
 import numpy as np
 
-from shipcosim.diagnose.log.names.units import unit_for
+from shipcosim.diagnose.log.names.units import converts
 from shipcosim.diagnose.log.names.vocabulary import vocabulary, words_of
 from shipcosim.diagnose.numerics import finite
-from shipcosim.units import relation, spelled_unit
 
 _PWM = (850.0, 2150.0)  # us, pulse widths of servos and speed controllers
 OF_A_MAP = {"%": "percent", "pct": "percent", "percent": "percent"}
@@ -184,9 +183,7 @@ def _by_values(quantity, word, unit, values):
     known = finite(values) if values.dtype.kind == "f" else np.empty(0)
     if unit in OF_A_MAP:
         return OF_A_MAP[unit], ""
-    given = spelled_unit(unit_for(unit, "rpm")) if unit else None
-    turns = spelled_unit("rpm")
-    if quantity == "" and given and turns and relation(given, turns) in ("same", "convertible"):
+    if quantity == "" and unit and converts(unit, "rpm"):
         return "rpm", ""
     inside = len(known) and known.min() >= _PWM[0] and known.max() <= _PWM[1]
     if quantity == "" and inside:

@@ -89,6 +89,21 @@ def unit_for(spelling: str, target: str) -> str:
     return options[-1] if options else _spellings().get(_plain(spelling), (spelling,))[0]
 
 
+def converts(unit: str, target: str) -> bool:
+    """Whether a unit, as a header spells it, converts to the target.
+
+    Examples
+    --------
+    >>> converts("rps", "rpm"), converts("knots", "deg")
+    (True, False)
+    """
+    given = spelled_unit(unit_for(unit, target))
+    wanted = spelled_unit(target)
+    if given is None or wanted is None:
+        return False
+    return relation(given, wanted) in ("same", "convertible")
+
+
 def unit_after(words: tuple[str, ...], target: str) -> tuple[tuple[str, ...], str]:
     """A name's words without the unit at their end, and this unit; empty where there is none.
 

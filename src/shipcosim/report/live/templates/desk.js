@@ -215,12 +215,11 @@
 
   // ---- whether the past is shown
 
+  let told = "";  // that a file was saved, until something else is done
   function tell() {
     const end = live.time.last, past = scene.time < end - 1e-6, words = past ? `Shown is ${scene.time.toFixed(1)} s of ${end.toFixed(1)} s. What you change acts at the end; “Continue from here” forgets what came after ${scene.time.toFixed(1)} s.` : told;
     if (by("past").textContent !== words) by("past").textContent = words;
   }
-  let told = "";
-
   // ---- trends
 
   const trends = [], names = by("trend-names");
