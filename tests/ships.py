@@ -112,6 +112,7 @@ ELSEWHERE = {
     "pid_controller": ("osv", "controller"),
     "paper_i_allocator": ("osv", "allocator"),
     "thruster_interaction": ("four-azimuths", "interaction"),
+    "consequence_analysis": ("four-azimuths", "consequences"),
     "neural_units_allocator": ("four-azimuths", "allocator"),
     "docking_predictor": ("gunnerus-28m9", "docking_predictor"),
     "helmsman": ("gunnerus-28m9", "helmsman"),

@@ -48,6 +48,7 @@ FMUS = {
         "propeller_rudder",
         "mapped_thruster",
         "thruster_monitor",
+        "consequence_analysis",
     ],
     "Control": ["reference", "dp_controller", "pid_controller", "helmsman"],
     "Allocation, classical": [

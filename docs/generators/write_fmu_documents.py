@@ -56,6 +56,7 @@ ELSEWHERE = {
     "fixed_thruster": ("otter", "left"),
     "propeller_rudder": ("kvlcc2", "propeller"),
     "thruster_interaction": ("four-azimuths", "interaction"),
+    "consequence_analysis": ("four-azimuths", "consequences"),
     "pid_controller": ("osv", "controller"),
     "paper_i_allocator": ("osv", "allocator"),
     "neural_units_allocator": ("four-azimuths", "allocator"),

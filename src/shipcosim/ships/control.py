@@ -21,6 +21,7 @@ COMPONENTS = {
     "reference": "reference",
     "controller": "dp_controller",
     "allocator": "optimal_units_allocator",
+    "consequences": "consequence_analysis",
 }
 """Component: the FMU that it is."""
 WORTH = 1e-3
@@ -80,7 +81,7 @@ def mass_matrix(ship: Described) -> np.ndarray:
 
 
 def dp_entries(ship: Described) -> dict[str, dict[str, Quantity]]:
-    """Parameters of sensors, reference, controller and allocator.
+    """Parameters of sensors, reference, controller, allocator and consequence analysis.
 
     Parameters
     ----------
@@ -108,7 +109,9 @@ def dp_entries(ship: Described) -> dict[str, dict[str, Quantity]]:
     own["controller"].estimates(control.controller(loop) | control.mast(length))
     # Controller and vessel share the wind table: feedforward then matches the ship's wind load.
     own["controller"].entries["wind_table"] = ship.vessel["wind_table"]
-    own["allocator"].estimates(_allocation(used))
+    allocation = _allocation(used)
+    own["allocator"].estimates(allocation)
+    own["consequences"].estimates(_consequences(used, allocation))
     return {name: numbers.entries for name, numbers in own.items()}
 
 
@@ -162,3 +165,19 @@ def _allocation(used: list[ShipThruster]) -> dict[str, EstimatedNumber]:
     # A missed yaw moment weighs as a missed force at the largest lever.
     lever = max(max(abs(unit.effect[2]) for unit in used), 0.1)
     return found | {"yaw_lever": EstimatedNumber(lever, 0.0, "largest lever of a thruster")}
+
+
+def _consequences(
+    used: list[ShipThruster], allocation: dict[str, EstimatedNumber]
+) -> dict[str, EstimatedNumber]:
+    """Places, directions and limits of the thrusters as the allocator has them, and the group of each."""
+    shared = {
+        f"{name}_{i}": allocation[f"{name}_{i}"]
+        for i in range(1, len(used) + 1)
+        for name in ("x", "y", "azimuth", "azimuth_rate", "thrust_min", "thrust_max")
+    }
+    groups = {
+        f"group_{i}": EstimatedNumber(float(unit.group), 0.0, f"thruster {unit.name}")
+        for i, unit in enumerate(used, 1)
+    }
+    return shared | groups

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 from shipcosim.errors import suggestion
+from shipcosim.models.allocation.consequences import GROUPS
 from shipcosim.ships.estimates.weather import BLENDERMANN
 from shipcosim.ships.given import Given, reader
 
@@ -113,6 +114,7 @@ class _Thruster(_Part):
     name: str = Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$")
     x: Place = None
     y: Place = None
+    group: int = Field(0, ge=0, le=GROUPS)
     coefficients: Coefficients = {}
 
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
+from shipcosim.models.allocation.consequences import ConsequenceParameters
 from shipcosim.models.allocation.optimal import OptimalUnitsParameters
 from shipcosim.models.control.observer import DpShip, ObserverParameters
 from shipcosim.models.control.pid import ControlParameters
@@ -38,6 +39,7 @@ PARAMETERS: dict[str, tuple[type, ...]] = {
         VotingParameters,
     ),
     "optimal_units_allocator": (OptimalUnitsParameters,),
+    "consequence_analysis": (ConsequenceParameters,),
 }
 """FMU: its classes of parameters."""
 FMU_OF = {

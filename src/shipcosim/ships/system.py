@@ -228,9 +228,10 @@ def _loop_wires(ship: Described) -> Iterable[tuple[str, str]]:
     yield from ((f"vessel.{name}", f"sensors.{name}") for name in (*TRUTH, *APPARENT))
     yield from ((f"sensors.{name}", f"controller.{name}") for name in MEASURED)
     yield from ((f"reference.{name}", f"controller.{name}") for name in DESIRED)
-    # Requested load to the allocator, allocated load back to the observer.
+    # Requested load to allocator and consequence analysis, allocated load back to the observer.
     for axis in "XYN":
         yield f"controller.tau_{axis}_cmd", f"allocator.tau_{axis}_cmd"
+        yield f"controller.tau_{axis}_cmd", f"consequences.tau_{axis}_cmd"
         yield f"allocator.tau_{axis}", f"controller.tau_{axis}_allocated"
     # Commands to each thruster, and its availability back.
     for number, unit in enumerate(units_for_dp(ship), 1):
@@ -240,6 +241,7 @@ def _loop_wires(ship: Described) -> Iterable[tuple[str, str]]:
             yield f"allocator.azimuth_cmd_{number}", f"{unit.name}.azimuth_cmd"
         if unit.fmu != "fixed_thruster":
             yield f"{unit.name}.available", f"allocator.available_{number}"
+            yield f"{unit.name}.available", f"consequences.available_{number}"
 
 
 def _kinds(ship: Described, kind: str) -> dict[str, tuple[type, ...]]:

@@ -54,6 +54,8 @@ class ShipThruster:
         Its parameters.
     screw : Screw or None
         Its propeller, where diameter, power, thrust and speed are known or estimated.
+    group : int
+        Thrusters of one group fail together, as on one bus; 0: it is in none.
     """
 
     name: str
@@ -67,6 +69,7 @@ class ShipThruster:
     rate: float
     entries: dict[str, Quantity]
     screw: Screw | None = None
+    group: int = 0
 
     @property
     def effect(self) -> tuple[float, float, float]:
@@ -166,6 +169,7 @@ def _unit(
         rate=rate,
         entries=own.entries,
         screw=screw,
+        group=one.group,
     )
 
 
