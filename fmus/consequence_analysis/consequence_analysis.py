@@ -52,10 +52,10 @@ class ConsequenceAnalysis(Fmu):
     force_share_without_group_3 = Output("1", "the same after the loss of all units of group 3")
     least_share = Output("1", "least `share` after a single failure")
     least_force_share = Output("1", "least `force_share` after a single failure")
-    heading_warning = Output(
+    heading_loss_alarm = Output(
         "1", "after some single failure position and heading are not held together", start=False
     )
-    position_warning = Output(
+    position_loss_alarm = Output(
         "1", "after some single failure the position is not held", start=False
     )
 
@@ -86,8 +86,8 @@ class ConsequenceAnalysis(Fmu):
         factor = self.model.dynamic_factor
         self.least_share = self._look("share", load, now, 1.0)
         self.least_force_share = self._look("force_share", load, now, 0.0)
-        self.heading_warning = self.least_share < factor
-        self.position_warning = self.least_force_share < factor
+        self.heading_loss_alarm = self.least_share < factor
+        self.position_loss_alarm = self.least_force_share < factor
 
     def _look(self, name, load, now, heading):
         """Shares of the load, intact and after each failure; gives the least of them."""
