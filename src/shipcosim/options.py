@@ -39,7 +39,7 @@ class RunOptions:
     engine : str
         What runs the FMUs: ``"fmpy"`` (our own co-simulation master), ``"native"`` (the same, with models and loop
         compiled), ``"libcosim"`` or ``"ecos"``. The last two know neither `start_time` nor `until`, `resume`, `store`,
-        `isolate` and `realtime`.
+        `isolate`, `realtime` and `profile`.
     inputs : Dataset, optional
         Feeds inputs of the system, by their names. A variable's attribute ``interpolation`` says what it does between
         its rows: ``"held"``, the default, or ``"linear"``, angles the shorter way round. The table's attribute
@@ -66,6 +66,8 @@ class RunOptions:
         How long an isolated component may take for an answer. [s]
     realtime : float, optional
         Seconds of the run that pass in a second of the clock; as fast as the machine allows without.
+    profile : bool
+        Whether the seconds of each component and phase are counted, in the table's attribute ``profile``.
 
     Raises
     ------
@@ -84,6 +86,7 @@ class RunOptions:
     isolate: bool = False
     timeout: float = TIMEOUT
     realtime: float | None = None
+    profile: bool = False
 
     def __post_init__(self):
         if self.realtime is not None and not 0.0 < self.realtime < float("inf"):
@@ -116,3 +119,4 @@ class RunKeywords(TypedDict, total=False):
     isolate: bool
     timeout: float | str
     realtime: float | None
+    profile: bool

@@ -291,7 +291,7 @@ def run(
         Folder that gets result.nc, result.csv, report.html, verdict.json, predictions.csv; nothing is written without.
     force : bool
         Replace files of these names there, instead of keeping them in a numbered folder beside it.
-    engine, inputs, progress, order, until, resume, store, isolate, timeout, realtime
+    engine, inputs, progress, order, until, resume, store, isolate, timeout, realtime, profile
         As in `shipcosim.options.RunOptions`.
 
     Returns
@@ -431,7 +431,7 @@ def simulate(
         Folder that gets result.nc, result.csv, report.html, verdict.json, predictions.csv; nothing is written without.
     force : bool
         Replace files of these names there, instead of keeping them in a numbered folder beside it.
-    engine, inputs, progress, order, until, resume, store, isolate, timeout, realtime
+    engine, inputs, progress, order, until, resume, store, isolate, timeout, realtime, profile
         As in `shipcosim.options.RunOptions`: `until` and `store` stop at a time and keep the state of the whole
         system, `resume` continues from there; `isolate` has each component run in a process of its own.
 

@@ -101,6 +101,7 @@ def progress_of(label: str, duration: float | None = None) -> Iterator[Callable[
 
 def print_summary(result: Run, page: Path, *, to_stderr: bool = False) -> None:
     """How a run went: its expectations, what must not be overlooked, where the page is."""
+    from shipcosim.cosim.master.profile import PHASES, rows_of
     from shipcosim.report.run.predictions import summarise, texts
 
     console = make_console(stderr=to_stderr, soft_wrap=True)
@@ -111,6 +112,10 @@ def print_summary(result: Run, page: Path, *, to_stderr: bool = False) -> None:
         print_table(console, rows, ("", "expected", "during", "worst", "at"))
     if predicted := texts(summarise(result.predictions)):
         print_table(console, predicted, ("predicted", "position", "heading", ""))
+    if "profile" in result.table.attrs:
+        spent = rows_of(str(result.table.attrs["profile"]))
+        rows = [(name, *(f"{one:.3f}" for one in seconds)) for name, seconds in spent]
+        print_table(console, rows, ("seconds", *PHASES))
     before = {str(remark) for remark in result.remarks}  # these were printed before the run
     for remark in remarks:
         if remark not in before:

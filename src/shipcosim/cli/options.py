@@ -132,6 +132,12 @@ Realtime = Annotated[
         help="Wait for the clock: 1.0 runs in real time, 2.0 twice as fast. Default: as fast as possible.",
     ),
 ]
+Profiled = Annotated[
+    bool,
+    typer.Option(
+        "--profile", help="Count the seconds of each component and phase, and print them."
+    ),
+]
 Force = Annotated[
     bool,
     typer.Option("--force", help="Replace earlier results instead of keeping them in DIR-1, ..."),

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
+#include <time.h>
 
 #ifdef _WIN32
 #define EXPORT __declspec(dllexport)
@@ -59,9 +60,25 @@ typedef struct {
     Host host;
     int64_t real;                               /* number of the exchange of reals, or -1 */
     int64_t stop;                               /* set by the host: end after this step */
+    double *seconds;                            /* of each component's steps, exchange, recording; NULL: not counted */
 } System;
 
 enum { DONE = 0, FAILED = 1, NOT_FINITE = 2 };
+
+/* Add the time since `began` to a count, and give the time now. In a page there is no clock, and nothing is counted. */
+static double count(System *s, int64_t place, double began) {
+#ifdef __wasm__
+    (void)s, (void)place, (void)began;
+    return 0.0;
+#else
+    struct timespec at;
+    if (s->seconds == 0) return 0.0;
+    timespec_get(&at, TIME_UTC);
+    double now = (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
+    if (place >= 0) s->seconds[place] += now - began;
+    return now;
+#endif
+}
 
 static double get(const Exchange *e, const void *array, int64_t row) {
     return e->is_real ? ((const double *)array)[row] : (double)((const int32_t *)array)[row];
@@ -158,9 +175,10 @@ static int step_all(System *s, int64_t k) {
     for (int64_t n = 0; n < s->n_components; n++) {
         Component *c = s->components + n;
         if (k % c->multiple) continue;
-        if (c->step == 0 || step_natively(s, c, k)) {
-            if (s->host((int)n, k)) return FAILED;
-        }
+        double began = count(s, -1, 0.0);
+        int to_host = c->step == 0 || step_natively(s, c, k);
+        count(s, n, began);
+        if (to_host && s->host((int)n, k)) return FAILED;
     }
     for (int64_t n = 0; n < s->n_components; n++) {
         Component *c = s->components + n;
@@ -180,9 +198,12 @@ EXPORT void refresh_all(System *s) {
 EXPORT int run(System *s, int64_t from, int64_t to, int64_t *reached) {
     for (int64_t k = from; k < to; k++) {
         *reached = k;
+        double began = count(s, -1, 0.0);
         if (k % s->steps_per_row == 0) record(s);
+        count(s, s->n_components + 1, began);
         int status = step_all(s, k);
         if (status != DONE) return status;
+        began = count(s, -1, 0.0);
         for (int64_t x = 0; x < s->n_exchanges; x++) {
             Exchange *e = s->exchanges + x;
             if (e->external) {
@@ -192,6 +213,7 @@ EXPORT int run(System *s, int64_t from, int64_t to, int64_t *reached) {
             }
         }
         for (int64_t x = 0; x < s->n_exchanges; x++) transfer(s, s->exchanges + x, k + 1);
+        count(s, s->n_components, began);
         if (s->real >= 0) {
             const Exchange *e = s->exchanges + s->real;
             const double *values = e->modified;

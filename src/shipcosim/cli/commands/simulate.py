@@ -18,6 +18,7 @@ from shipcosim.cli.options import (
     OspEvents,
     Out,
     Parameters,
+    Profiled,
     Quiet,
     Realtime,
     Record,
@@ -90,6 +91,7 @@ def simulate(
     isolate: Isolate = False,
     timeout: Timeout = None,
     realtime: Realtime = None,
+    profile: Profiled = False,
     strict: Strict = False,
     as_json: AsJson = False,
     junit: Junit = None,
@@ -112,7 +114,7 @@ def simulate(
     table = None if inputs is None else read_table(inputs)
     feeding = {"inputs": table, "interpolate": interpolate or (), "max_gap": max_gap}
     carried_out = {"engine": engine, "until": until, "store": store, "resume": resume}
-    carried_out |= {"realtime": realtime, **isolation(isolate, timeout)}
+    carried_out |= {"realtime": realtime, "profile": profile, **isolation(isolate, timeout)}
     prepared = prepare_simulation(
         ssp,
         events,

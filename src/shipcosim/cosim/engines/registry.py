@@ -10,7 +10,7 @@ ENGINES = {"fmpy": run, "native": run, "libcosim": libcosim.run, "ecos": ecos.ru
 OWN = ("fmpy", "native")
 """Engines that are our own master: in Python, and with models and loop compiled."""
 
-OWN_OPTIONS = ("start_time", "until", "resume", "store", "isolate", "realtime")
+OWN_OPTIONS = ("start_time", "until", "resume", "store", "isolate", "realtime", "profile")
 """Options that only our own master knows."""
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from shipcosim.cosim.master.component import ComponentInstance
 from shipcosim.cosim.master.connections import ParameterConnection, StringConnection
+from shipcosim.cosim.master.profile import MASTER, Profile
 from shipcosim.cosim.master.recorder import Recorders
 from shipcosim.cosim.master.signals import Exchange
 from shipcosim.cosim.master.time_grid import TimeGrid
@@ -81,6 +82,14 @@ class Master:
         self._check_interrupt = check_interrupt
         self._sequential = sequential
         self._all_exchanges = list(exchanges.values())
+        self.profile: Profile | None = None
+
+    def count_in(self, profile: Profile) -> None:
+        """Count the time of each component and phase from now on."""
+        self.profile = profile
+        self._transfer = profile.timed(MASTER, "exchange", self._transfer)
+        for component in self._components:
+            component.count_in(profile)
 
     def initialise(self, start_time: float, stop_time: float) -> None:
         """Initialise all components, consistently: every input equals what feeds it. Times in s.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from importlib.resources import files
 from time import perf_counter
 from types import MappingProxyType
@@ -13,6 +14,7 @@ import numpy as np
 
 from shipcosim.cosim.master.algorithm import BETWEEN_REPORTS, Master, failed_step
 from shipcosim.cosim.master.component import ComponentInstance
+from shipcosim.cosim.master.profile import MASTER, Profile
 from shipcosim.cosim.master.recorder import Recorders
 from shipcosim.cosim.master.signals import Exchange
 from shipcosim.cosim.master.time_grid import TimeGrid
@@ -79,6 +81,7 @@ class _System(ctypes.Structure):
         *((name, INT) for name in ("first", "steps_per_row", "n_rows")),
         ("host", HOST),
         *((name, INT) for name in ("real", "stop")),
+        ("seconds", P),
     ]
 
 
@@ -178,7 +181,8 @@ class CompiledMaster(Master):
             return
         # A repeated run uses the arrays of the run before, if only numbers differ.
         if (loop := self._loop) is None or not loop.take_anew(external):
-            loop = _CompiledLoop(self, grid, external, recorders)
+            with nullcontext() if self.profile is None else self.profile.during(MASTER, "load"):
+                loop = _CompiledLoop(self, grid, external, recorders)
         k = grid.first
         first = grid.first
         last = grid.last
@@ -216,6 +220,8 @@ class CompiledMaster(Master):
         finally:
             self._loop = loop
             self.reasons = loop.reasons
+            if self.profile is not None:
+                loop.count_in(self.profile)
         if last % grid.steps_per_row == 0:
             recorders.record()
         if progress is not None:
@@ -250,6 +256,7 @@ class _CompiledLoop:
         # step.
         self._steps = self._compiled(grid)
         self._error: BaseException | None = None
+        self._seconds = np.zeros(len(self._components) + 2)
         self._c_exchanges = (_Exchange * len(self._exchanges))(
             *(self._exchange(kind, exchange) for kind, exchange in self._exchanges)
         )
@@ -270,6 +277,7 @@ class _CompiledLoop:
             self._host,
             kinds.index("Real") if "Real" in kinds else -1,
             0,
+            None if master.profile is None else self._pointer(self._seconds),
         )
         self._take_external(external)
         self.take_modifiers()
@@ -305,6 +313,15 @@ class _CompiledLoop:
         if status == NOT_FINITE:
             self._master._check_finite(float(self._clock[reached.value]))
         return reached.value
+
+    def count_in(self, profile: Profile) -> None:
+        """Add what the loop has counted: steps of each component that it steps itself, exchange, recording."""
+        *steps, exchange, recording = self._seconds.tolist()
+        for component, seconds in zip(self._components, steps, strict=True):
+            profile.add(component.name, "step", seconds)
+        profile.add(MASTER, "exchange", exchange)
+        profile.add(MASTER, "record", recording)
+        self._seconds[:] = 0.0
 
     def give_back(self) -> None:
         """Copy the numbers of compiled components to their Python objects."""

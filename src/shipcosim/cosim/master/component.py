@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from shipcosim.cosim.master.plan import Rows
+from shipcosim.cosim.master.profile import Profile
 from shipcosim.cosim.master.signals import Exchange
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES, FAILED, Call, Slave, SlaveError, Step
 from shipcosim.ssp import Variable
@@ -76,6 +77,12 @@ class ComponentInstance:
     def steps_by(self, do_step: Step) -> None:
         """Use another call to step: that of a group with one solver."""
         self._do_step = do_step
+
+    def count_in(self, profile: Profile) -> None:
+        """Count the time of its calls from now on."""
+        self._do_step = profile.timed(self.name, "step", self._do_step)
+        self.write = profile.timed(self.name, "exchange", self.write)
+        self.read = profile.timed(self.name, "exchange", self.read)
 
     def prepare(self, kind: str, exchange: Exchange, outputs: Rows, inputs: Rows) -> None:
         """Prepare the calls for the variables of one kind.

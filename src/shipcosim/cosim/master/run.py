@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,6 +25,7 @@ from shipcosim.cosim.master.instantiate import (
 from shipcosim.cosim.master.interrupt import delayed_interrupt
 from shipcosim.cosim.master.order import ORDERS, stepping_order
 from shipcosim.cosim.master.plan import make_plan
+from shipcosim.cosim.master.profile import MASTER, Profile
 from shipcosim.cosim.master.ranges import range_remarks
 from shipcosim.cosim.master.recorder import Recorder, Recorders
 from shipcosim.cosim.master.rerun import can_rewind, changed_values, with_numbers
@@ -142,6 +144,7 @@ class Simulation:
         inputs = options.inputs
         self._engine = options.engine
         self._realtime = options.realtime
+        self._profile = Profile() if options.profile else None
         if order not in ORDERS:
             raise ShipcosimError(
                 f"There is no order of exchange '{order}'. {suggestion(order, ORDERS)}"
@@ -200,10 +203,16 @@ class Simulation:
         try:
             # A repeated run keeps its instances and connections.
             if self._master is None:
-                self._instantiate(slaves, check_interrupt)
+                with self._during("load"):
+                    self._instantiate(slaves, check_interrupt)
             master = self._master
             assert master is not None
-            master.initialise(grid.start_time, grid.stop_time)
+            with self._during("start"):
+                master.initialise(grid.start_time, grid.stop_time)
+            if self._profile is not None and master.profile is None:
+                master.count_in(self._profile)
+                record = self._recorders.record
+                self._recorders.record = self._profile.timed(MASTER, "record", record)
             # Continue from a snapshot: initialise as usual, then replace states and values.
             if self._resume is not None:
                 restore_snapshot(
@@ -223,6 +232,10 @@ class Simulation:
             raise RunError(failure.problem, self.table(complete=False)) from failure
         except KeyboardInterrupt:
             raise Interrupted(self.table(complete=False)) from None
+
+    def _during(self, phase):
+        """Counts the time of a block, where it is asked for."""
+        return nullcontext() if self._profile is None else self._profile.during(MASTER, phase)
 
     def _instantiate(self, slaves, check_interrupt):
         """Instantiate the FMUs and wire them."""
@@ -343,6 +356,8 @@ class Simulation:
             known["integrated_together"] = "; ".join(
                 ", ".join(sorted(group)) for group in self._together
             )
+        if self._profile is not None:
+            known["profile"] = self._profile.as_json()
         return known | {"complete": int(complete), "remarks": json.dumps(self.remarks())}
 
     def remarks(self) -> list[str]:
