@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from shipcosim.series import read_table, write_table
     from shipcosim.ssp import System, SystemStructure, new, parameter, write_ssv
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = [
     "Log",
