@@ -11,7 +11,7 @@ from shipcosim.diagnose.log.checks.kinematics import (
     filter_for,
     whiteness,
 )
-from shipcosim.diagnose.log.checks.labels import best_segment, in_segment
+from shipcosim.diagnose.log.checks.segments import best_segment, in_segment
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
 from shipcosim.diagnose.log.rows import inside
 from shipcosim.diagnose.log.thresholds import (
