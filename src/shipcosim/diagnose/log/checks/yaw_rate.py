@@ -22,7 +22,7 @@ def silent_rate(log: dict) -> list[Finding]:
     Parameters
     ----------
     log : dict of (n,) arrays
-        `time` [s] and roles in their units, NaN where not to be used; headings without jumps.
+        `time` [s] and roles in their units, NaN where not to be used.
     """
     motion = heading_motion(log)
     if motion is None:
