@@ -72,7 +72,8 @@ def refined(log: dict, mislabel: Mislabel, segment: Segment) -> Segment:
         segments = [time[[k, ends[1]] if end == 0 else [ends[0], k]] for k in places]
         # Cost of each place: squared innovations with the label
         # undone there, and a penalty for each leap that is left.
-        tried = [motion_of(undone(log, mislabel, [one])) for one in segments]
+        changed = (motion_of(undone(log, mislabel, [one])) for one in segments)
+        tried = [one for one in changed if one is not None]
         levels = np.stack([one.level for one in tried], axis=2)
         white = np.clip(whitener(levels), -LABEL_CLIP, LABEL_CLIP)
         left = LABEL_CLIP**2 * np.array([one.starts.sum() for one in tried])
