@@ -1,4 +1,4 @@
-"""Wrong labels planted in logs of real craft are named, in all rows and in every fifth; right ones are left alone."""
+"""Wrong labels planted in logs of real craft are named, in all rows, in every fifth and in a part; right ones never."""
 
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from shipcosim.diagnose.log.reader import read_log
 
 MEASURED = Path(__file__).resolve().parents[4] / "shared" / "measured"
 KNOT = 1852.0 / 3600.0
+LABELS = ("sign", "channel_swap", "frame", "clock")
 # A spin, positions that leap, and a straight way.
 LOGS = [
     ("blueboat", "run_216.csv.gz"),
@@ -65,11 +66,28 @@ def test_planted_labels_are_named_and_nothing_else(craft, name, stride, tmp_path
     assert sum(bool(one) for one in found.values()) >= len(PLANTED) - 1
 
 
+@pytest.mark.parametrize(
+    "planted", [("sign", "sway"), ("channel_swap", "east", "north"), ("frame", "sway", "surge")]
+)
+def test_a_label_planted_in_a_part_is_named_with_it(planted):
+    """The middle 40 s of a log of a minute and a half: parts below 60 s were silent."""
+    path = MEASURED / FOLDERS["blueboat"] / "run_223.csv.gz"
+    if not path.is_file():
+        pytest.skip("needs the logs in ../shared/measured, which are not here")
+    log = read_log(path, channels=CHANNELS / "blueboat.toml")
+    arrays = {str(n): v.values.copy() for n, v in log.data_vars.items()}
+    for role, values in PLANTED[planted](arrays).items():
+        log[role].values[300:700] = values[300:700]
+    (finding,) = (f for f in examine(log) if f.cause in LABELS)
+    assert (finding.cause, set(finding.channels)) == (planted[0], set(planted[1:]))
+    begun = log["time"].values[[300, 699]]
+    assert finding.segments[0] == pytest.approx(tuple(begun), abs=5.0)
+
+
 def _labels(log):
     """Findings on labels: cause, channels, and whether in a part of the log only."""
-    causes = ("sign", "channel_swap", "frame", "clock")
     return {
         (one.cause, frozenset(one.channels), bool(one.segments))
         for one in examine(log)
-        if one.cause in causes
+        if one.cause in LABELS
     }

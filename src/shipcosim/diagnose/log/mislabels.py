@@ -20,6 +20,7 @@ KNOT = 1852.0 / 3600.0  # m/s
 POSITION = ("north", "east")
 VELOCITY = ("surge", "sway")
 WIND = ("wind_speed", "wind_from")
+ANGLES = ("heading", "wind_from")
 CHANNEL_UNITS = {
     VELOCITY: {
         "m/s": 1.0,
@@ -69,8 +70,12 @@ class Mislabel:
 
 
 def negative(role: str) -> Mislabel:
-    """A channel with the other sign."""
-    return Mislabel("sign", (role,), f"{role} has the other sign", lambda log: {role: -log[role]})
+    """A channel with the other sign; an angle stays within a full turn."""
+
+    def undo(log):
+        return {role: np.mod(-log[role], 360.0) if role in ANGLES else -log[role]}
+
+    return Mislabel("sign", (role,), f"{role} has the other sign", undo)
 
 
 def exchanged(pairs: Sequence[tuple[str, str]]) -> Mislabel:

@@ -20,6 +20,9 @@ FEWEST_OTHERS = 0.3
 """Share of a log outside of runs that must be there to say that runs are unusual. Assumed."""
 MOST_FLAGGED = 0.6
 """Share of these rows that are held or straight, from which on a channel is too coarse to say so. Assumed."""
+NOISE_SEEN = 0.75
+"""Noise of a channel over its resolution, from which on it is seen. By the same differences rounding alone is noise of
+0.35 to 0.6 steps."""
 LONGEST_WRAP = 6
 """Most samples of the heading that are interpolated across north. Assumed."""
 NEAR_NORTH = 45.0
@@ -46,6 +49,9 @@ FEWEST_FITTED = 24
 """Rows that can be compared with the one before, that a relation needs. Assumed."""
 MOST_FITTED = 6000
 """Rows that a relation is fitted to; of longer logs every so many are taken."""
+MOST_CHANGE = 2.0 / 3.0
+"""Share of the rows in which a position or heading must change; else every second row is taken, and so on. Half was too
+few: a boat's positions came in 0.499 or 0.501 of the rows of its parts, and only the first were thinned."""
 FIT_CLIP = 4.0
 """Standard deviations beyond which a row counts no more."""
 NOISIER = 2.0
@@ -144,23 +150,29 @@ WHITENESS_LAGS = 12
 # Labels of the navigation
 
 LABEL_GAIN = 14.0
-"""What a label must gain over the log, divided by how correlated its innovations are. [nats]"""
-CLEAR_LABEL_GAIN = 100.0
-"""From here on a frame may differ from another by less than its slopes. [nats]"""
+"""What a label must gain in its part over the log as labelled, correlated rows counted less. [nats]"""
 SEGMENT_COST = 16.0
 """Cost of choosing both ends of a segment. [nats]"""
 LABEL_CLIP = 5.0
 """Standard deviations beyond which an innovation counts no more."""
-LABEL_SLOPE_NEAR = 0.3
-"""Slopes of the way seen on the way logged agree if they are nearer to 1 than this."""
-LABEL_SLOPE_FAR = 0.35
-"""They disagree if they are farther off."""
-LABEL_SLOPE_STD = 0.2
-"""Largest standard deviation of a slope that decides."""
 SHORTEST_LABEL = 60.0
-"""Shortest segment. [s] Assumed."""
-LABEL_STEPS = 3.0
-"""Steps of a coarse position or heading by which a label must change the way told. Assumed."""
+"""Shortest segment; of a label of the navigation at most so much is asked. [s] Assumed."""
+LABEL_ROWS = 60
+"""Rows that make a segment long enough too: as many as SHORTEST_LABEL has in logs at 1 Hz, which it was set on."""
+SHORTEST_WRONG = 10.0
+"""Shortest segment of a label however close the rows are. [s] Assumed."""
+RARE_LABEL = 6.5
+"""Cost of a mistake from which on it is not looked for in parts. [nats] Assumed: feet and miles, whose factors are near
+those of knots and km/h."""
+MOST_LABELS = 4
+"""Mislabels of a part, of those that gain most, that are judged. Assumed."""
+MOST_PARTS = 4
+"""Parts of a log that are mislabelled. Assumed."""
+CALM_PARTS = 0.8
+"""Share of the windows of a log that its noise is taken from: a leap at an end of a part is in a few. With 0.6 a label
+in 63 of 78 parts of three BlueBoat logs was named, with 0.8 in 64."""
+NOISE_SHARE = 0.6
+"""Quantile of the noise of windows that is the noise of the log; with 0.75, 61 of these 78."""
 LABEL_REACH = 25
 """Rows on both sides in which an end of a segment is sought."""
 

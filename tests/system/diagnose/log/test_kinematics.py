@@ -10,7 +10,7 @@ from shipcosim.diagnose.log.checks.kinematics import (
     is_clear,
     whiteness,
 )
-from shipcosim.diagnose.log.checks.labels import mislabelled
+from shipcosim.diagnose.log.readings.parts import mislabelled
 
 TIME = np.arange(4000.0)
 
@@ -91,4 +91,4 @@ def test_what_rounding_leaves_of_a_ship_at_rest_is_no_wrong_label(digits, lost):
     }
     if lost:
         rounded["heading"][50:60] = np.nan
-    assert mislabelled(rounded)[0] == []
+    assert mislabelled(rounded, {})[0] == []

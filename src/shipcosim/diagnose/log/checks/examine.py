@@ -6,15 +6,14 @@ from itertools import pairwise
 import numpy as np
 import xarray
 
-from shipcosim.angles import unwrap_series
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.checks.clock import wrong_clock
-from shipcosim.diagnose.log.checks.labels import mislabelled
 from shipcosim.diagnose.log.checks.samples import gaps, lifeless, wraps
 from shipcosim.diagnose.log.checks.wind import mislabelled_wind
 from shipcosim.diagnose.log.checks.wind_jumps import jumping_wind
 from shipcosim.diagnose.log.checks.yaw_rate import silent_rate
 from shipcosim.diagnose.log.mislabels import mislabel_in, undone
+from shipcosim.diagnose.log.readings.parts import mislabelled
 from shipcosim.diagnose.log.readings.reading import explained, is_as_labelled, misread
 from shipcosim.diagnose.log.repair import rate_of, read_anew, without_findings
 from shipcosim.diagnose.log.rows import arrays_of, inside, usable_rows
@@ -46,7 +45,7 @@ def examine(log: xarray.Dataset) -> list[Finding]:
     }  # not lost, but unusable
     found = gaps(table | empty)
     if not any(finding.alternatives for finding in throughout):
-        found += _in_parts(_with_even_heading(without_findings(table, found)), _stated_units(log))
+        found += _in_parts(without_findings(table, found), _stated_units(log))
     # Segments were found in corrected time; give them in the log's own.
     rate = rate_of(throughout)
     found = [
@@ -59,7 +58,7 @@ def _unless_in_part(throughout, table, stated):
     """Mistakes throughout a log; none where wrong labels in parts of it explain more, and all of it."""
     # Labels wrong in parts are the rival: each segment costs some evidence.
     if throughout:
-        labels, right = mislabelled(_with_even_heading(table))
+        labels, right = mislabelled(table, stated)
         more = labels and explained(right) > explained(table) + SEGMENT_COST * len(labels)
         if more and is_as_labelled(right, stated):
             return []
@@ -71,14 +70,15 @@ def _in_parts(table, stated):
 
     A label is wrong in a part of a log only where all channels agree throughout once it is put right.
     """
-    # A yaw rate that is too quiet is corrected first, since heading against rate is used below.
-    quiet = silent_rate(table)
-    table = undone(table, mislabel_in(quiet[0]), quiet[0].segments) if quiet else table
     # Wrong labels in parts count only if the corrected log has no wrong label left.
-    labels, right = mislabelled(table)
+    labels, right = mislabelled(table, stated)
     if labels and not is_as_labelled(right, stated):
         labels = []
         right = table
+    # Where the ship does not turn, a yaw rate in rad/s shows by its noise alone.
+    quiet = silent_rate(right)
+    labels = [*labels, *quiet]
+    right = undone(right, mislabel_in(quiet[0]), quiet[0].segments) if quiet else right
     # A wrong clock can look like a wrong label. Where both were found at
     # one place, the label is dropped and the clock is estimated again.
     clock = wrong_clock(right)
@@ -88,7 +88,7 @@ def _in_parts(table, stated):
         for label in kept:
             right = undone(right, mislabel_in(label), label.segments)
         clock = wrong_clock(right)
-    return [*quiet, *kept, *(mislabelled_wind(right) or jumping_wind(right)), *_agreeing(clock)]
+    return [*kept, *(mislabelled_wind(right) or jumping_wind(right)), *_agreeing(clock)]
 
 
 def _agreeing(clock):
@@ -131,10 +131,3 @@ def _arrays(log):
     """The log as a dict of arrays, rows in order of time."""
     ordered = log.isel(time=usable_rows(log["time"].values))
     return {role: np.array(values, float) for role, values in arrays_of(ordered).items()}
-
-
-def _with_even_heading(table):
-    """The table with a heading that does not jump."""
-    if "heading" not in table:
-        return table
-    return table | {"heading": np.degrees(unwrap_series(np.radians(table["heading"])))}

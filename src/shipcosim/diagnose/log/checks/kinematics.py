@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from shipcosim.angles import unwrap_series
 from shipcosim.diagnose.finding import Segment
 from shipcosim.diagnose.log.thresholds import (
     CLEAR_MOTION,
@@ -82,7 +83,7 @@ def position_motion(log: dict) -> Motion | None:
     Parameters
     ----------
     log : dict of (n,) arrays
-        `time` [s] and roles in their units, NaN where not to be used; headings without jumps.
+        `time` [s] and roles in their units, NaN where not to be used.
     """
     roles = ("north", "east", "surge", "sway", "heading")
     rows = complete_rows(log, roles)
@@ -111,7 +112,8 @@ def heading_motion(log: dict) -> Motion | None:
     if len(rows) < 30:
         return None
     rate = log["yaw_rate"][rows, None]
-    return _motion(log["time"][rows], log["heading"][rows, None], rate, {"yaw_rate": rate})
+    heading = np.degrees(unwrap_series(np.radians(log["heading"][rows])))[:, None]
+    return _motion(log["time"][rows], heading, rate, {"yaw_rate": rate})
 
 
 def complete_rows(log: dict, roles: Sequence[str]) -> np.ndarray:
@@ -122,7 +124,7 @@ def complete_rows(log: dict, roles: Sequence[str]) -> np.ndarray:
 
 
 def _motion(time, seen, velocity, parts):
-    return Motion(time, seen, velocity, parts, after_gaps(time) | _jumps(seen))
+    return Motion(time, seen, velocity, parts, after_gaps(time) | jumps(seen))
 
 
 def after_gaps(time: np.ndarray, longest: float = LONGEST_BRIDGE) -> np.ndarray:
@@ -132,7 +134,7 @@ def after_gaps(time: np.ndarray, longest: float = LONGEST_BRIDGE) -> np.ndarray:
     return steps > longest * np.median(steps[1:])
 
 
-def _jumps(seen):
+def jumps(seen: np.ndarray) -> np.ndarray:
     """Rows at which a position leaps and stays there: another reference, rows lost, channels exchanged."""
     # A leap differs from the median of its neighbours
     # by more than the usual scatter and their range.

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shipcosim.angles import wrap_series
+from shipcosim.angles import unwrap_series, wrap_series
 from shipcosim.diagnose.finding import Finding, log_fault
 from shipcosim.diagnose.log.roles import NAVIGATION
 from shipcosim.diagnose.log.thresholds import (
@@ -20,6 +20,7 @@ from shipcosim.diagnose.log.thresholds import (
     MOST_FLAGGED,
     NEAR_NORTH,
     NO_TURN,
+    NOISE_SEEN,
     RUN_CHANCE,
     SHORTEST_GAP,
 )
@@ -197,14 +198,39 @@ def _flat_runs(log, roles):
     limits = [_straight(log[role], role) for role in roles]
     straight = ((bends <= limits) | np.isinf(bends)).all(axis=1) & np.isfinite(bends).any(axis=1)
     least = max(FEWEST_GAP_ROWS, int(SHORTEST_GAP / np.median(np.diff(time))) - 2)
-    # Only runs longer than chance makes them, and long enough in time, are lost data.
-    for first, last in _long_runs(straight | _same(values), least):
+    # Only runs longer than chance makes them, and long enough in time, are lost data. They are
+    # unusual only where noise is seen: a channel too coarse to show it is straight in calm water.
+    flat = list(_long_runs(straight | _same(values), least))
+    others = np.ones(len(time), bool)
+    for first, last in flat:
+        others[first:last] = False
+    if not any(_shows_noise(log[role][others], role) for role in roles):
+        return
+    for first, last in flat:
         kind = _kind(values[first:last])
         last = min(last + (kind == STRAIGHT), len(time) - 1)  # rows of the line, both ends included
         if time[last] - time[first] >= SHORTEST_GAP and (
             len(roles) > 2 or _is_line(log, roles, first, last)
         ):
             yield _Run(first + 1, last - (kind == STRAIGHT), roles, kind)
+
+
+def _shows_noise(values, role):
+    """Whether a channel is noisy beyond its resolution: by differences that motion makes smaller, and noise does not."""
+    values = finite(values)
+    if len(values) < FEWEST_CONSTANT:
+        return True
+    if role == "heading" or role.endswith("_from"):
+        values = unwrap_series(np.radians(values)) * 180.0 / np.pi
+    # Second differences of white noise change their sign from row to row (correlation -2/3), those of a motion do not.
+    bends = np.diff(values, n=2)
+    usual = np.median(np.abs(bends))
+    tame = np.clip(bends, -3.0 * usual, 3.0 * usual)
+    if np.mean(tame[1:] * tame[:-1]) > -np.mean(tame**2) / 3.0:
+        return False
+    # Size of white noise with the median of second and of fourth differences.
+    noise = min(usual / 6.0**0.5, np.median(np.abs(np.diff(values, n=4))) / 70.0**0.5) / 0.6745
+    return bool(noise > NOISE_SEEN * quantum(values))
 
 
 def _kind(values):

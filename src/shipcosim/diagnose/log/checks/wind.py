@@ -11,7 +11,7 @@ from shipcosim.diagnose.log.checks.kinematics import (
     filter_for,
     whiteness,
 )
-from shipcosim.diagnose.log.checks.labels import best_segment, in_segment
+from shipcosim.diagnose.log.checks.segments import best_segment, in_segment
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
 from shipcosim.diagnose.log.rows import inside
 from shipcosim.diagnose.log.thresholds import (
@@ -55,7 +55,7 @@ def mislabelled_wind(log: dict) -> list[Finding]:
     Parameters
     ----------
     log : dict of (n,) arrays
-        `time` [s] and roles in their units, NaN where not to be used; headings without jumps; labels put right.
+        `time` [s] and roles in their units, NaN where not to be used; labels put right.
     """
     rows = complete_rows(log, ROLES)
     if len(rows) < 100:

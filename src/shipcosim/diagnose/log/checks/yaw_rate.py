@@ -8,8 +8,8 @@ import numpy as np
 
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.checks.kinematics import heading_motion
-from shipcosim.diagnose.log.checks.labels import best_segment, in_segment
 from shipcosim.diagnose.log.checks.samples import quantum
+from shipcosim.diagnose.log.checks.segments import best_segment, in_segment
 from shipcosim.diagnose.log.mislabels import HEADING_LABELS, finding_of
 from shipcosim.diagnose.log.thresholds import LIKELY_SIGNS, QUIET_CLIP, QUIET_GAIN, QUIETER
 
@@ -22,7 +22,7 @@ def silent_rate(log: dict) -> list[Finding]:
     Parameters
     ----------
     log : dict of (n,) arrays
-        `time` [s] and roles in their units, NaN where not to be used; headings without jumps.
+        `time` [s] and roles in their units, NaN where not to be used.
     """
     motion = heading_motion(log)
     if motion is None:

@@ -7,7 +7,7 @@ wrong by a thousand does no harm.
 """
 
 import math
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
@@ -19,6 +19,7 @@ from shipcosim.diagnose.log.thresholds import (
     FEWEST_FITTED,
     FIT_CLIP,
     HEARD,
+    MOST_CHANGE,
     MOST_FITTED,
     NOISIER,
     RELATION_WINDOWS,
@@ -105,10 +106,10 @@ def fitted(
     if not pairs:
         return {}
     # Thin the rows, and thin each array only once: pairs share them.
-    rows = _rows(len(time), [seen for seen, _ in pairs.values()])
-    thinned = {id(one): one[rows] for pair in pairs.values() for one in pair}
+    rows = thinned(len(time), [seen for seen, _ in pairs.values()])
+    few = {id(one): one[rows] for pair in pairs.values() for one in pair}
     time = time[rows]
-    pairs = {key: (thinned[id(seen)], thinned[id(told)]) for key, (seen, told) in pairs.items()}
+    pairs = {key: (few[id(seen)], few[id(told)]) for key, (seen, told) in pairs.items()}
     # Rows after a gap start the filter anew. With too few other rows nothing can be fitted.
     starts = after_gaps(time)
     if (~starts).sum() < FEWEST_FITTED:
@@ -125,14 +126,14 @@ def fitted(
     return found if found[best].evidence > HEARD else {}
 
 
-def _rows(count, series):
+def thinned(count: int, series: Sequence[np.ndarray]) -> slice:
     """Every so many rows that there are not too many, and that a position of coarse resolution changes between them."""
     # Limit the cost of long logs. Then thin further while
     # most steps show no change of a coarse channel.
     stride = max(1, math.ceil(count / MOST_FITTED))
     while (
         count / stride > 4 * FEWEST_FITTED
-        and min(np.mean(np.diff(one[::stride]) != 0.0) for one in series) < 0.5
+        and min(np.mean(np.diff(one[::stride]) != 0.0) for one in series) < MOST_CHANGE
     ):
         stride *= 2
     return slice(None, None, stride)

@@ -75,19 +75,24 @@ class Judged:
     rate: tuple[float, float] = (1.0, 0.0)
 
 
-def judged(evidence: Evidence, changes: Sequence[LogMistake]) -> tuple[list[Judged], float]:
+def judged(
+    evidence: Evidence, changes: Sequence[LogMistake], more: float = 0.0
+) -> tuple[list[Judged], float]:
     """Combinations of up to two changes, likeliest first; and the probability that none of them explains the log.
 
     Parameters
     ----------
     evidence : Evidence
     changes : sequence of LogMistake
+    more : float
+        What any mistake costs more, as one of a part of a log does. [nats]
     """
     # Score each combination, and the hypothesis that none of them explains the log.
     best = _best_forms(evidence)
     tried = list(_combinations(changes))
     scored = [_score(combination, evidence) for combination in tried]
-    likely = np.array([*(score for score, _ in scored), best - UNEXPLAINED_COST])
+    wrong = np.array([bool(combination) for combination in tried] + [True])
+    likely = np.array([*(score for score, _ in scored), best - UNEXPLAINED_COST]) - more * wrong
     # Posterior probabilities: the exponentials of the scores,
     # normalised. The largest is subtracted first to avoid overflow.
     shares = np.exp(likely - likely.max())

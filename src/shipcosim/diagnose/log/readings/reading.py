@@ -36,7 +36,7 @@ NOTHING_ELSE = "nothing else is wrong"
 DEGREE = float(np.degrees(1.0))
 
 
-def misread(log: dict, stated: dict[str, str]) -> list[Finding]:
+def misread(log: dict, stated: dict[str, str], more: float = 0.0) -> list[Finding]:
     """Mistakes of units, frames, signs and of the time base that hold throughout a log.
 
     Parameters
@@ -45,6 +45,8 @@ def misread(log: dict, stated: dict[str, str]) -> list[Finding]:
         `time`, increasing, and roles in their units as logged.
     stated : dict of str to str
         Units that headers or a channel file state, by role.
+    more : float
+        What any mistake costs more, as one of a part of a log does. [nats]
 
     Returns
     -------
@@ -57,7 +59,7 @@ def misread(log: dict, stated: dict[str, str]) -> list[Finding]:
         return []  # what is usual alone says nothing
     # Posterior of all combinations of mistakes. The angle of a grid is estimated
     # only where positions were not converted from latitude and longitude.
-    readings, unexplained = judged(evidence, changes(stated))
+    readings, unexplained = judged(evidence, changes(stated), more)
     angle = _angle(readings[0], evidence) if "latitude" not in stated else None
     return (
         _findings(readings, unexplained, angle) if _holds_throughout(readings[0], evidence) else []

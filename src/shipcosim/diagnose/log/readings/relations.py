@@ -6,9 +6,15 @@ with a complex factor c: its size is a matter of units and of the time base, its
 with c and with how likely it is, hold all that a log says about such mistakes.
 """
 
+import cmath
+from dataclasses import dataclass
+
 import numpy as np
 
 from shipcosim.angles import wrap_series
+from shipcosim.diagnose.log.checks.kinematics import complete_rows
+from shipcosim.diagnose.log.mislabels import POSITION, VELOCITY
+from shipcosim.diagnose.log.readings.changes import LogInterpretation
 from shipcosim.diagnose.log.readings.fit import fitted
 from shipcosim.diagnose.log.thresholds import (
     ALONGSIDE,
@@ -27,6 +33,63 @@ FORMS = {
     ("mirrored", "earth"): lambda w, e: np.conj(w),
 }
 """Forms of the velocity over ground, by how surge and sway are taken and by what turns them."""
+RATE = ("as is", "rate")
+"""The form of the yaw rate."""
+
+
+@dataclass(frozen=True)
+class RowsOfRelation:
+    """One relation of a log as labelled, row by row.
+
+    Attributes
+    ----------
+    rows : (n,) array of int
+        Rows of the log in which all its channels have values.
+    seen : (n,) complex array
+        Position [m] or heading [deg].
+    told : dict of (n,) complex arrays
+        What each form of the rate adds up to.
+    axes : int
+        2 of positions, 1 of headings.
+    """
+
+    rows: np.ndarray
+    seen: np.ndarray
+    told: dict[tuple[str, str], np.ndarray]
+    axes: int
+
+    def predicted(self, reading: LogInterpretation) -> tuple[tuple[str, str], complex]:
+        """The form in which what is told is proportional to what is seen, and the factor, as a reading has it."""
+        if self.axes == 1:
+            return RATE, reading.rate_factor
+        return reading.form, cmath.exp(reading.factor)
+
+
+def rows_of_relations(log: dict) -> list[RowsOfRelation]:
+    """Position against velocity, and heading against yaw rate; without those that cannot be compared.
+
+    Parameters
+    ----------
+    log : dict of (n,) arrays
+        `time` [s] and roles in their units, NaN where not to be used.
+    """
+    found = []
+    rows = complete_rows(log, ("heading", "yaw_rate"))
+    if len(rows) and _can_be_followed(change := wrap_series(np.diff(log["heading"][rows]))):
+        told = _integral(log["time"][rows], log["yaw_rate"][rows]).astype(complex)
+        found.append(RowsOfRelation(rows, running_sums(change).astype(complex), {RATE: told}, 1))
+    rows = complete_rows(log, ("heading", *POSITION, *VELOCITY))
+    if len(rows) and _can_be_followed(wrap_series(np.diff(log["heading"][rows]))):
+        velocity = (log["surge"] + 1j * log["sway"])[rows]
+        turn = np.exp(1j * np.radians(log["heading"][rows]))
+        ways = _ways(log["time"][rows], velocity, turn)
+        found.append(RowsOfRelation(rows, (log["north"] + 1j * log["east"])[rows], ways, 2))
+    return found
+
+
+def _ways(time, velocity, turn):
+    """What each form of the velocity adds up to."""
+    return {form: _integral(time, change(velocity, turn)) for form, change in FORMS.items()}
 
 
 def position_relations(log: dict, headings: dict, positions: dict) -> dict:
@@ -61,9 +124,7 @@ def position_relations(log: dict, headings: dict, positions: dict) -> dict:
         if not _can_be_followed(wrap_series(np.diff(values[rows]))):
             continue
         turn = np.exp(1j * np.radians(values[rows]))
-        ways = {
-            form: _integral(time, change(velocity[rows], turn)) for form, change in FORMS.items()
-        }
+        ways = _ways(time, velocity[rows], turn)
         for position, seen in known_positions.items():
             pairs |= {(heading, position, form): (seen, way) for form, way in ways.items()}
     # Fit all pairs at once, since they share thinning
