@@ -2,6 +2,7 @@
 
 import http.client
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -13,8 +14,10 @@ import c_fmus
 import numpy as np
 import pytest
 from report.live.test_live import SAME, largest_difference, repeated
+from typer.testing import CliRunner
 from websockets.sync.client import connect
 
+from shipcosim.cli.app import app
 from shipcosim.live import LiveRun, LiveServer
 from shipcosim.report.live import prepared, server_page
 from shipcosim.scenario import read_scenario
@@ -232,6 +235,44 @@ def test_one_page_steers_and_the_others_read(served):
     assert run["done"] == [[11, "override", "gear", 2]]
     assert run["step"] == 26
     second.close(), third.close()
+
+
+def greeting_rows(server, step):
+    """All rows once a step has been reached, as another page gets them."""
+    while True:
+        with socket(server) as page:
+            told(page, "run")
+            if np.frombuffer((rows := page.recv(timeout=30.0))[:8])[0] >= step:
+                return rows
+
+
+@pytest.mark.parametrize("has_compiler", [True, False])
+def test_a_run_that_goes_back_repeats_itself_to_the_bit(craft_project, monkeypatch, has_compiler):
+    monkeypatch.chdir(craft_project)
+    monkeypatch.setattr("shipcosim.cosim.master.compiled.is_installed", lambda: has_compiler)
+    with serving(craft_project) as server, socket(server) as first:
+        told(first, "run")
+        change = [151, "override", "gear", 3]
+        first.send(advance(201, [21, "bias", "speed", 0.5], change))
+        before = greeting_rows(server, 201)
+        first.send(json.dumps({"do": "back", "to": 101}))
+        assert told(first, "run")["run"]["done"] == [[21, "bias", "speed", 0.5]]
+        first.send(advance(201, change))
+        assert greeting_rows(server, 201) == before
+
+
+def test_the_command_starts_a_server_where_no_page_can_run_the_system(foreign_project, monkeypatch):
+    monkeypatch.chdir(foreign_project)
+
+    def interrupted(self):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(LiveRun, "run", interrupted)
+    found = CliRunner().invoke(app, ["live", "scenarios/odd.toml", "--no-open"])
+    assert found.exit_code == 0
+    assert "pilot" in found.output and "has no native code" in found.output
+    assert re.search(r"http://127\.0\.0\.1:\d+/[\w-]{32}/", found.output)
+    assert not (foreign_project / "results").exists()
 
 
 @pytest.mark.parametrize(
