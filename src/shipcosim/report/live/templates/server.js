@@ -2,7 +2,7 @@
 function connectEngine(about, record) {
   const socket = new WebSocket(location.href.replace(/^http/, "ws").replace(/#.*/, "")), notice = document.getElementById("server");
   socket.binaryType = "arraybuffer";
-  const LOOK = 50, AHEAD = 0.1;  // ms of steps that are asked for at once, s of the clock that rows may take to come: assumed
+  const LOOK = 50, AHEAD = 0.2;  // ms of steps that are asked for at once, s of the clock that rows may take to come: assumed
   const signals = about.starts.map(([, name]) => name), step = about.step[0] / about.step[1];
   let asked = 0, arrived = 0, waits = true, run = null, seen = performance.now(), pace = 20;  // steps of a ms
   const tell = (words) => { notice.hidden = false; notice.textContent = words; };
