@@ -135,7 +135,9 @@ class LiveRun:
         self._simulation = simulation = self._new_simulation()
         plan = simulation.plan
         events = changes(self._scenario, plan, self._grid)
-        self._events: list[Change] = [(e.step, e.action, label(e.end), e.value) for e in events]
+        self._events: list[Change] = [
+            (e.step, e.action, label(e.end), e.value or 0) for e in events
+        ]
         self._done: list[Change] = []
         self._states: dict[int, _State] = {}
         self._waiting: list[tuple[Any, str]] = []
@@ -172,6 +174,7 @@ class LiveRun:
                 break
             if self._waiting:
                 self._obey(*self._waiting.pop(0))
+        # What is due now acts on the step that starts; then on to whatever comes first.
         k = self._now
         due = [change for change in (*self._events, *self._done) if change[0] == k]
         self._change(due)
@@ -259,33 +262,37 @@ class LiveRun:
         else:
             kinds = [plan.kind_of(end)]
             modifiers_of(end, plan, self._simulation.exchanges)
-        number = float(value or 0)
-        fits = isfinite(number) and bool(kinds) and (kinds == ["Real"] or abs(number) < 2**31)
+        number = 0 if action == "reset" else value
+        is_small = kinds == ["Real"] or abs(number) < 2**31
+        fits = isinstance(number, int | float) and isfinite(number) and bool(kinds) and is_small
         if action not in ("override", "bias", "reset") or not fits or int(step) < self._now:
             raise ValueError(name)
-        return int(step), action, str(name), value
+        return int(step), action, str(name), number
 
     # ---- changes and states
 
     def _change(self, due: list[Change]) -> None:
-        """Apply changes. Those of the system's inputs come with the values of this time, as in `Master.run`."""
-        plan, exchanges = self._simulation.plan, self._simulation.exchanges
+        """Apply changes of one step."""
+        plan = self._simulation.plan
+        exchanges = self._simulation.exchanges
+        # Inputs of the system are passed on with the values of this time, as `Master.run` does with external ones.
         for _, action, name, value in due:
             end = plan.system.split(name)
             for kind, exchange in exchanges.items() if end[0] is None else ():
                 layout = plan.layouts[kind]
                 if end in layout.external:
-                    start = layout.external[end] if action != "override" else 0
-                    given = (start or 0) + (value if action != "reset" else 0)  # pyright: ignore
+                    start: Any = layout.external[end] or 0
+                    given = value if action == "override" else start + value
                     exchange.external[list(layout.external).index(end)] = given
         if due:
             for exchange in exchanges.values():
                 exchange.transfer(self._now)
+        # Overrides come after that: an output that is overridden now shows it from what this step puts out.
         for _, action, name, value in due:
             end = plan.system.split(name)
             if end[0] is not None:
                 modifiers, row = modifiers_of(end, plan, exchanges)
-                getattr(modifiers, action)(row, *([] if action == "reset" else [value]))
+                modifiers.put(row, 0 if action == "override" else 1, value)
         for exchange in exchanges.values() if due else ():
             exchange.refresh()
 
@@ -302,6 +309,7 @@ class LiveRun:
         """Go to a state at or before a step, and on to it; forget what was done from it on."""
         if self._no_way_back or not self._states:
             raise ValueError("there is no state")
+        # The latest state at or before the step: FMUs first, then the values that are exchanged.
         step = max((one for one in self._states if one <= to), default=min(self._states))
         state = self._states[step]
         simulation = self._simulation
@@ -321,9 +329,11 @@ class LiveRun:
                     modifiers.reset(row)
                 for row, modifier in wanted.items():
                     modifiers.put(row, *modifier)
+        # Texts are passed on again, since the FMUs may have others; compiled components take the numbers of their FMUs.
         for connection in simulation.strings:
             connection.last = None
         self._master.take_back()
+        # From here on the run knows nothing of what came later.
         self._done = [change for change in self._done if change[0] < to]
         self._states = {one: kept for one, kept in self._states.items() if one <= step}
         self._now, self._goal, self._failure = step, max(to, step), ""
