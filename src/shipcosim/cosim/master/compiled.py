@@ -184,10 +184,8 @@ class CompiledMaster(Master):
             return
         # A repeated run uses the arrays of the run before, if only numbers differ.
         if (loop := self._loop) is None or not loop.take_anew(external):
-            loop = _CompiledLoop(self, grid, external, recorders)
-        self._loop = loop
-        k = grid.first
-        first = grid.first
+            self._loop = loop = _CompiledLoop(self, grid, external, recorders)
+        k = first = grid.first
         last = grid.last
         steps = 16
         report_at = perf_counter()
