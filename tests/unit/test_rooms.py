@@ -93,6 +93,7 @@ MAY_IMPORT = {
         "capability",
         "sweep",
     },
+    "live": {"errors", "options", "scenario", "ssp", "cosim"},
     "results": {
         "temporary",
         "errors",
@@ -144,6 +145,7 @@ MAY_IMPORT = {
         "sweep",
         "results",
         "calls",
+        "live",
     },
     "pytest_plugin": {"library", "errors", "checks", "scenario", "results", "calls", "cli"},
 }
@@ -166,6 +168,7 @@ ONLY_DOOR = {
     "SALib": {"sweep"},
     "optuna": {"sweep"},
     "distributed": {"sweep.workers"},
+    "websockets": {"live.server"},
     "pyarrow": {"series", "sweep.storage"},
 }
 

@@ -1,7 +1,10 @@
 """Systems in other forms: `shipcosim export fmu`, `osp` and `page`; `shipcosim live` opens that page."""
 
+from __future__ import annotations
+
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -19,6 +22,10 @@ from shipcosim.cli.options import (
     time_option,
 )
 from shipcosim.cli.terminal import say
+
+if TYPE_CHECKING:
+    from shipcosim.scenario import Scenario
+    from shipcosim.ssp import System
 
 
 def fmu(
@@ -103,8 +110,10 @@ def page(
     """
     from shipcosim.cli.console import shown_path
 
-    options = parameters, components, fmus, strict
-    say(shown_path(_write_page(what, options, stop_time, step_size, out, force=force)))
+    system, scenario = _system_and_scenario(
+        what, (parameters, components, fmus, strict), (stop_time, step_size)
+    )
+    say(shown_path(_write_page(system, scenario, out, force=force)))
 
 
 def live(
@@ -128,45 +137,73 @@ def live(
 ) -> None:
     """Steer a ship live: open the page that runs the system itself, as `export page` writes it.
 
-    All components need native code; what has none is named.
+    Where a component has no native code, a server on this computer runs the system until Ctrl-C, and the page shows it.
 
     Example: shipcosim live four_corner
     """
+    from shipcosim.cli.console import print_problems, shown_path
+    from shipcosim.cosim.webassembly import NotForPages
+
+    system, scenario = _system_and_scenario(
+        what, (parameters, components, fmus, strict), (stop_time, step_size)
+    )
+    try:
+        path = _write_page(system, scenario, out, force=True)
+    except NotForPages as reason:
+        print_problems(
+            replace(problem, severity="remark", remedy="") for problem in reason.problems
+        )
+        _serve(system, scenario, no_open)
+        return
+    say(shown_path(path))
+    _open(path.resolve().as_uri(), no_open)
+
+
+def _serve(system: System, scenario: Scenario, no_open: bool) -> None:
+    """Run a system with a server until Ctrl-C."""
+    from shipcosim.live import LiveRun, LiveServer
+    from shipcosim.report.live import prepared, server_page
+
+    page = server_page(system, scenario)
+    with LiveServer(page) as server:
+        say(f"A server on this computer runs the system; Ctrl-C ends it: {server.url}")
+        _open(server.url, no_open)
+        try:
+            LiveRun(*prepared(system, scenario), server, say).run()
+        except KeyboardInterrupt:
+            say("The server has ended.")
+
+
+def _open(address: str, no_open: bool) -> None:
+    """Open a page in the browser, unless that is not wanted."""
     import webbrowser
 
-    from shipcosim.cli.console import shown_path
-
-    options = parameters, components, fmus, strict
-    path = _write_page(what, options, stop_time, step_size, out, force=True)
-    say(shown_path(path))
-    if not no_open and not webbrowser.open(path.resolve().as_uri()):
-        say("No browser was found: open this file in one.")
+    if not no_open and not webbrowser.open(address):
+        say("No browser was found: open this address in one.")
 
 
-def _write_page(
+def _system_and_scenario(
     what: str,
     options: tuple[Parameters, Components, Fmus, Strict],
-    stop_time: float | None,
-    step_size: float | None,
-    out: Path,
-    *,
-    force: bool,
-) -> Path:
-    """Write the page that runs a system or scenario; return its path. Times in s."""
+    times: tuple[float | None, float | None],
+    events: OspEvents = None,
+    needs_end: bool = True,
+) -> tuple[System, Scenario]:
+    """What is exported, with what the command line changed: stop time and step size [s], sets, components."""
     from shipcosim.calls.arguments import Reading, system_and_scenario
-    from shipcosim.cli.console import print_problems, progress_of
+    from shipcosim.cli.console import print_problems
     from shipcosim.cli.requests import parsed_components
-    from shipcosim.report.live import live_page
-    from shipcosim.staging import staged
 
     parameters, components, fmus, strict = options
     swapped = parsed_components(components or ())
     reading = Reading(
         parameters=parameters or [], components=swapped, fmus=fmus or [], strict=strict
     )
-    times = {"stop_time": stop_time, "step_size": step_size}
-    keys = {name: time for name, time in times.items() if time is not None}
-    system, scenario, remarks = system_and_scenario(what, reading, keys)
+    named = zip(("stop_time", "step_size"), times, strict=True)
+    keys = {name: time for name, time in named if time is not None}
+    system, scenario, remarks = system_and_scenario(
+        what, reading, keys, events, needs_end=needs_end
+    )
     print_problems([*system.deviations, *remarks])
     # What the command line changed belongs to the scenario that the page saves.
     given = {
@@ -174,7 +211,15 @@ def _write_page(
         "parameters": [*scenario.parameters, *map(str, parameters or ())],
         "components": {**scenario.components, **{k: str(v) for k, v in swapped.items()}},
     }
-    scenario = scenario.model_copy(update=given)
+    return system, scenario.model_copy(update=given)
+
+
+def _write_page(system: System, scenario: Scenario, out: Path, *, force: bool) -> Path:
+    """Write the page that runs a system; return its path."""
+    from shipcosim.cli.console import progress_of
+    from shipcosim.report.live import live_page
+    from shipcosim.staging import staged
+
     with progress_of("Compiling") as progress:
         html = live_page(system, scenario, progress)
     # An earlier page is set aside at the end: where nothing could be made, it stays.
@@ -207,24 +252,19 @@ def osp(
 
     Example: shipcosim export osp four_corner --out results/osp
     """
-    from shipcosim.calls.arguments import Reading, system_and_scenario
     from shipcosim.cli.console import print_problems, shown_path
-    from shipcosim.cli.requests import parsed_components
     from shipcosim.cosim.export.osp import SCENARIO, STRUCTURE, write_osp
     from shipcosim.staging import set_aside
 
-    swapped = parsed_components(components or ())
-    reading = Reading(
-        parameters=parameters or [], components=swapped, fmus=fmus or [], strict=strict
-    )
-    times = {"stop_time": stop_time, "step_size": step_size}
-    keys = {name: time for name, time in times.items() if time is not None}
     # OSP's structures need no end; events need one.
-    system, scenario, remarks = system_and_scenario(
-        what, reading, keys, events, needs_end=events is not None
+    system, scenario = _system_and_scenario(
+        what,
+        (parameters, components, fmus, strict),
+        (stop_time, step_size),
+        events,
+        needs_end=events is not None,
     )
     has_end = bool(stop_time or system.experiment.stop_time or scenario.path)
-    print_problems([*system.deviations, *remarks])
     set_aside(out, [STRUCTURE, SCENARIO, *(file.name for file in out.glob("*.fmu"))], force=force)
     print_problems(write_osp(system, scenario, out, has_end=has_end))
     for path in sorted(out.glob("*")):

@@ -23,6 +23,10 @@ MOST_ITERATIONS = 200
 BETWEEN_REPORTS = 0.1
 """Least time between two calls that report progress. [s]"""
 
+Between = Callable[[int], tuple[int, int]]
+"""Is called between two steps with the number of the next one. It returns the number of the step to go on with, an earlier
+one where it has restored a state, and that of the step before which it is to be called again."""
+
 SAME = 1e-12
 """Relative change of an input in an iteration below which it is taken for rounding."""
 
@@ -173,6 +177,7 @@ class Master:
         external: Sequence[tuple[np.ndarray, np.ndarray]],
         recorders: Recorders,
         progress: CountProgress | None = None,
+        between: Between | None = None,
     ) -> None:
         """Step to the end, recording rows.
 
@@ -188,6 +193,8 @@ class Master:
             Keep a row of the values where one is due.
         progress : callable, optional
             Called with (steps done, steps in all) some ten times a second.
+        between : callable, optional
+            Called before the first step; it may wait, and change signals.
 
         Raises
         ------
@@ -198,7 +205,10 @@ class Master:
         last = grid.last
         steps_per_row = grid.steps_per_row
         report_at = perf_counter()
-        for k in range(first, last):
+        k = meeting = first
+        while k < last:
+            if between is not None and k == meeting:
+                k, meeting = between(k)
             # Events act on the step that starts now, before its row is recorded.
             if k in actions:
                 self._act(actions[k])
@@ -216,6 +226,7 @@ class Master:
             self._transfer(k + 1)
             # A NaN would spread to all components; stop at the first one and name it.
             self._check_finite(clock[k + 1])
+            k += 1
         # The final values are a row too.
         if last % steps_per_row == 0:
             recorders.record()
@@ -224,6 +235,9 @@ class Master:
 
     def give_back(self) -> None:
         """Bring the FMUs to the state that the run has reached, if they are not there already."""
+
+    def take_back(self) -> None:
+        """Go on from the state of the FMUs, which has been restored."""
 
     def _act(self, actions):
         for action in actions:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.cosim.master.algorithm import BETWEEN_REPORTS, Master, failed_step
+from shipcosim.cosim.master.algorithm import BETWEEN_REPORTS, Between, Master, failed_step
 from shipcosim.cosim.master.component import ComponentInstance
 from shipcosim.cosim.master.profile import MASTER, Profile
 from shipcosim.cosim.master.recorder import Recorders
@@ -166,6 +166,11 @@ class CompiledMaster(Master):
         if self._loop is not None:
             self._loop.give_back()
 
+    def take_back(self) -> None:
+        """See `Master.take_back`."""
+        if self._loop is not None:
+            self._loop.take_back()
+
     def run(
         self,
         grid: TimeGrid,
@@ -173,26 +178,32 @@ class CompiledMaster(Master):
         external: Sequence[tuple[np.ndarray, np.ndarray]],
         recorders: Recorders,
         progress: CountProgress | None = None,
+        between: Between | None = None,
     ) -> None:
         """See `Master.run`."""
         if why := self._not_compiled():
             self.reasons = {"all components": why}
-            super().run(grid, actions, external, recorders, progress)
+            super().run(grid, actions, external, recorders, progress, between)
             return
         # A repeated run uses the arrays of the run before, if only numbers differ.
         if (loop := self._loop) is None or not loop.take_anew(external):
             with nullcontext() if self.profile is None else self.profile.during(MASTER, "load"):
-                loop = _CompiledLoop(self, grid, external, recorders)
-        k = grid.first
-        first = grid.first
+                self._loop = loop = _CompiledLoop(self, grid, external, recorders)
+        k = first = grid.first
         last = grid.last
         steps = 16
         report_at = perf_counter()
         due = sorted(step for step in actions if step > first)
+        meeting = last if between is None else first
         try:
             while k < last:
+                if between is not None and k == meeting:
+                    loop.give_versions()
+                    k, meeting = between(k)
+                    loop.take_modifiers()
                 # Events act between calls, so a call never goes past the next event.
                 if k in actions:
+                    loop.give_versions()
                     self._act(actions[k])
                     loop.take_modifiers()
                 try:
@@ -208,7 +219,7 @@ class CompiledMaster(Master):
                 while due and due[0] <= k:
                     due.pop(0)
                 # The call ends at the next event, at the end, or after a number of steps.
-                end = min(k + steps, due[0] if due else last, last)
+                end = min(k + steps, due[0] if due else last, meeting, last)
                 began = perf_counter()
                 k = loop.run(k, end)
                 # Long calls are fast, short ones let Ctrl-C and progress through.
@@ -218,7 +229,6 @@ class CompiledMaster(Master):
                     else max(1, steps // 2)
                 )
         finally:
-            self._loop = loop
             self.reasons = loop.reasons
             if self.profile is not None:
                 loop.count_in(self.profile)
@@ -328,6 +338,17 @@ class _CompiledLoop:
         for step in self._steps.values():
             step.give_back()
 
+    def take_back(self) -> None:
+        """Copy the numbers of the Python objects to the compiled components."""
+        for component in self._components:
+            if (compiled := self._steps.get(component.name)) is not None:
+                self._take(component, compiled)
+
+    def give_versions(self) -> None:
+        """Tell Python how often the loop has changed discrete inputs, since it sets them only when the count changes."""
+        for structure, (_, exchange) in zip(self._c_exchanges, self._exchanges, strict=True):
+            exchange.version = structure.version
+
     def take_modifiers(self) -> None:
         """Copy the overrides and biases that act now."""
         # Only the active ones: the loop applies scale and shift on these rows.
@@ -427,10 +448,7 @@ class _CompiledLoop:
         number = -1 - number if number < 0 else number
         component = self._components[number]
         try:
-            # The C loop counts changes of discrete inputs; Python sets them only when the count
-            # changes.
-            for structure, (_, exchange) in zip(self._c_exchanges, self._exchanges, strict=True):
-                exchange.version = structure.version
+            self.give_versions()
             if reading:
                 component.read()
             else:
@@ -457,9 +475,11 @@ class _CompiledLoop:
         component.write()
         time = float(self._clock[k])
         component.step(time, float(self._clock[k + component.multiple]) - time)
-        if compiled is None:
-            return
-        # If the step changed the shape of the state, Python steps this component from now on.
+        if compiled is not None:
+            self._take(component, compiled)
+
+    def _take(self, component, compiled):
+        # If the shape of the state has changed, Python steps this component from now on.
         try:
             compiled.take()
         except Untraceable as reason:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
@@ -117,9 +117,14 @@ class Simulation:
         Where the run continues from; checked.
     repeated : bool
         Whether it is to be run again with other start values.
+    changeable : collection of str
+        Inputs that are changed between two steps, whoever does it; each gets a row.
 
     Attributes
     ----------
+    plan : Plan
+    exchanges, recorders, components, strings
+        Values and rows so far by kind; instances by name, and the texts that they exchange, once it has begun.
     is_ended : bool
         Whether an FMU has ended the run before the end of the grid.
     clashes : list of Problem
@@ -139,6 +144,7 @@ class Simulation:
         options: RunOptions,
         resume: Snapshot | None = None,
         repeated: bool = False,
+        changeable: Collection[str] = (),
     ):
         order = options.order
         inputs = options.inputs
@@ -157,22 +163,23 @@ class Simulation:
         # Values of the table at all steps, computed once before the run.
         self._fed = fed = input_values(inputs, system, grid.run_times) if inputs is not None else {}
         self._active = resume.changes if resume else {}
-        self._plan = make_plan(system, scenario, fed, self._active, grid.start_time)
-        self._exchanges = make_exchanges(self._plan)
-        self._external = self._external_over_time()
+        modified = [*self._active, *changeable]
+        self.plan = make_plan(system, scenario, fed, modified, grid.start_time)
+        self.exchanges = make_exchanges(self.plan)
+        self._external = () if changeable else self._external_over_time()
         self._repeated = repeated
         self._fresh = None
-        self._components: Components = {}
+        self.components: Components = {}
         self._together: list[set[str]] = []
         self.clashes = [] if options.isolate else module_clashes(system, late_alone=True)
         self._remarks = [f"{p.where}: {p.found} Each has its own process." for p in self.clashes]
         self._master: Master | None = None
         self.is_ended = False
         # All rows are reserved before the run.
-        self._recorders = Recorders(
+        self.recorders = Recorders(
             {
-                kind: Recorder(exchange, len(grid.row_times), *recorded_rows(self._plan, kind))
-                for kind, exchange in self._exchanges.items()
+                kind: Recorder(exchange, len(grid.row_times), *recorded_rows(self.plan, kind))
+                for kind, exchange in self.exchanges.items()
             }
         )
 
@@ -198,31 +205,13 @@ class Simulation:
         RunError, Interrupted
             With the table so far.
         """
-        exchanges = self._exchanges
         grid = self._grid
         try:
-            # A repeated run keeps its instances and connections.
-            if self._master is None:
-                with self._during("load"):
-                    self._instantiate(slaves, check_interrupt)
-            master = self._master
-            assert master is not None
-            with self._during("start"):
-                master.initialise(grid.start_time, grid.stop_time)
-            if self._profile is not None and master.profile is None:
-                master.count_in(self._profile)
-                record = self._recorders.record
-                self._recorders.record = self._profile.timed(MASTER, "record", record)
-            # Continue from a snapshot: initialise as usual, then replace states and values.
-            if self._resume is not None:
-                restore_snapshot(
-                    self._resume, self._plan, exchanges, self._strings, self._components
-                )
-                master.resume(grid.first)
-            actions = event_actions(self._scenario, self._plan, exchanges, grid)
+            master = self.begin(slaves, check_interrupt)
+            actions = event_actions(self._scenario, self.plan, self.exchanges, grid)
             if self._realtime is not None:
                 add_pace(actions, grid, self._realtime)
-            master.run(grid, actions, self._external, self._recorders, progress)
+            master.run(grid, actions, self._external, self.recorders, progress)
         # An FMU may end the run: the rows until then are the result.
         except Ended as end:
             self._remarks.append(str(end))
@@ -233,14 +222,35 @@ class Simulation:
         except KeyboardInterrupt:
             raise Interrupted(self.table(complete=False)) from None
 
+    def begin(self, slaves: SlaveSource, check_interrupt: Callable[[], None]) -> Master:
+        """The master, ready for the first step. Arguments as of `run`; raises Failure or KeyboardInterrupt."""
+        grid = self._grid
+        # A repeated run keeps its instances and connections.
+        if self._master is None:
+            with self._during("load"):
+                self._instantiate(slaves, check_interrupt)
+        master = self._master
+        assert master is not None
+        with self._during("start"):
+            master.initialise(grid.start_time, grid.stop_time)
+        if self._profile is not None and master.profile is None:
+            master.count_in(self._profile)
+            record = self.recorders.record
+            self.recorders.record = self._profile.timed(MASTER, "record", record)
+        # Continue from a snapshot: initialise as usual, then replace states and values.
+        if self._resume is not None:
+            restore_snapshot(self._resume, self.plan, self.exchanges, self.strings, self.components)
+            master.resume(grid.first)
+        return master
+
     def _during(self, phase):
         """Counts the time of a block, where it is asked for."""
         return nullcontext() if self._profile is None else self._profile.during(MASTER, phase)
 
     def _instantiate(self, slaves, check_interrupt):
         """Instantiate the FMUs and wire them."""
-        plan = self._plan
-        exchanges = self._exchanges
+        plan = self.plan
+        exchanges = self.exchanges
         step_size = self._scenario.step_size
         # A common solver needs all members in this process, stepped at the same time.
         apart = (
@@ -256,20 +266,20 @@ class Simulation:
         inner = [] if apart else inner_connections(plan)
         self._remarks += exchanged_at_steps(plan, inner, apart, step_size)
         # Instances first, since the group's solver takes them over.
-        self._components = make_components(
+        self.components = make_components(
             plan, exchanges, slaves, step_size, check_interrupt, inner
         )
-        couple(plan, self._components, stepping_order(plan, self._order), inner)
+        couple(plan, self.components, stepping_order(plan, self._order), inner)
         # For a repetition keep the state before the start; it is faster than a new instance.
-        if self._repeated and can_rewind(plan, self._components):
+        if self._repeated and can_rewind(plan, self.components):
             states = {
                 name: one.slave.python_object._get_fmu_state()
-                for name, one in self._components.items()
+                for name, one in self.components.items()
             }
             self._fresh = plan.system, states
         self._together = groups_of(inner)
-        self._strings = make_string_connections(plan, self._components)
-        self._master = self._new_master(self._strings, check_interrupt)
+        self.strings = make_string_connections(plan, self.components)
+        self._master = self._new_master(self.strings, check_interrupt)
 
     def rewind(self, system: System, scenario: Scenario) -> bool:
         """Return to before the start for another run in the same arrays; true if possible.
@@ -286,17 +296,17 @@ class Simulation:
         before, states = self._fresh
         if (changed := changed_values(before, system)) is None:
             return False
-        self._plan = with_numbers(self._plan, system)
+        self.plan = with_numbers(self.plan, system)
         # Arrays keep their places, since prepared calls and compiled code point to them.
-        for kind, exchange in self._exchanges.items():
+        for kind, exchange in self.exchanges.items():
             exchange.reset(
                 np.array(
-                    list(self._plan.layouts[kind].external.values()), dtype=exchange.sources.dtype
+                    list(self.plan.layouts[kind].external.values()), dtype=exchange.sources.dtype
                 )
             )
-        self._external, self._recorders.n_rows = self._external_over_time(), 0
+        self._external, self.recorders.n_rows = self._external_over_time(), 0
         try:
-            for name, component in self._components.items():
+            for name, component in self.components.items():
                 component.rewind(states[name], changed[name])
         except SlaveError:
             return False  # which says the run that begins anew
@@ -309,42 +319,42 @@ class Simulation:
             self._master.give_back()
         try:
             taken = take_snapshot(
-                self._plan,
-                self._exchanges,
-                self._components,
+                self.plan,
+                self.exchanges,
+                self.components,
                 self._grid,
                 self._scenario,
                 self._active,
             )
-            check_restored(taken, self._exchanges, self._components, self._grid)
+            check_restored(taken, self.exchanges, self.components, self._grid)
             return taken
         except Failure as failure:
             raise RunError(failure.problem, self.table(complete=True)) from failure
 
     def terminate(self) -> None:
         """End the simulation in all FMUs."""
-        for component in self._components.values():
+        for component in self.components.values():
             component.slave.terminate()
 
     @property
     def row_times(self) -> np.ndarray:
         """Times of the rows so far. [s]"""
-        return self._grid.row_times[: self._recorders.n_rows]
+        return self._grid.row_times[: self.recorders.n_rows]
 
     def columns(self, choose: Callable[[list[str]], Iterable[str]] = tuple) -> list[Column]:
         """Columns of the rows so far; `choose` selects names from all names."""
-        columns = columns_of(self._plan, self._recorders.n_rows, self._recorded())
+        columns = columns_of(self.plan, self.recorders.n_rows, self._recorded())
         # Copy the chosen columns: the arrays are used again by the next run.
         chosen = frozenset(choose([name for name, *_ in columns]))
         return [(c[0], np.array(c[1]), c[2], c[3]) for c in columns if c[0] in chosen]
 
     def _recorded(self):
-        n = self._recorders.n_rows
-        return {kind: recorder.columns(n) for kind, recorder in self._recorders.by_kind.items()}
+        n = self.recorders.n_rows
+        return {kind: recorder.columns(n) for kind, recorder in self.recorders.by_kind.items()}
 
     def attributes(self, complete: bool) -> dict[str, object]:
         """Facts about the run. `complete` is 1 or 0, since NetCDF has no truth values."""
-        known = attributes_of(self._plan.system, self._scenario)
+        known = attributes_of(self.plan.system, self._scenario)
         known |= {"start_time": self._grid.start_time, "engine": self._engine, "order": self._order}
         if self._inputs is not None:
             known["inputs_sha256"] = digest(self._inputs)
@@ -368,9 +378,9 @@ class Simulation:
             *(f"stepped by Python, {name}: {reason}" for name, reason in in_python.items()),
         ]
         remarks += [
-            text for component in self._components.values() for text in component.slave.remarks()
+            text for component in self.components.values() for text in component.slave.remarks()
         ]
-        remarks += range_remarks(self._plan, self.row_times, self._recorded())
+        remarks += range_remarks(self.plan, self.row_times, self._recorded())
         return list(dict.fromkeys(remarks))
 
     def table(self, complete: bool) -> xarray.Dataset:
@@ -380,9 +390,9 @@ class Simulation:
     def _external_over_time(self):
         """Changing external values of each exchange, with their values at each step."""
         changing = []
-        for kind, exchange in self._exchanges.items():
+        for kind, exchange in self.exchanges.items():
             values = external_values(
-                self._scenario, self._plan, kind, self._grid, self._fed, self._active
+                self._scenario, self.plan, kind, self._grid, self._fed, self._active
             )
             if values is not None:
                 exchange.external[:] = values[0]
@@ -391,11 +401,11 @@ class Simulation:
 
     def _new_master(self, strings, check_interrupt):
         return (CompiledMaster if self._engine == "native" else Master)(
-            [self._components[name] for name in stepping_order(self._plan, self._order)],
-            self._exchanges,
+            [self.components[name] for name in stepping_order(self.plan, self._order)],
+            self.exchanges,
             strings,
-            make_parameter_connections(self._plan, self._components),
-            {kind: self._plan.layouts[kind].names for kind in self._exchanges},
+            make_parameter_connections(self.plan, self.components),
+            {kind: self.plan.layouts[kind].names for kind in self.exchanges},
             check_interrupt,
             sequential=self._order == "gauss-seidel",
         )

@@ -7,15 +7,14 @@ import sys
 import zipfile
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from shipcosim.cosim.master.plan import Plan, label, make_plan
+from shipcosim.cosim.master.plan import Plan
 from shipcosim.cosim.slaves.instances import Instances
-from shipcosim.cosim.webassembly.wiring import Wiring
-from shipcosim.errors import Problem, raise_errors
+from shipcosim.cosim.webassembly.wiring import NotForPages, Wiring
+from shipcosim.errors import Problem
 from shipcosim.native.compiler import EXACT, check_installed, kept, run_compiler
 from shipcosim.native.export.functions import understood
 from shipcosim.native.export.text import source_of_model
@@ -38,32 +37,13 @@ CALLS = (
 REMEDY = "Run the system with `shipcosim run`, or give this component an FMU that compiles."
 
 
-@dataclass(frozen=True)
-class Module:
-    """A system that runs in a page.
-
-    Attributes
-    ----------
-    code : bytes
-        WebAssembly without imports from its host.
-    plan : Plan
-    wiring : Wiring
-    """
-
-    code: bytes
-    plan: Plan
-    wiring: Wiring
-
-
-def make_module(
-    system: System, scenario: Scenario, progress: CountProgress | None = None
-) -> Module:
-    """Compile a system.
+def make_module(plan: Plan, scenario: Scenario, progress: CountProgress | None = None) -> bytes:
+    """Compile a planned system into WebAssembly without imports from its host.
 
     Parameters
     ----------
-    system : System
-        Checked, with the scenario's start values.
+    plan : Plan
+        With a row for each input that the page may change.
     scenario : Scenario
         Checked; its values in the units of the signals.
     progress : callable, optional
@@ -71,20 +51,13 @@ def make_module(
 
     Raises
     ------
+    NotForPages
+        With every component that has no native code, and why; or what the page cannot exchange.
     ShipcosimError
-        With every component that has no native code, and why; or the compiler is missing or fails.
+        The compiler is missing or fails.
     """
     check_installed()
-    # Every input and tunable parameter gets a row, so that the page can change it.
-    inputs = [
-        label((component.name, variable.name))
-        for component in system.components.values()
-        for variable in component.variables.values()
-        if (variable.causality == "input" or variable.variability == "tunable")
-        and variable.kind in ("Real", "Integer", "Boolean")
-    ]
-    plan = make_plan(system, scenario, (), inputs)
-    texts = _texts(system, progress)
+    texts = _texts(plan.system, progress)
     # Components with the same text share its functions.
     prefixes = {text: f"fmu{n}_" for n, text in enumerate(dict.fromkeys(texts.values()))}
     of_component = {name: (prefixes[text], _guid(text)) for name, text in texts.items()}
@@ -97,7 +70,7 @@ def make_module(
             _runtime("desk.c"),
         ]
     )
-    return Module(_linked([*prefixes.items(), (desk, "")]), plan, wiring)
+    return _linked([*prefixes.items(), (desk, "")])
 
 
 def _texts(system: System, progress: CountProgress | None) -> dict[str, str]:
@@ -117,7 +90,8 @@ def _texts(system: System, progress: CountProgress | None) -> dict[str, str]:
                 problems.append(Problem(component.name, f"has no native code: {reason}.", REMEDY))
             if progress is not None:
                 progress(done, len(system.components))
-    raise_errors(problems)
+    if problems:
+        raise NotForPages(problems)
     return found
 
 

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
+from shipcosim.cosim.interactive import start_values_of
 from shipcosim.cosim.master.compiled import exchange_tables
 from shipcosim.cosim.master.instantiate import make_exchanges
 from shipcosim.cosim.master.plan import Plan, label
 from shipcosim.cosim.master.result import recorded_rows
 from shipcosim.cosim.master.signals import Exchange
-from shipcosim.errors import Problem, raise_errors
+from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.native.export.text import c_text
 from shipcosim.native.source import literal
 from shipcosim.scenario import Scenario
@@ -28,25 +28,8 @@ MOST_STEPS = 4096
 """Steps that one call of the page can make."""
 
 
-@dataclass(frozen=True)
-class StartValue:
-    """A start value, which the page can change before a start where it is a number.
-
-    Attributes
-    ----------
-    place : int
-        Among all of them.
-    signal, unit : str
-    value : number, bool or text
-    kind : str
-        Real, Integer, Boolean or String.
-    """
-
-    place: int
-    signal: str
-    value: float | bool | str
-    unit: str
-    kind: str
+class NotForPages(ShipcosimError):
+    """A page cannot run a system: a component has no native code, or what is exchanged is no number."""
 
 
 class Wiring:
@@ -69,10 +52,8 @@ class Wiring:
         In the order of the tables.
     step : Fraction
         Of the exchange. [s]
-    steps_per_row, most_steps : int
-        Steps from one recorded row to the next; steps that one call can make.
-    starts : list of StartValue
-        Known once the text is written.
+    steps_per_row : int
+        Steps from one recorded row to the next.
 
     Raises
     ------
@@ -88,9 +69,7 @@ class Wiring:
         self.exchanges: dict[str, Exchange] = make_exchanges(plan)
         self.kinds = [*self.exchanges]
         self._lines: list[str] = []
-        self.starts: list[StartValue] = []
         self.step = step = Fraction(repr(scenario.step_size))
-        self.most_steps = MOST_STEPS
         self.steps_per_row = (
             whole_steps(scenario.output_interval or scenario.step_size, scenario.step_size) or 1
         )
@@ -104,18 +83,6 @@ class Wiring:
             "N_PARTS": str(len(plan.system.components)),
             "N_INPUTS": str(sum(len(e.inputs) for e in self.exchanges.values())),
         }
-
-    @property
-    def columns(self) -> dict[str, list[str]]:
-        """Names of the columns that the loop records, by kind."""
-        found = {}
-        for kind in self.kinds:
-            layout = self._plan.layouts[kind]
-            external, inputs = recorded_rows(self._plan, kind)
-            names = list(layout.external)
-            ends = [*layout.outputs, *(names[i] for i in external)]
-            found[kind] = [label(end) for end in (*ends, *(layout.inputs[i] for i in inputs))]
-        return found
 
     def text(self) -> str:
         """The tables as C."""
@@ -281,20 +248,17 @@ class Wiring:
                 self._plan.layouts[kind].external, start=len(self._plan.layouts[kind].outputs)
             )
         }
-        for number, component in enumerate(components):
-            for name, value in component.start.items():
-                variable = component.fmu.variables[name]
-                is_text = isinstance(value, str)
-                kind = "String" if is_text else self._plan.kind(variable) or ""
-                signal = label((component.name, name))
-                told_as = variable.unit or ""
-                self.starts.append(StartValue(len(rows), signal, value, told_as, kind))  # pyright: ignore
-                shown = c_text(value) if isinstance(value, str) else "NULL"
-                told = "0.0" if isinstance(value, str) else literal(float(value))  # pyright: ignore
-                rows.append(
-                    f"{{{number}, {variable.value_reference}, {kind.upper()}, {told}, {shown}, "
-                    f"{outside.get((component.name, name), '-1, -1')}}}"
-                )
+        numbers = {component.name: number for number, component in enumerate(components)}
+        for start in start_values_of(self._plan):
+            end = self._plan.system.split(start.signal)
+            reference = self._plan.variable(end).value_reference
+            is_text = isinstance(start.value, str)
+            text = c_text(start.value) if isinstance(start.value, str) else "NULL"
+            number = "0.0" if is_text else literal(float(start.value))  # pyright: ignore
+            rows.append(
+                f"{{{numbers[end[0] or '']}, {reference}, {start.kind.upper()}, {number}, {text}, "
+                f"{outside.get(end, '-1, -1')}}}"
+            )
         self._constants["N_STARTS"] = str(len(rows))
         self._table("static Start starts[]", [*rows, "{0, 0, 0, 0.0, NULL, -1, -1}"])
 
@@ -313,4 +277,5 @@ def _check(plan: Plan) -> None:
         problems.append(
             Problem(plan.system.name, "It exchanges integers of 64 bits.", "Use those of 32 bits.")
         )
-    raise_errors(problems)
+    if problems:
+        raise NotForPages(problems)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from shipcosim.cosim import simulate
+from shipcosim.cosim.interactive import changeable_inputs
+from shipcosim.cosim.master.plan import Plan, make_plan
 from shipcosim.cosim.webassembly import make_module
 from shipcosim.errors import raise_errors
 from shipcosim.options import CountProgress, RunOptions
@@ -29,19 +31,37 @@ def live_page(system: System, scenario: Scenario, progress: CountProgress | None
 
     Raises
     ------
+    NotForPages
+        With every component that has no native code, and why.
     ShipcosimError
-        With every component that has no native code, and why; there is no compiler; system and scenario do not fit;
-        or nothing in it is a ship.
+        There is no compiler; system and scenario do not fit; or nothing in it is a ship.
     """
+    system, numbers = prepared(system, scenario)
+    plan = make_plan(system, numbers, (), changeable_inputs(system))
+    # Compile first: a component without native code is said before anything runs.
+    code = make_module(plan, numbers, progress)
+    return _rendered(plan, numbers, scenario, code)
+
+
+def server_page(system: System, scenario: Scenario) -> str:
+    """The page of a system that a server runs, as HTML. Arguments as of `live_page`; raises ShipcosimError."""
+    system, numbers = prepared(system, scenario)
+    plan = make_plan(system, numbers, (), changeable_inputs(system))
+    return _rendered(plan, numbers, scenario, b"")
+
+
+def prepared(system: System, scenario: Scenario) -> tuple[System, Scenario]:
+    """The system with the scenario's start values, and the scenario in the units of the signals; both checked."""
     system = with_values(system, scenario.set, str(scenario.path or "scenario"))
     raise_errors(check_scenario(scenario, system))
-    # Compile first: a component without native code is said before anything runs.
-    numbers = with_numbers(scenario, units_of(system))
-    module = make_module(system, numbers, progress)
+    return system, with_numbers(scenario, units_of(system))
+
+
+def _rendered(plan: Plan, numbers: Scenario, scenario: Scenario, code: bytes) -> str:
     interval = scenario.output_interval or scenario.step_size
     until = min(FIRST_ROWS * interval, scenario.stop_time)
-    table = simulate(system, scenario, RunOptions(until=until))
-    return render_live(module, table, numbers, scenario)
+    table = simulate(plan.system, scenario, RunOptions(until=until))
+    return render_live(plan, code, table, numbers, scenario)
 
 
 def export_page(

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import astuple, dataclass
+from fractions import Fraction
 from math import degrees
 from typing import Any
 
 from xarray import Dataset
 
+from shipcosim.cosim.interactive import kinds_of, row_signals, start_values_of
 from shipcosim.cosim.master.events import changes
 from shipcosim.cosim.master.plan import Plan, label
 from shipcosim.cosim.master.time_grid import time_grid_of
-from shipcosim.cosim.webassembly import Module
+from shipcosim.cosim.webassembly import MOST_STEPS
 from shipcosim.errors import error_at
 from shipcosim.report.run.scene import Recipe, Run, make_run
 from shipcosim.report.theme.packing import packed_bytes
@@ -32,19 +34,23 @@ class LivePage(Page):
     Attributes
     ----------
     code : str
-        WebAssembly, compressed and in letters.
+        WebAssembly, compressed and in letters; empty where a server runs the system.
     """
 
     code: str
 
 
-def render_live(module: Module, table: Dataset, scenario: Scenario, written: Scenario) -> str:
+def render_live(
+    plan: Plan, code: bytes, table: Dataset, scenario: Scenario, written: Scenario
+) -> str:
     """The page as HTML.
 
     Parameters
     ----------
-    module : Module
-        The system's code.
+    plan : Plan
+        With a row for each input that the page may change.
+    code : bytes
+        The system as WebAssembly; empty where a server runs it.
     table : xarray.Dataset
         The first seconds of the run, from which the scene is made.
     scenario : Scenario
@@ -58,21 +64,21 @@ def render_live(module: Module, table: Dataset, scenario: Scenario, written: Sce
         Nothing in the system has a position and a heading.
     """
     if not written.system:
-        written = written.model_copy(update={"system": module.plan.system.name})
+        written = written.model_copy(update={"system": plan.system.name})
     run = make_run(table, goes_on=True)
     if run is None:
         found = "Nothing in it has a position and a heading, so there is no ship to show."
-        raise error_at(module.plan.system.name, found, "Run it with `shipcosim run`.")
+        raise error_at(plan.system.name, found, "Run it with `shipcosim run`.")
     page = LivePage(
-        title=written.description or f"Simulation of {module.plan.system.name}",
+        title=written.description or f"Simulation of {plan.system.name}",
         facts=_facts(written),
         outcome=Outcome("", "", ""),
         data={
-            "live": _description(module, scenario, written),
-            "scene": [_growing(run, module.plan)],
+            "live": _description(plan, scenario, written) | {"server": not code},
+            "scene": [_growing(run, plan)],
             "events": sorted({event.time for event in scenario.events}),
         },
-        code=packed_bytes(module.code),
+        code=packed_bytes(code) if code else "",
     )
     return render_template("live/templates/live.html.jinja", page)
 
@@ -113,23 +119,23 @@ def _growing(run: Run, plan: Plan) -> JsonObject:
     }
 
 
-def _description(module: Module, scenario: Scenario, written: Scenario) -> JsonObject:
+def _description(plan: Plan, scenario: Scenario, written: Scenario) -> JsonObject:
     """What the script needs to run the system and to write down what was done."""
-    plan, wiring = module.plan, module.wiring
+    step = Fraction(repr(scenario.step_size))
+    kinds = kinds_of(plan)
     grid = time_grid_of(scenario)
     happening = [
         [change.step, change.action, label(change.end), change.value]
         for change in changes(scenario, plan, grid)
     ]
-    columns = wiring.columns
     return {
-        "step": [wiring.step.numerator, wiring.step.denominator],
-        "steps_per_row": wiring.steps_per_row,
-        "most_steps": wiring.most_steps,
-        "columns": [columns[kind] for kind in wiring.kinds],
-        "kinds": wiring.kinds,
-        "signals": dict(_signals(module)),
-        "starts": [astuple(start) for start in wiring.starts],
+        "step": [step.numerator, step.denominator],
+        "steps_per_row": grid.steps_per_row,
+        "most_steps": MOST_STEPS,
+        "columns": [row_signals(plan, kind) for kind in kinds],
+        "kinds": kinds,
+        "signals": dict(_signals(plan)),
+        "starts": [astuple(start) for start in start_values_of(plan)],
         "events": happening,
         "scenario": _header(written),
     }
@@ -142,11 +148,10 @@ def _header(written: Scenario) -> JsonObject:
     return {key: value for key, value in header.items() if value} | {"set": written.set}
 
 
-def _signals(module: Module) -> Iterator[tuple[str, JsonObject]]:
+def _signals(plan: Plan) -> Iterator[tuple[str, JsonObject]]:
     """Every signal of the exchanges: where its value lies, and what it is."""
-    plan = module.plan
     fed = {connection.target for connection in plan.system.connections}
-    for number, kind in enumerate(module.wiring.kinds):
+    for number, kind in enumerate(kinds_of(plan)):
         layout = plan.layouts[kind]
         for side, ends in enumerate((layout.outputs, layout.inputs)):
             for row, end in enumerate(ends):

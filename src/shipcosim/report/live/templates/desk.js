@@ -42,12 +42,23 @@
   speed.value = 1;
   by("scene-play").textContent = "Run";
 
-  const go = (t) => { scene.grown(live.time.last); scene.go(t ?? live.time.last); };
+  const go = () => { scene.grown(live.end); scene.go(live.end); };
   step.addEventListener("click", () => { scene.pause(); live.reach(live.time.last + 1e-6); go(); });
   reset.addEventListener("click", () => { scene.pause(); live.reset(); go(); changed(); });
   minute.addEventListener("click", () => { scene.pause(); scene.go(scene.time - 60); });
   back.addEventListener("click", () => { scene.pause(); live.back(scene.time); go(); changed(); });
-  addEventListener("live-failed", ({ detail }) => { const place = by("failure"); place.hidden = false; place.textContent = `The run stopped: ${detail}. Go back, or save what was done so far.`; });
+  addEventListener("live-failed", ({ detail }) => { const place = by("failure"); place.hidden = false; place.textContent = `The run stopped: ${detail.replace(/\.$/, "")}. ${noWay() ? "Start again" : "Go back"}, or save what was done so far.`; });
+
+  // A server that cannot go back says why. Its rows come when they are there; who looks at the end goes on looking there.
+  const noWay = () => live.engine.noWayBack;
+  function tellWay() { if (noWay()) { back.disabled = true; back.title = `Going back is not possible. ${noWay()}`; } }
+  tellWay();
+  addEventListener("live-arrived", ({ detail: before }) => {
+    tellWay();
+    const looks = !(scene.time < before - 1e-6) && !scene.playing;
+    scene.grown(live.end);
+    if (looks) scene.go(live.end); else scene.refresh();
+  });
 
   // ---- inputs that nothing feeds
 
@@ -217,7 +228,7 @@
 
   let told = "";  // that a file was saved, until something else is done
   function tell() {
-    const end = live.time.last, past = scene.time < end - 1e-6, words = past ? `Shown is ${scene.time.toFixed(1)} s of ${end.toFixed(1)} s. What you change acts at the end; “Continue from here” forgets what came after ${scene.time.toFixed(1)} s.` : told;
+    const end = live.time.last, past = scene.time < end - 1e-6, words = past ? `Shown is ${scene.time.toFixed(1)} s of ${end.toFixed(1)} s. What you change acts at the end; ${noWay() ? `there is no way back: ${noWay()}` : `“Continue from here” forgets what came after ${scene.time.toFixed(1)} s.`}` : told;
     if (by("past").textContent !== words) by("past").textContent = words;
   }
   // ---- trends

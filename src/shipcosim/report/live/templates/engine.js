@@ -49,6 +49,7 @@ function makeEngine(module, about) {
   const from = calls.__global_base.value;
   return {
     step, seconds, advance, change,
+    ready: (until) => performance.now() < until, stride: () => 20 * about.steps_per_row + 1, ahead: () => 0,  // as fast as it goes
     start: (values = {}) => {
       for (const [place, value] of Object.entries(values)) calls.desk_change_start(+place, value);
       check(calls.desk_start());

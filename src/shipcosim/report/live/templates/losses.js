@@ -11,6 +11,11 @@
     if (kind === "Real" && /bus\w*_power$/.test(signal)) return [{ name: signal.slice(signal.lastIndexOf(".") + 1).replace(/_power$/, "").replaceAll("_", " "), changes: [["override", signal, 0]] }];
     return [];
   });
+  if (about.server) {
+    said.textContent = "Not with a server: a forecast needs copies of the run, and the server has one. Save the scenario, add the loss to it, and use shipcosim run.";
+    section.querySelector("table").hidden = true;
+    return;
+  }
   if (!losses.length || columns.length < 6 || columns.some((column) => column < 0)) { section.hidden = true; return; }
 
   const limits = { distance: run.watch.position || 5, heading: run.watch.heading || 10 };

@@ -1,7 +1,8 @@
 // The record of a run that goes on: rows of all signals, the columns that the scene draws, and states to go back to.
 report.live = await (async () => {
-  const about = report.data.live, code = await report.unpacked("code").arrayBuffer();
-  const module = await WebAssembly.compile(code), engine = makeEngine(module, about);
+  const about = report.data.live, remote = about.server;  // the page runs the system, or a server does
+  const module = remote ? null : await WebAssembly.compile(await report.unpacked("code").arrayBuffer());
+  const engine = remote ? connectEngine(about, { adopt, arrive, fail, acted }) : makeEngine(module, about);
 
   // ---- columns that grow
 
@@ -71,6 +72,7 @@ report.live = await (async () => {
   }
 
   function advance(to) {
+    if (remote) { engine.advance(to, done); return; }  // rows arrive later
     const spacing = Math.max(Math.round((EVERY * about.step[1]) / about.step[0]), 1);
     try {
       while (engine.step() < to) {
@@ -79,10 +81,35 @@ report.live = await (async () => {
         engine.advance(next, done, (tables) => { take(tables, first); first = Math.ceil(engine.step() / about.steps_per_row) * about.steps_per_row; });
         remember();
       }
-    } catch (error) {
-      failure = error.message;
-      dispatchEvent(new CustomEvent("live-failed", { detail: failure }));
-    }
+    } catch (error) { fail(error.message); }
+  }
+
+  function fail(why) {
+    failure = why;
+    dispatchEvent(new CustomEvent("live-failed", { detail: why }));
+  }
+
+  // ---- what a server sends
+
+  function adopt(run, tables) {  // another run than before, from its start on
+    self.cut(0, -1);
+    ({ starts } = run);
+    done = [...about.events, ...run.done.map((change) => [...change, true])];
+    failure = "";
+    arrive(tables);
+    if (run.failure) fail(run.failure);
+  }
+
+  function arrive(tables) {
+    const before = self.end;
+    take(tables, time.length * about.steps_per_row);
+    show();
+    dispatchEvent(new CustomEvent("live-arrived", { detail: before }));
+  }
+
+  function acted(changes) {  // in the page that steers
+    done.push(...changes.map((change) => [...change, true]));
+    dispatchEvent(new Event("live-arrived"));
   }
 
   const lastTime = () => (time.length ? time.last : 0);
@@ -92,14 +119,15 @@ report.live = await (async () => {
     get stopped() { return failure !== ""; },
     reach(to) {
       if (failure) return lastTime();
-      if (to === Infinity) { const until = performance.now() + 12; while (!failure && performance.now() < until) advance(engine.step() + 20 * about.steps_per_row + 1); }
-      else advance(rowsDue(to) + 1);
+      if (to === Infinity) { const until = performance.now() + 12; while (!failure && engine.ready(until)) advance(engine.step() + engine.stride()); }
+      else advance(rowsDue(to + engine.ahead()) + 1);
       show();
       return lastTime();
     },
     reset(values = {}) {
       starts = { ...starts, ...values };
       engine.start(starts);
+      if (remote) return;
       self.cut(0, -1);
       done = about.events.slice();
       states = [];
@@ -120,8 +148,9 @@ report.live = await (async () => {
       dispatchEvent(new Event("live-cut"));
     },
     back(to) {
-      const state = [...states].reverse().find((one) => one.time <= to + 1e-9) || states[0];
       const until = Math.floor((to * about.step[1]) / about.step[0] + 1e-9) + 1;  // its row is there
+      if (remote) { engine.back(until); return; }
+      const state = [...states].reverse().find((one) => one.time <= to + 1e-9) || states[0];
       engine.restore(state.bytes);
       self.cut(state.rows, state.time);
       done = done.filter(([step, , , , byHand]) => !byHand || step < until);
@@ -131,12 +160,14 @@ report.live = await (async () => {
       show();
     },
     act(action, name, value) {  // from the next step on
+      if (remote && !engine.steers) return;
       // Of several changes of a signal before the next step the last one holds.
       const now = engine.step();
       done = done.filter(([step, , of, , byHand]) => !(byHand && step === now && of === name));
       done.push([now, action, name, value, true]);
       dispatchEvent(new Event("live-acted"));
     },
+    get end() { return lastTime(); },
     now: () => engine.step(),
     value: (name) => raw.get(name)?.last,
     held(name) {  // what the last change of a signal says, or null
@@ -148,6 +179,6 @@ report.live = await (async () => {
     get starts() { return starts; },
     states: () => states.length,
   };
-  self.reset();
+  if (remote) await engine.opened; else self.reset();
   return self;
 })();

@@ -1,0 +1,69 @@
+"""What a page shows and changes of a running system, whether the page runs it or a server does."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from shipcosim.cosim.master.plan import Plan, label
+from shipcosim.cosim.master.result import recorded_rows
+from shipcosim.cosim.slaves.slave import BUFFER_TYPES
+from shipcosim.ssp import System
+
+
+@dataclass(frozen=True)
+class StartValue:
+    """A start value, which the page can change before a start where it is a number.
+
+    Attributes
+    ----------
+    place : int
+        Among all of them.
+    signal, unit : str
+    value : number, bool or text
+    kind : str
+        Real, Integer, Boolean or String.
+    """
+
+    place: int
+    signal: str
+    value: object
+    unit: str
+    kind: str
+
+
+def changeable_inputs(system: System) -> list[str]:
+    """Inputs and tunable parameters of all components: each gets a row, so that it can be changed."""
+    return [
+        label((component.name, variable.name))
+        for component in system.components.values()
+        for variable in component.variables.values()
+        if (variable.causality == "input" or variable.variability == "tunable")
+        and variable.kind in ("Real", "Integer", "Boolean")
+    ]
+
+
+def kinds_of(plan: Plan) -> list[str]:
+    """Kinds of values that are exchanged, in the order of the tables of rows."""
+    layouts = plan.layouts
+    return [kind for kind in BUFFER_TYPES if layouts[kind].outputs or layouts[kind].inputs]
+
+
+def row_signals(plan: Plan, kind: str) -> list[str]:
+    """Signals of a recorded row of a kind."""
+    layout = plan.layouts[kind]
+    external, inputs = recorded_rows(plan, kind)
+    names = list(layout.external)
+    ends = [*layout.outputs, *(names[i] for i in external)]
+    return [label(end) for end in (*ends, *(layout.inputs[i] for i in inputs))]
+
+
+def start_values_of(plan: Plan) -> list[StartValue]:
+    """All start values, in the order in which the FMUs get them."""
+    found = []
+    for component in plan.system.components.values():
+        for name, value in component.start.items():
+            variable = component.fmu.variables[name]
+            kind = "String" if isinstance(value, str) else plan.kind(variable) or ""
+            signal = label((component.name, name))
+            found.append(StartValue(len(found), signal, value, variable.unit or "", kind))
+    return found
