@@ -101,7 +101,7 @@ def progress_of(label: str, duration: float | None = None) -> Iterator[Callable[
 
 def print_summary(result: Run, page: Path, *, to_stderr: bool = False) -> None:
     """How a run went: its expectations, what must not be overlooked, where the page is."""
-    from shipcosim.cosim.master.profile import PHASES, rows_of
+    from shipcosim.cosim.profile import PHASES, rows_of
     from shipcosim.report.run.predictions import summarise, texts
 
     console = make_console(stderr=to_stderr, soft_wrap=True)

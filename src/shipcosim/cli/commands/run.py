@@ -90,13 +90,12 @@ def run(
         "until": until,
         "resume": resume,
         "realtime": realtime,
-        "profile": profile,
         "record": record or (),
         "output_interval": every,
         "set": parsed_settings(settings or []),
         "components": parsed_components(components or ()),
     }
-    asked |= isolation(isolate, timeout)
+    asked |= {"profile": profile, **isolation(isolate, timeout)}
     if files := library.scenarios(scenario):
         if store or resume:
             found = "This is a folder of scenarios: it has no one state to store or to go on from."

@@ -9,10 +9,10 @@ import numpy as np
 
 from shipcosim.cosim.master.component import ComponentInstance
 from shipcosim.cosim.master.connections import ParameterConnection, StringConnection
-from shipcosim.cosim.master.profile import MASTER, Profile
 from shipcosim.cosim.master.recorder import Recorders
 from shipcosim.cosim.master.signals import Exchange
 from shipcosim.cosim.master.time_grid import TimeGrid
+from shipcosim.cosim.profile import MASTER, Profile
 from shipcosim.cosim.slaves.slave import RunEnded, SlaveError
 from shipcosim.errors import Problem
 from shipcosim.options import CountProgress

@@ -14,10 +14,10 @@ import numpy as np
 
 from shipcosim.cosim.master.algorithm import BETWEEN_REPORTS, Between, Master, failed_step
 from shipcosim.cosim.master.component import ComponentInstance
-from shipcosim.cosim.master.profile import MASTER, Profile
 from shipcosim.cosim.master.recorder import Recorders
 from shipcosim.cosim.master.signals import Exchange
 from shipcosim.cosim.master.time_grid import TimeGrid
+from shipcosim.cosim.profile import MASTER, Profile
 from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.native import CompiledStep, Untraceable, compiled_steps, is_installed, libraries
 from shipcosim.native.component import CALL
@@ -187,8 +187,7 @@ class CompiledMaster(Master):
             return
         # A repeated run uses the arrays of the run before, if only numbers differ.
         if (loop := self._loop) is None or not loop.take_anew(external):
-            with nullcontext() if self.profile is None else self.profile.during(MASTER, "load"):
-                self._loop = loop = _CompiledLoop(self, grid, external, recorders)
+            self._loop = loop = self._new_loop(grid, external, recorders)
         k = first = grid.first
         last = grid.last
         steps = 16
@@ -223,19 +222,19 @@ class CompiledMaster(Master):
                 began = perf_counter()
                 k = loop.run(k, end)
                 # Long calls are fast, short ones let Ctrl-C and progress through.
-                steps = (
-                    2 * steps
-                    if perf_counter() - began < 0.5 * BETWEEN_REPORTS
-                    else max(1, steps // 2)
-                )
+                is_quick = perf_counter() - began < 0.5 * BETWEEN_REPORTS
+                steps = 2 * steps if is_quick else max(1, steps // 2)
         finally:
             self.reasons = loop.reasons
-            if self.profile is not None:
-                loop.count_in(self.profile)
+            loop.count_in(self.profile)
         if last % grid.steps_per_row == 0:
             recorders.record()
         if progress is not None:
             progress(last - first, last - first)
+
+    def _new_loop(self, grid, external, recorders) -> _CompiledLoop:
+        with nullcontext() if self.profile is None else self.profile.during(MASTER, "load"):
+            return _CompiledLoop(self, grid, external, recorders)
 
     def _not_compiled(self) -> str:
         """Why nothing in this system is compiled; empty if something can be."""
@@ -324,8 +323,10 @@ class _CompiledLoop:
             self._master._check_finite(float(self._clock[reached.value]))
         return reached.value
 
-    def count_in(self, profile: Profile) -> None:
+    def count_in(self, profile: Profile | None) -> None:
         """Add what the loop has counted: steps of each component that it steps itself, exchange, recording."""
+        if profile is None:
+            return
         *steps, exchange, recording = self._seconds.tolist()
         for component, seconds in zip(self._components, steps, strict=True):
             profile.add(component.name, "step", seconds)

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from shipcosim.cosim.master.plan import Rows
-from shipcosim.cosim.master.profile import Profile
 from shipcosim.cosim.master.signals import Exchange
+from shipcosim.cosim.profile import Profile
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES, FAILED, Call, Slave, SlaveError, Step
 from shipcosim.ssp import Variable
 

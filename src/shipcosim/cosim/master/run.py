@@ -25,7 +25,6 @@ from shipcosim.cosim.master.instantiate import (
 from shipcosim.cosim.master.interrupt import delayed_interrupt
 from shipcosim.cosim.master.order import ORDERS, stepping_order
 from shipcosim.cosim.master.plan import make_plan
-from shipcosim.cosim.master.profile import MASTER, Profile
 from shipcosim.cosim.master.ranges import range_remarks
 from shipcosim.cosim.master.recorder import Recorder, Recorders
 from shipcosim.cosim.master.rerun import can_rewind, changed_values, with_numbers
@@ -39,6 +38,7 @@ from shipcosim.cosim.master.restore import (
 from shipcosim.cosim.master.result import Column, attributes_of, columns_of, recorded_rows
 from shipcosim.cosim.master.time_grid import TimeGrid, time_grid_of
 from shipcosim.cosim.processes.remote_slave import IsolatedInstances
+from shipcosim.cosim.profile import MASTER, Profile
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.cosim.slaves.slave import SlaveError

@@ -5,7 +5,7 @@ import json
 import pytest
 
 import shipcosim
-from shipcosim.cosim.master.profile import MASTER, PHASES, Profile, rows_of
+from shipcosim.cosim.profile import MASTER, PHASES, Profile, rows_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.native import is_installed
 
