@@ -34,6 +34,7 @@ from shipcosim.staging import check_targets, staged
 if TYPE_CHECKING:
     import xarray
 
+    from shipcosim.diagnose.experiment.isolability import Isolability
     from shipcosim.diagnose.pipeline import Progress
     from shipcosim.diagnose.reference.reference import Reference
     from shipcosim.options import CountProgress
@@ -81,6 +82,43 @@ def read_log(log: AnyLog, channels: AnyPath | None = None) -> Log:
     source, channels = source_of(log, channels)
     check_inputs([source], channels)
     return Log(name_of_log(source), read_log(source, channels), source, channels)
+
+
+@with_known_keywords
+def isolability(
+    log: AnyLog,
+    system: AnySystem | None = None,
+    channels: AnyPath | None = None,
+    progress: Progress | None = None,
+) -> tuple[Isolability, ...]:
+    """Which causes a log could tell apart, by its channels and its motion, whatever is the matter in it.
+
+    Parameters
+    ----------
+    log, system, channels, progress
+        As of `diagnose`.
+
+    Returns
+    -------
+    tuple of Isolability
+        By cause and component; empty where something keeps the log from telling any.
+
+    Raises
+    ------
+    ShipcosimError
+        Data or system that cannot be used.
+    """
+    from shipcosim.diagnose.experiment.isolability import isolability as by_excitation
+    from shipcosim.diagnose.experiment.testability import excitation_of
+    from shipcosim.diagnose.pipeline import find_causes, given_system
+
+    source, channels = source_of(log, channels)
+    check_inputs([source], channels)
+    ship = given_system(Reading().system(system or SYSTEM_OF_LOGS, "system"))
+    basis = find_causes(source, ship.given, channels, None, progress).basis
+    if basis is None or basis.explained.identification.comparison.obstacles:
+        return ()
+    return by_excitation(excitation_of(basis))
 
 
 @overload

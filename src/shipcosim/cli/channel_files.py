@@ -107,6 +107,33 @@ def print_channels(proposed: ProposedFile) -> None:
         console.print(Text(said, style="yellow"))
 
 
+def print_isolability(log: Path, system: str | None, channels: Path | None) -> None:
+    """Which causes the log could tell apart, on stdout.
+
+    Raises
+    ------
+    ShipcosimError
+        If the log cannot be read by the channel file or, without one, by the names of its columns.
+    """
+    from rich.text import Text
+
+    from shipcosim.calls.logs import isolability
+    from shipcosim.cli.tables import print_table
+
+    words = {True: Text("yes", style="green"), False: Text("no", style="yellow")}
+    rows = [
+        (one.label, words[one.is_seen], ", ".join(one.alike) or "-")
+        for one in isolability(log, system, channels)
+    ]
+    console = make_console(soft_wrap=True)
+    if rows:
+        print_table(console, rows, ("cause of typical size", "would show", "cannot be told from"))
+    else:
+        console.print(
+            Text("This log tells no causes: `shipcosim diagnose` says why.", style="yellow")
+        )
+
+
 def write_channels(proposed: ProposedFile, out: Path, force: bool = False) -> None:
     """Write the channel file, and say where it is.
 

@@ -14,6 +14,13 @@ def channels(
     ],
     system: Ship = None,
     form: Channels = None,
+    isolability: Annotated[
+        bool,
+        typer.Option(
+            "--isolability",
+            help="Say for each cause whether this log would show it, and which others look alike in it.",
+        ),
+    ] = False,
     out: Annotated[
         Path | None,
         typer.Option("--out", metavar="X.TOML", help="Write the proposed channel file here."),
@@ -32,9 +39,16 @@ def channels(
     Example: shipcosim channels monday.csv --out channels.toml
     """
     from shipcosim.calls.arguments import path_of_log
-    from shipcosim.cli.channel_files import print_channels, proposed, write_channels
+    from shipcosim.cli.channel_files import (
+        print_channels,
+        print_isolability,
+        proposed,
+        write_channels,
+    )
 
     proposal = proposed(path_of_log(log), system, form)
     print_channels(proposal)
+    if isolability:
+        print_isolability(log, system, form)
     if out is not None:
         write_channels(proposal, out, force)
