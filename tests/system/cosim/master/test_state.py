@@ -42,6 +42,9 @@ THREE_UNITS = {
 """One unit ahead and two to the side."""
 NOT_NEUTRAL = {
     "drift_force": {"north": 1000.0, "onset_time": 16.0, "ramp_time": 5.0, "yaw_arm": -1.5},
+    # Its loads are tenths of a newton here: thrusters of that size.
+    "consequence_analysis": {f"thrust_max_{i}": 0.3 for i in range(1, 5)}
+    | {"analysis_period": 1.0},
     "earth_force": {"x": -17.0, "north": 1000.0, "onset_time": 16.0, "ramp_time": 5.0},
     "fixed_angle_allocator": THREE_UNITS,
     "instruments": {"lag": 1.33},
