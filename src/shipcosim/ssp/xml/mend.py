@@ -102,7 +102,8 @@ def mend(document: Document, tag: str) -> None:
         _join_lists(document, element, noted)
         _drop_empty_lists(document, element, noted)
         _drop_repeated(document, element, noted)
-    document.flaws.extend(problem for problem in noted.problems if problem not in document.flaws)
+    # Each once, in their order.
+    document.flaws[:] = dict.fromkeys([*document.flaws, *noted.problems])
 
 
 def _own(element: etree._Element) -> Iterator[etree._Element]:
