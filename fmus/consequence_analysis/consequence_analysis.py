@@ -1,6 +1,7 @@
 """FMU of the consequence analysis of a DP ship with up to six units."""
 
-from shipcosim.fmi import Fmu, Input, Output, Parameters
+from shipcosim.fmi import Output, Parameters
+from shipcosim.interfaces import NumberedRequest
 from shipcosim.models.allocation.consequences import (
     Averaged,
     ConsequenceParameters,
@@ -15,18 +16,8 @@ from shipcosim.models.core.sampling import samples_due
 LOST = ("1", "2", "3", "4", "5", "6", "group_1", "group_2", "group_3")
 
 
-class ConsequenceAnalysis(Fmu):
+class ConsequenceAnalysis(NumberedRequest):
     """Whether the ship keeps position and heading after each single failure, under the load of now."""
-
-    tau_X_cmd = Input("N", "requested force forward")
-    tau_Y_cmd = Input("N", "requested force to starboard")
-    tau_N_cmd = Input("N.m", "requested yaw moment")
-    available_1 = Input("1", "unit 1 can be used", start=True)
-    available_2 = Input("1", "unit 2 can be used", start=True)
-    available_3 = Input("1", "unit 3 can be used", start=True)
-    available_4 = Input("1", "unit 4 can be used", start=True)
-    available_5 = Input("1", "unit 5 can be used", start=True)
-    available_6 = Input("1", "unit 6 can be used", start=True)
 
     share = Output("1", "share of the mean load that the units hold, force and moment; at most 10")
     share_without_1 = Output("1", "the same after the loss of unit 1")
@@ -78,11 +69,7 @@ class ConsequenceAnalysis(Fmu):
 
     def _analyse(self):
         load = tuple(part / (self.average.weight + 1e-12) for part in self.average.load)
-        available = (
-            *(self.available_1, self.available_2, self.available_3),
-            *(self.available_4, self.available_5, self.available_6),
-        )
-        now = tuple(map(number, available))
+        now = tuple(number(getattr(self, name)) for name in self.AVAILABLE)
         factor = self.model.dynamic_factor
         self.least_share = self._look("share", load, now, 1.0)
         self.least_force_share = self._look("force_share", load, now, 0.0)

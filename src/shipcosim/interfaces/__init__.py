@@ -2,8 +2,15 @@
 
 from shipcosim.interfaces.kinetic_predictor import KineticPredictor
 from shipcosim.interfaces.named_allocator import NamedAllocator
-from shipcosim.interfaces.numbered_allocator import NumberedAllocator
+from shipcosim.interfaces.numbered_allocator import NumberedAllocator, NumberedRequest
 from shipcosim.interfaces.predictor import MotionPredictor
 from shipcosim.interfaces.ship import Ship
 
-__all__ = ["KineticPredictor", "MotionPredictor", "NamedAllocator", "NumberedAllocator", "Ship"]
+__all__ = [
+    "KineticPredictor",
+    "MotionPredictor",
+    "NamedAllocator",
+    "NumberedAllocator",
+    "NumberedRequest",
+    "Ship",
+]

@@ -24,8 +24,8 @@ class FullPowers(numbered_units(_fields)):
         return self.of_units("full_power")
 
 
-class NumberedThrusters(LoadRequest):
-    """Variables of up to six units."""
+class NumberedRequest(LoadRequest):
+    """Inputs: the requested load, and which of up to six units can be used."""
 
     available_1 = Input("1", "unit 1 can be used", start=True)
     available_2 = Input("1", "unit 2 can be used", start=True)
@@ -33,6 +33,12 @@ class NumberedThrusters(LoadRequest):
     available_4 = Input("1", "unit 4 can be used", start=True)
     available_5 = Input("1", "unit 5 can be used", start=True)
     available_6 = Input("1", "unit 6 can be used", start=True)
+
+    AVAILABLE = tuple(f"available_{number}" for number in range(1, UNITS + 1))
+
+
+class NumberedThrusters(NumberedRequest):
+    """Variables of up to six units."""
 
     thrust_cmd_1 = Output("N", "commanded thrust of unit 1")
     azimuth_cmd_1 = Output("rad", "its direction, clockwise from the bow")
@@ -64,7 +70,6 @@ class NumberedAllocator(ThrustAllocator, NumberedThrusters):
 
     power = Parameters(FullPowers)
 
-    AVAILABLE = tuple(f"available_{number}" for number in range(1, UNITS + 1))
     THRUST_CMD = tuple(f"thrust_cmd_{number}" for number in range(1, UNITS + 1))
     AZIMUTH_CMD = tuple(f"azimuth_cmd_{number}" for number in range(1, UNITS + 1))
     turns: ClassVar[bool] = True

@@ -88,7 +88,7 @@ class LiveRun:
     scenario : Scenario
         Checked; its values in the units of the signals.
     pages : Pages
-        Who steers, and who is told.
+        The pages: which steers, and which get the rows.
     notify : callable
         Takes a sentence for the terminal.
     """
@@ -340,7 +340,7 @@ class LiveRun:
         simulation.recorders.n_rows = -(-step // self._grid.steps_per_row)
         self._greets = True
 
-    # ---- what the pages are told
+    # ---- messages to the pages
 
     def _fail(self, why: str) -> None:
         """The run cannot go on: tell the pages after the rows so far, and keep to what was done."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shipcosim.diagnose.experiment.testability import Excitation
+from shipcosim.diagnose.experiment.testability import Excitation, expected_gain
 from shipcosim.diagnose.inference.thresholds import APART
 
 
@@ -55,7 +55,7 @@ def isolability(excitation: Excitation) -> tuple[Isolability, ...]:
     ours = {place for _, places in excitation.groups for place in places}
     found: dict[str, Isolability] = {}
     for cause, places in groups:
-        # Known numbers are free within their tolerances, but for those that the cause itself stands for.
+        # Known numbers are free within their tolerances, except those that the cause itself stands for.
         taken = {path for place in places for path in excitation.columns[place].changes}
         known = [
             place
@@ -73,8 +73,8 @@ def isolability(excitation: Excitation) -> tuple[Isolability, ...]:
                 remaining = 0.5 * _unexplained(left, shown, others)
                 if remaining < min(APART, gain):
                     alike[other.label] = min(remaining, alike.get(other.label, np.inf))
-        # What does not show at all is told from nothing.
-        is_seen = bool(gain - 0.5 * np.log1p(2.0 * gain) >= excitation.least)
+        # A cause that does not show cannot be told from others either.
+        is_seen = expected_gain(2.0 * gain) >= excitation.least
         names = tuple(sorted(alike, key=alike.__getitem__)) if is_seen else ()
         one = Isolability(cause.label, float(gain), is_seen, names)
         # A cause that is sought in several directions: the one that shows least stands for it.

@@ -126,6 +126,14 @@ def _as_known(column: Regressor, model: ShipModel) -> Regressor:
     return replace(column, prior=model.tolerances.get(path, 0.0) / model.uncertainties[path])
 
 
+def expected_gain(information: float) -> float:
+    """Log-evidence that a cause of typical size gains by the information on it. [nats]
+
+    Half the information, less the evidence's penalty for the parameter.
+    """
+    return 0.5 * information - 0.5 * float(np.log1p(information))
+
+
 def not_testable(excitation: Excitation) -> tuple[str, ...]:
     """Causes that would have gained too little to be seen in a log, had they had their typical size.
 
@@ -140,10 +148,7 @@ def not_testable(excitation: Excitation) -> tuple[str, ...]:
     """
     gains: dict[str, float] = {}
     for hypothesis, _, informations in excitation.informations():
-        # Expected gain of a typical size: half its information less the evidence's penalty for the
-        # parameter.
-        information = 0.5 * float(np.max(informations))
-        gain = information - 0.5 * float(np.log1p(2.0 * information))
+        gain = expected_gain(float(np.max(informations)))
         gains[hypothesis.cause] = max(gains.get(hypothesis.cause, -np.inf), gain)
     return tuple(cause for cause, gain in sorted(gains.items()) if gain < excitation.least)
 

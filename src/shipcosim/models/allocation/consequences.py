@@ -18,6 +18,7 @@ from math import pi
 from typing import NamedTuple
 
 from shipcosim.angles import wrap
+from shipcosim.models.allocation.units import turning_fields, unit_fields
 from shipcosim.models.core.maths import (
     Arithmetic,
     atan2,
@@ -38,7 +39,7 @@ from shipcosim.models.core.parameters import UNITS, acts, numbered_units, quanti
 GROUPS = 3
 """Most redundancy groups. [1]"""
 MOST_SHARE = 10.0
-"""Largest share that is told: ten times the load is as good as no load. [1]"""
+"""Largest share: a ship that holds ten times the load counts as one without load. [1]"""
 ROUNDS = 20
 """Points that the search tries. [1]"""
 _TINY = 1e-6
@@ -46,29 +47,13 @@ _TINY = 1e-6
 
 
 def _fields(number):
-    """Place, direction, limits and group of a unit."""
-    unit = f"unit {number}"
-    none = "no such unit"
-    direction = (
-        f"direction of positive thrust of {unit}, clockwise from the bow, where it does not turn"
+    """Place, direction, limits, turning and group of a unit."""
+    group = f"units of one group (1 to {GROUPS}) fail together, as on one bus; 0: unit {number} is in none"
+    return (
+        unit_fields(number)
+        | turning_fields(number)
+        | {"group": quantity(0.0, "1", group, "none", minimum=0.0, maximum=float(GROUPS))}
     )
-    rate = f"quickest turning of {unit}; 0: its direction is fixed"
-    first = f"{unit} turns clockwise from here; no limit where it is `azimuth_last`"
-    last = f"and to here; above azimuth_first_{number}"
-    least = f"least thrust of {unit}, negative; none where it turns"
-    most = f"most thrust of {unit}; 0: there is none"
-    group = f"units of one group (1 to {GROUPS}) fail together, as on one bus; 0: {unit} is in none"
-    return {
-        "x": quantity(0.0, "m", f"{unit} forward of the origin", none),
-        "y": quantity(0.0, "m", f"{unit} to starboard of the origin", none),
-        "azimuth": quantity(0.0, "rad", direction, none),
-        "azimuth_rate": quantity(0.0, "rad/s", rate, none, minimum=0.0),
-        "azimuth_first": quantity(0.0, "rad", first, none),
-        "azimuth_last": quantity(0.0, "rad", last, none),
-        "thrust_min": quantity(0.0, "N", least, none, maximum=0.0),
-        "thrust_max": quantity(0.0, "N", most, none, minimum=0.0),
-        "group": quantity(0.0, "1", group, none, minimum=0.0, maximum=float(GROUPS)),
-    }
 
 
 @dataclass(frozen=True, kw_only=True)

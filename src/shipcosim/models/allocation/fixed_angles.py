@@ -12,28 +12,24 @@ from typing import NamedTuple
 import numpy as np
 
 from shipcosim.models.allocation.pseudo_inverse import within_limits
-from shipcosim.models.allocation.units import Allocated, load, missed, no_thrust, unit_effect
+from shipcosim.models.allocation.units import (
+    Allocated,
+    load,
+    missed,
+    no_thrust,
+    unit_effect,
+    unit_fields,
+)
 from shipcosim.models.core.maths import clip, is_single, row_of, where
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import UNITS, numbered_units, quantity, required
 
-_NONE = "no such unit"
-
 
 def _fields(number):
     """Place, direction and limits of a unit."""
-    unit = f"unit {number}"
-    direction = f"direction of positive thrust of {unit}, clockwise from the bow"
-    least = f"least thrust of {unit}, negative"
-    most = f"most thrust of {unit}; 0: there is none"
-    rate = f"quickest change of the command to {unit}"
-    return {
-        "x": quantity(0.0, "m", f"{unit} forward of the origin", _NONE),
-        "y": quantity(0.0, "m", f"{unit} to starboard of the origin", _NONE),
-        "azimuth": quantity(0.0, "rad", direction, _NONE),
-        "thrust_min": quantity(0.0, "N", least, _NONE, maximum=0.0),
-        "thrust_max": quantity(0.0, "N", most, _NONE, minimum=0.0),
-        "thrust_rate": quantity(0.0, "N/s", rate, _NONE, minimum=0.0),
+    rate = f"quickest change of the command to unit {number}"
+    return unit_fields(number) | {
+        "thrust_rate": quantity(0.0, "N/s", rate, "no such unit", minimum=0.0)
     }
 
 

@@ -20,7 +20,7 @@ from shipcosim.models.allocation.sqp import (
     designed,
     resting,
 )
-from shipcosim.models.allocation.units import NamedUnits
+from shipcosim.models.allocation.units import NamedUnits, turning_fields
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import numbered_units, quantity
 
@@ -178,18 +178,11 @@ class OptimalParameters(TurningParameters):
 
 def _fields(number):
     """Turning and price of a unit."""
-    none = "none"
-    turns = f"quickest turning of unit {number}; 0: its direction is fixed"
-    first = f"unit {number} turns clockwise from here; no limit where it is `azimuth_last`"
-    last = f"and to here; above azimuth_first_{number}"
     least = f"least thrust of unit {number} where it turns"
     power = f"power of unit {number} at its largest thrust, over that thrust; only the ratios of the units count"
     assumed = "full power goes with full thrust, assumed"
-    return {
-        "azimuth_rate": quantity(0.0, "rad/s", turns, none, minimum=0.0),
-        "azimuth_first": quantity(0.0, "rad", first, none),
-        "azimuth_last": quantity(0.0, "rad", last, none),
-        "thrust_least": quantity(0.0, "N", least, none, minimum=0.0),
+    return turning_fields(number) | {
+        "thrust_least": quantity(0.0, "N", least, "none", minimum=0.0),
         "specific_power": quantity(1.0, "W/N", power, assumed, minimum=1e-9),
     }
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from shipcosim.models.core.maths import Arithmetic, cos, maximum, pi, sin, sqrt, where
 from shipcosim.models.core.motion import Load
-from shipcosim.models.core.parameters import required
+from shipcosim.models.core.parameters import quantity, required
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -281,3 +281,64 @@ def slack(tau: Load, given: Load) -> Load:
     """
     X, Y, N = (where(abs(a - b) < 1e-6, 0.0 * a, a - b) for a, b in zip(tau, given, strict=True))
     return X, Y, N
+
+
+_NONE = "no such unit"
+
+
+def unit_fields(number: int) -> dict:
+    """Fields of parameters: place, direction and limits of a unit with a number.
+
+    Parameters
+    ----------
+    number : int
+        Of the unit. [1]
+
+    Returns
+    -------
+    dict of str to dataclasses.Field
+        By name, without the number. [as the fields]
+
+    References
+    ----------
+    Definition.
+    """
+    unit = f"unit {number}"
+    direction = f"direction of positive thrust of {unit}, clockwise from the bow"
+    least = f"least thrust of {unit}, negative"
+    most = f"most thrust of {unit}; 0: there is none"
+    return {
+        "x": quantity(0.0, "m", f"{unit} forward of the origin", _NONE),
+        "y": quantity(0.0, "m", f"{unit} to starboard of the origin", _NONE),
+        "azimuth": quantity(0.0, "rad", direction, _NONE),
+        "thrust_min": quantity(0.0, "N", least, _NONE, maximum=0.0),
+        "thrust_max": quantity(0.0, "N", most, _NONE, minimum=0.0),
+    }
+
+
+def turning_fields(number: int) -> dict:
+    """Fields of parameters: turning of a unit with a number.
+
+    Parameters
+    ----------
+    number : int
+        Of the unit. [1]
+
+    Returns
+    -------
+    dict of str to dataclasses.Field
+        By name, without the number. [as the fields]
+
+    References
+    ----------
+    Definition.
+    """
+    none = "none"
+    turns = f"quickest turning of unit {number}; 0: its direction is fixed"
+    first = f"unit {number} turns clockwise from here; no limit where it is `azimuth_last`"
+    last = f"and to here; above azimuth_first_{number}"
+    return {
+        "azimuth_rate": quantity(0.0, "rad/s", turns, none, minimum=0.0),
+        "azimuth_first": quantity(0.0, "rad", first, none),
+        "azimuth_last": quantity(0.0, "rad", last, none),
+    }

@@ -38,7 +38,7 @@ def live_page(system: System, scenario: Scenario, progress: CountProgress | None
     """
     system, numbers = prepared(system, scenario)
     plan = make_plan(system, numbers, (), changeable_inputs(system))
-    # Compile first: a component without native code is said before anything runs.
+    # Compile first: a component without native code is reported before anything runs.
     code = make_module(plan, numbers, progress)
     return _rendered(plan, numbers, scenario, code)
 

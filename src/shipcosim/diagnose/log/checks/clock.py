@@ -128,7 +128,7 @@ def wrong_clock(log: dict) -> list[Finding]:
     Parameters
     ----------
     log : dict of (n,) arrays
-        `time` [s] and roles in their units, NaN where not to be used; labels put right.
+        `time` [s] and roles in their units, NaN where not to be used; labels corrected.
     """
     # Positions and headings, each where the motion stands clear of the noise.
     sides = [

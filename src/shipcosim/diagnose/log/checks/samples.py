@@ -221,7 +221,7 @@ def _shows_noise(values, role):
     if len(values) < FEWEST_CONSTANT:
         return True
     if role == "heading" or role.endswith("_from"):
-        values = unwrap_series(np.radians(values)) * 180.0 / np.pi
+        values = np.degrees(unwrap_series(np.radians(values)))
     # Second differences of white noise change their sign from row to row (correlation -2/3), those of a motion do not.
     bends = np.diff(values, n=2)
     usual = np.median(np.abs(bends))

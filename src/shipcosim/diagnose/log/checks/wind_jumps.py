@@ -26,7 +26,7 @@ def jumping_wind(log: dict) -> list[Finding]:
     Parameters
     ----------
     log : dict of (n,) arrays
-        `time` [s] and roles in their units, NaN where not to be used; labels put right.
+        `time` [s] and roles in their units, NaN where not to be used; labels corrected.
     """
     rows = complete_rows(log, ROLES)
     if len(rows) < 4 * BETWEEN_JUMPS:

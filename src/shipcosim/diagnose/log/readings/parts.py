@@ -1,7 +1,7 @@
 """Labels that are wrong in a part of a log: where they begin and end, and whether the part alone says so.
 
-A mistake predicts a form and a factor of each relation, so it leaves other rows between what is seen and what is told.
-For every row that says how much likelier the log is with the mistake. Where this adds up to most is the part. It is
+A mistake predicts a form and a factor of each relation, so it leaves another difference between observed and reported
+change. For every row that says how much likelier the log is with the mistake. Where this adds up to most is the part. It is
 then judged as a log of its own, by all relations; a mistake in a part costs as much more as the choice of both ends.
 """
 
@@ -62,7 +62,7 @@ class _Noise:
 
 
 def mislabelled(log: dict, stated: dict[str, str]) -> tuple[list[Finding], dict]:
-    """Navigation channels that are mislabelled in a part of a log, and the log with them put right.
+    """Navigation channels that are mislabelled in a part of a log, and the corrected log.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def mislabelled(log: dict, stated: dict[str, str]) -> tuple[list[Finding], dict]
         Units that headers or a channel file state, by role.
     """
     found = []
-    # One part at a time: the log with it put right shows the next one.
+    # One part at a time: the corrected log shows the next one.
     for _ in range(MOST_PARTS):
         for part in _suspected(log, stated)[:MOST_LABELS]:
             segment = refined(log, part.mislabel, part.segment)
@@ -135,7 +135,7 @@ def _gains(
     starts = after_gaps(time[rows]) | jumps(seen)
     if (~starts).sum() < FEWEST_FITTED:
         return
-    # What each reading predicts: the form of what is told, and its factor. As labelled comes first.
+    # What each reading predicts: the form of the reported change, and its factor. As labelled comes first.
     labelled = relation.predicted(LogInterpretation())
     readings = {
         sentence: relation.predicted(mistake.apply(LogInterpretation()))

@@ -59,7 +59,7 @@ class RowsOfRelation:
     axes: int
 
     def predicted(self, reading: LogInterpretation) -> tuple[tuple[str, str], complex]:
-        """The form in which what is told is proportional to what is seen, and the factor, as a reading has it."""
+        """The form of the reported change that is proportional to the observed one, and the factor, by a reading."""
         if self.axes == 1:
             return RATE, reading.rate_factor
         return reading.form, cmath.exp(reading.factor)
