@@ -319,6 +319,20 @@ def contradicts(unit: Unit, other: Unit) -> bool:
     return related == "convertible" and not (is_close and abs(unit.offset - other.offset) <= 0.1)
 
 
+def told_apart(unit: Unit, other: Unit) -> tuple[str, str]:
+    """Names of two units; where both have one name, with their definitions.
+
+    Examples
+    --------
+    >>> told_apart(SYMBOLS["m"], SYMBOLS["kg"]), told_apart(SYMBOLS["m"], Unit("m", None))
+    (('m', 'kg'), ('m (1 m)', 'm (not defined)'))
+    """
+    names = [unit.name, other.name]
+    if unit.name == other.name:
+        names = [f"{one.name} ({one.definition or 'not defined'})" for one in (unit, other)]
+    return names[0], names[1]
+
+
 def conversion(source: Unit | None, target: Unit | None) -> tuple[float, float]:
     """Factor and offset from one unit to the other: target value = factor * source value + offset.
 

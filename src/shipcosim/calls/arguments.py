@@ -291,8 +291,9 @@ def scenario_of(
             step_size = default_step_size(system, start_time, entries["stop_time"])
             entries |= without_none({"step_size": step_size})
         entries.setdefault("description", f"Simulation of {system.name}")
-        # The step of one FMU follows from its stop time.
-        needed = ["stop_time"] if system.file.endswith(".fmu") else ["stop_time", "step_size"]
+        # The step of one FMU follows from its stop time; a system may have a step of its own.
+        has_step = system.file.endswith(".fmu") or system.experiment.step_size is not None
+        needed = ["stop_time"] if has_step else ["stop_time", "step_size"]
         if missing := [name for name in needed if name not in entries]:
             raise ShipcosimError(
                 [

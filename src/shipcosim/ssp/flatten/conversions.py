@@ -8,7 +8,7 @@ from shipcosim.ssp.flatten.ports import Port, Setting, Wire
 from shipcosim.ssp.read.parameters import Transformation
 from shipcosim.ssp.xml.document import Findings
 from shipcosim.ssp.xml.values import Value
-from shipcosim.units import Unit, contradicts, conversion, relation
+from shipcosim.units import Unit, contradicts, conversion, relation, told_apart
 
 TAKES = {
     "Real": ("Real", "Integer"),
@@ -137,11 +137,9 @@ def _compare_units(
         return
     # Units may be equal, convertible, of unknown definition, or incompatible.
     related = relation(flow.unit, port.unit)
-    units = flow.unit.name, port.unit.name
     # Where one name has two definitions, only the definitions tell what differs.
-    if units[0] == units[1]:
-        units = tuple(f"{u.name} ({u.definition})" for u in (flow.unit, port.unit))
-    found = f"{names[0]} is in {units[0]}, {names[1]} in {units[1]}"
+    given, wanted = told_apart(flow.unit, port.unit)
+    found = f"{names[0]} is in {given}, {names[1]} in {wanted}"
     if flow.unit.name == port.unit.name and related == "convertible":
         if contradicts(flow.unit, port.unit):
             findings.remark(

@@ -12,7 +12,7 @@ from shipcosim.ssp.fmu.arrays import without_arrays
 from shipcosim.ssp.fmu.description import FmuDescription, Variable
 from shipcosim.ssp.read.structure import KIND_NAMES, ComponentElement, Connector
 from shipcosim.ssp.xml.document import Findings
-from shipcosim.units import find_unit, relation
+from shipcosim.units import find_unit, relation, told_apart
 
 CAUSALITIES = {
     "calculatedParameter": "calculated parameter",
@@ -116,7 +116,8 @@ def _compare(
     if own is None or connector.unit is None:
         return
     related = relation(connector.unit, own)
-    found = f"The connector is in {connector.unit.name}, the variable in {name} in {own.name}"
+    given, wanted = told_apart(connector.unit, own)
+    found = f"The connector is in {given}, the variable in {name} in {wanted}"
     if related == "incompatible":
         findings.error(place, f"{found}; these cannot be converted.", f'Write unit="{own.name}".')
     elif related != "same":

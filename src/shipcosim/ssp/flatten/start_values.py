@@ -111,7 +111,11 @@ class Settings:
             value, flow, step = self._number(value, flow, step, port, place)
             if value is None:
                 return ()
+        n_errors = len(self.findings.errors)
         flow = advance(flow, step, port, (place, ("the value", str(key))), self.findings)
+        # A value that does not fit goes no further: a text cannot be converted.
+        if len(self.findings.errors) > n_errors:
+            return ()
         # At a component the way ends: convert and store.
         if port.owner == "component":
             self._start(value, flow, key, port, place)

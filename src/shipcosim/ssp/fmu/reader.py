@@ -12,7 +12,7 @@ from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.fmu.fmi1 import interfaces_of
 from shipcosim.ssp.fmu.variables import read_variables
 from shipcosim.ssp.xml.archive import entries, read_entry
-from shipcosim.ssp.xml.definitions import note_units, read_units
+from shipcosim.ssp.xml.definitions import noted_units
 from shipcosim.ssp.xml.document import (
     LARGEST_FILE,
     AnyPath,
@@ -113,7 +113,6 @@ def _description(
 ) -> FmuDescription:
     root = document.root
     version = f"{root.get('fmiVersion', '')[:1]}.0"
-    note_units(document, parts_of(root, "UnitDefinitions"), findings)
     # Platforms are the folders in binaries/.
     platforms = {
         parts[1] for name in names if len(parts := name.split("/")) > 2 and parts[0] == "binaries"
@@ -135,7 +134,7 @@ def _description(
         description=root.get("description", ""),
         generation_tool=root.get("generationTool", ""),
         interfaces=interfaces_of(root) if version == "1.0" else _interfaces(root),
-        units=read_units(parts_of(root, "UnitDefinitions")),
+        units=noted_units(document, parts_of(root, "UnitDefinitions"), findings),
         platforms=tuple(sorted(platforms)),
         experiment=experiment,
         n_states=n_states,

@@ -64,13 +64,12 @@ class Simulators:
 
     def take(self, element: etree._Element) -> None:
         """Collect a Simulator element with its FMU and its initial values."""
-        # Names must differ.
+        # Each needs a name of its own.
         name = element.get("name")
         place = self.document.place(element, name)
-        if (name,) in self.tree.components:
-            self.findings.error(
-                place, f"A second simulator is named '{name}'.", "Names must differ."
-            )
+        if not name or (name,) in self.tree.components:
+            found = f"A second simulator is named '{name}'." if name else "A simulator has no name."
+            self.findings.error(place, found, "Names must differ.")
             return
         # The FMU, or the one that replaces it.
         fmu = self._fmu(element.get("source"), place, self.tree.swapped.get(name))
@@ -81,7 +80,14 @@ class Simulators:
         self.tree.components[name,] = described, fmu
         self.tree.arrays[name,] = {} if fmu is None else dict(fmu.arrays)
         # Initial values act like a parameter set of this component.
+        given: dict[str, str] = {}
         for initial in element.iter(f"{{{NAMESPACE}}}InitialValue"):
+            variable = initial.get("variable")
+            place = self.document.place(initial, f"{name}.{variable}")
+            text = etree.tostring(initial, encoding="unicode", with_tail=False)
+            # Two values of one variable: the order would decide.
+            if given.setdefault(variable, text) != text:
+                self.findings.error(place, "It has two initial values.", "Keep one of them.")
             self._initial(name, initial)
 
     def _initial(self, name: str, element: etree._Element) -> None:
@@ -134,6 +140,12 @@ class Simulators:
             found = next((path for path in paths if path.is_file()), None)
             if found is not None:
                 remark_copy(found, elsewhere, place, self.findings)
+                if found not in paths[:2] and found.name != Path(path).name:
+                    self.findings.flaw(
+                        place,
+                        f"There is no '{source}'; {found.name} is taken.",
+                        "Write its name so.",
+                    )
         except (ValueError, OSError) as error:
             self.findings.error(place, f"'{source[:80]}' is no usable address: {error}.")
             return None

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import lxml.etree as etree
 
 from shipcosim.ssp.read.attributes import attribute
-from shipcosim.ssp.xml.definitions import note_units, read_enumerations, read_units
+from shipcosim.ssp.xml.definitions import noted_units, read_enumerations
 from shipcosim.ssp.xml.document import (
     NAMESPACES,
     AnyPath,
@@ -199,10 +199,7 @@ def read_parameter_set(document: Document, findings: Findings) -> ParameterSet:
     values = {}
     sound = len(findings.errors) == before
     # Units first: values refer to them.
-    units = {}
-    with reporting(document, root, findings):
-        units = read_units(children(root, "ssv:Units", "ssc:Unit"))
-        note_units(document, children(root, "ssv:Units", "ssc:Unit"), findings)
+    units = noted_units(document, children(root, "ssv:Units", "ssc:Unit"), findings)
     for element in children(root, "ssv:Parameters", "ssv:Parameter") if sound else ():
         value = _parameter(document, element, units, findings)
         # The same parameter twice: equal values are a flaw, different ones an error.
@@ -400,10 +397,9 @@ def read_dictionary(document: Document, findings: Findings) -> dict[str, Diction
     if len(findings.errors) > before:
         return {}
     # Units and enumerations first: entries refer to them.
-    units = {}
+    units = noted_units(document, children(root, "ssb:Units", "ssc:Unit"), findings)
     enumerations = {}
     with reporting(document, root, findings):
-        units = read_units(children(root, "ssb:Units", "ssc:Unit"))
         enumerations = read_enumerations(children(root, "ssb:Enumerations", "ssc:Enumeration"))
     entries = {}
     # Names must differ; entries without a type are left out.

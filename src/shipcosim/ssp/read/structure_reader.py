@@ -22,7 +22,7 @@ from shipcosim.ssp.read.structure import (
     signal,
 )
 from shipcosim.ssp.xml.annotations import STEP_SIZE_HINTS, STEP_SIZES, remark_ignored
-from shipcosim.ssp.xml.definitions import note_units, read_enumerations, read_units
+from shipcosim.ssp.xml.definitions import noted_units, read_enumerations
 from shipcosim.ssp.xml.document import (
     Document,
     Findings,
@@ -83,15 +83,13 @@ class _Reader:
     def __init__(self, document: Document, findings: Findings):
         self.document = document
         self.findings = findings
-        self.units = {}
         self.enumerations = {}
         # The schema checks kinds of connectors in version 1 only.
         self.validated = not document.root.get("version", "").startswith("2.")
         root = document.root
         # Units and enumerations first: connectors refer to them.
+        self.units = noted_units(document, children(root, "ssd:Units", "ssc:Unit"), findings)
         with reporting(document, root, findings):
-            self.units = read_units(children(root, "ssd:Units", "ssc:Unit"))
-            note_units(document, children(root, "ssd:Units", "ssc:Unit"), findings)
             self.enumerations = read_enumerations(
                 children(root, "ssd:Enumerations", "ssc:Enumeration")
             )

@@ -1,10 +1,11 @@
 """Units and enumerations that an SSP or FMI file defines: reading and adding."""
 
+import math
 from collections.abc import Iterable, Mapping
 
 import lxml.etree as etree
 
-from shipcosim.ssp.xml.document import Document, Findings, children, local
+from shipcosim.ssp.xml.document import Document, Findings, children, local, reporting
 from shipcosim.ssp.xml.markup import add, ensure, free_name
 from shipcosim.ssp.xml.values import read_value
 from shipcosim.units import AMBIGUOUS, BASE_UNITS, Unit, contradicts, relation, spelled_unit
@@ -19,21 +20,27 @@ def read_units(elements: Iterable[etree._Element]) -> dict[str, Unit]:
     Raises
     ------
     ValueError
-        If an exponent, factor or offset is no number.
+        If an exponent, factor or offset is no number, or the factor is 0.
     """
     units = {}
     for element in elements:
         # Exponents of the SI base units, with factor and offset.
         base = next((part for part in element if local(part) == "BaseUnit"), None)
-        if (
-            base is not None
-            and element.get("name") is not None
-            and not _says_nothing(element, base)
-        ):
-            exponents = tuple(int(base.get(name, 0)) for name in BASE_UNITS)
-            scale = float(base.get("factor", 1.0)), float(base.get("offset", 0.0))
-            units[element.get("name")] = Unit(element.get("name"), exponents, *scale)
+        name = element.get("name")
+        if base is None or name is None or _says_nothing(element, base):
+            continue
+        exponents = tuple(int(base.get(symbol, 0)) for symbol in BASE_UNITS)
+        units[name] = Unit(name, exponents, *_scale(name, base))
     return units
+
+
+def _scale(name: str, base: etree._Element) -> tuple[float, float]:
+    """Factor and offset of a base unit, or ValueError where no value can be converted with them."""
+    factor = float(base.get("factor", 1.0))
+    offset = float(base.get("offset", 0.0))
+    if factor == 0.0 or not math.isfinite(factor) or not math.isfinite(offset):
+        raise ValueError(f"The unit '{name}' has the factor {factor:g} and the offset {offset:g}.")
+    return factor, offset
 
 
 def _says_nothing(element: etree._Element, base: etree._Element) -> bool:
@@ -42,31 +49,45 @@ def _says_nothing(element: etree._Element, base: etree._Element) -> bool:
     return not base.attrib and known is not None and any(known.exponents or ())
 
 
-def note_units(document: Document, elements: Iterable[etree._Element], findings: Findings) -> None:
-    """Report units with an empty base unit, which get their common meaning, and units that are defined as others."""
+def noted_units(
+    document: Document, elements: Iterable[etree._Element], findings: Findings
+) -> dict[str, Unit]:
+    """Units by name, as `read_units`, with what is to be said of their definitions.
+
+    Parameters
+    ----------
+    document : Document
+        The file.
+    elements : iterable of lxml element
+        Its Unit elements.
+    findings : Findings
+        Takes what is wrong.
+    """
+    units: dict[str, Unit] = {}
     for element in elements:
-        _note_contradiction(document, element, findings)
+        name = element.get("name", "")
+        with reporting(document, element, findings):
+            for unit in read_units([element]).values():
+                # The same definition twice does no harm.
+                if units.setdefault(name, unit) != unit:
+                    both = f"{units[name].definition} and {unit.definition}"
+                    raise ValueError(f"The unit '{name}' is defined twice: {both}.")
+                _note_contradiction(unit, document.place(element), findings)
         for base in (part for part in element if local(part) == "BaseUnit"):
             if _says_nothing(element, base):
-                found = f"The base unit of '{element.get('name')}' says nothing; the unit is what it is commonly."
+                found = f"The base unit of '{name}' says nothing; the unit is what it is commonly."
                 findings.flaw(
                     document.place(base), found, "State its exponents, or leave BaseUnit out."
                 )
+    return units
 
 
-def _note_contradiction(document: Document, element: etree._Element, findings: Findings) -> None:
+def _note_contradiction(unit: Unit, place: str, findings: Findings) -> None:
     """Remark a unit whose definition is not what its name commonly means; the file's definition counts."""
-    name = element.get("name", "")
-    known = None if name in AMBIGUOUS else spelled_unit(name)
-    try:
-        defined = read_units([element]).get(name)
-    except ValueError:
-        return  # numbers that cannot be read are reported where all units are read
-    if known is not None and defined is not None and contradicts(defined, known):
-        found = f"'{name}' is defined as {defined.definition}; commonly it is {known.definition}."
-        findings.remark(
-            document.place(element), found, "Correct the definition, or give the unit another name."
-        )
+    known = None if unit.name in AMBIGUOUS else spelled_unit(unit.name)
+    if known is not None and contradicts(unit, known):
+        found = f"'{unit.name}' is defined as {unit.definition}; commonly it is {known.definition}."
+        findings.remark(place, found, "Correct the definition, or give the unit another name.")
 
 
 def read_enumerations(elements: Iterable[etree._Element]) -> dict[str, dict[str, int]]:

@@ -1,5 +1,7 @@
 """Units and linear transformations on any way through a system, against conversions through SI written here."""
 
+import zipfile
+
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as some
@@ -103,3 +105,59 @@ def test_from_a_parameter_set_through_a_mapping_and_a_parameter_of_the_system(
     at_target = over(converted(at_system, b, d, units), linear)
     expected = converted(at_target, d, e, units)
     assert shop.read().components["t"].start["p"] == pytest.approx(expected, rel=1e-9, abs=1e-6)
+
+
+def units(*definitions):
+    inner = "".join(
+        f'<ssc:Unit name="{name}"><ssc:BaseUnit {base}/></ssc:Unit>' for name, base in definitions
+    )
+    return f"<ssd:Units>{inner}</ssd:Units>"
+
+
+@pytest.mark.parametrize(
+    "scale", ['factor="0"', 'factor="-0.0"', 'factor="NaN"', 'factor="1e999"', 'offset="INF"']
+)
+@pytest.mark.parametrize("place", ["SSD", "FMU"])
+def test_a_unit_that_nothing_converts_to_is_refused(shop, scale, place):
+    given = 'm="1" ' + scale
+    shop.fmu("one", "input u Real m")
+    if place == "FMU":
+        _with_unit(
+            shop.folder / "resources" / "one.fmu", '<BaseUnit m="1"/>', f"<BaseUnit {given}/>"
+        )
+    shop.ssd(
+        shop.component("one", "one", "input u"),
+        rest=units(("m", given)) if place == "SSD" else "",
+    )
+    assert "The unit 'm' has the factor" in shop.refused()
+
+
+def _with_unit(path, old, new):
+    """Replace a text in the description of an FMU."""
+    with zipfile.ZipFile(path) as archive:
+        text = archive.read("modelDescription.xml").decode()
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("modelDescription.xml", text.replace(old, new, 1))
+
+
+@SEVERAL
+@given(
+    some.tuples(*[some.sampled_from(["", ' factor="2"', ' offset="3"', ' factor="2.0"'])] * 2),
+    some.sampled_from(["furlong", "m", "K"]),
+)
+def test_two_definitions_of_a_unit_in_one_file_must_agree(shop, scales, name):
+    first, second = ('m="1"' + scale for scale in scales)
+    shop.fmu("one", "input u Real m")
+    shop.ssd(shop.component("one", "one", "input u"), rest=units((name, first), (name, second)))
+    if first.replace("2.0", "2") == second.replace("2.0", "2"):
+        shop.read()
+    else:
+        assert f"The unit '{name}' is defined twice" in shop.refused()
+
+
+def test_a_connector_and_its_variable_in_two_units_of_one_name_are_told_apart(shop):
+    shop.fmu("one", "input u Real m")
+    component = shop.component("one", "one", f"input u {typed('m')}")
+    shop.ssd(component, rest=units(("m", 'm="1" factor="1000"')))
+    remarks = [problem.found for problem in shop.read().remarks]
+    assert any("in m (1000 m), the variable in one.fmu in m (1 m)" in found for found in remarks)

@@ -316,3 +316,38 @@ def test_arrays_of_fmi_3_are_connected_by_elements_and_sized_by_initial_values(o
         "A[3]" in larger.components["b"].fmu.variables
         and "A[3]" not in larger.components["a"].fmu.variables
     )
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "refused"),
+    [("1", "2", True), ("1", "1", False), ("0", "-0.0", True)],
+)
+def test_two_initial_values_of_a_variable_must_agree(osp, first, second, refused):
+    path = osp(values=value("k", "Real", first) + value("k", "Real", second))
+    assert ("b.k: It has two initial values." in text_of(check_file(path))) == refused
+
+
+@pytest.mark.parametrize("kind", ["Boolean", "String"])
+def test_an_initial_value_of_another_type_is_refused(osp, kind):
+    path = osp(values=value("k", kind, "true"))
+    assert f"the value is {kind}, b.k is Real" in text_of(check_file(path))
+
+
+def test_a_simulator_needs_a_name(osp):
+    path = osp(simulators=SIMULATORS.replace('name="a"', 'name=""'))
+    assert "A simulator has no name." in text_of(check_file(path))
+
+
+@pytest.mark.parametrize("name", ["ONE.fmu", "one.FMU", "One.Fmu"])
+def test_a_file_name_in_other_letters_is_taken_with_a_remark(osp, name):
+    path = osp(simulators=SIMULATORS.replace("one.fmu", name))
+    assert not text_of(check_file(path))
+    assert f"There is no 'resources/{name}'; one.fmu is taken." in text_of(
+        check_file(path), "remark"
+    )
+
+
+def test_only_a_time_that_the_file_lacks_is_called_missing(osp):
+    with pytest.raises(ShipcosimError, match="stop_time is missing") as refused:
+        sc.simulate(osp())
+    assert "step_size" not in str(refused.value)

@@ -303,3 +303,42 @@ def test_a_read_only_place_for_a_set_is_an_error_and_leaves_nothing(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(Exception, match="Cannot be written"):
         write_ssv(tmp_path / "file" / "ship.ssv", "ship", [])
+
+
+PARAMETERS = {
+    "mass": "Real",
+    "seed": "Integer",
+    "replay": "Boolean",
+    "table": "String",
+    "mode": "Enumeration",
+}
+VALUES = {
+    "Real": "2.5",
+    "Integer": "1",
+    "Boolean": "true",
+    "String": "4",
+    "Enumeration": "on",
+    "Binary": "00ff",
+}
+TAKEN = {("Integer", "Real"), ("Enumeration", "Integer"), ("Integer", "Enumeration")}
+TYPES_OF_VALUES = [
+    (kind, name)
+    for kind in VALUES
+    for name, wanted in PARAMETERS.items()
+    if kind != wanted and (kind, wanted) not in TAKEN
+]
+
+
+@pytest.mark.parametrize("through", ["component", "system connector"])
+@pytest.mark.parametrize(("kind", "name"), TYPES_OF_VALUES)
+def test_a_value_of_another_type_is_refused_in_one_sentence(ship, kind, name, through):
+    value = f'<ssv:Parameter name="{name}"><ssv:{kind} value="{VALUES[kind]}"/></ssv:Parameter>'
+    if through == "component":
+        ship.ssd(ship.component("hull", "hull", more=inline(value)))
+    else:
+        head = f'<ssd:Connectors><ssd:Connector name="{name}" kind="parameter"/></ssd:Connectors>'
+        hull = ship.component("hull", "hull", f"parameter {name}")
+        ship.ssd(hull, ship.connection(name, f"hull.{name}"), head=head + inline(value))
+    refused = ship.refused()
+    assert f"is {kind}" in refused or "The enumeration has no item" in refused
+    assert "fault of shipcosim" not in refused and len(refused.splitlines()) == 1
