@@ -18,7 +18,7 @@ from shipcosim.scenario.locations import AnyKeys, Keys
 from shipcosim.scenario.model import Value
 from shipcosim.ssp import fitting_values, with_values
 from shipcosim.sweep.reader import problem_of
-from shipcosim.sweep.study_model import Case, Factor, Study
+from shipcosim.sweep.study_model import MOST_LEVELS, Case, Factor, Study
 from shipcosim.units import Unit, UnitError, amount, number_in, whole_steps
 
 if TYPE_CHECKING:
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from shipcosim.ssp import System
 
 LARGEST_SEED = 2**31
-MOST_LEVELS = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -54,6 +53,36 @@ class Level:
     stop_time: float | None = None
 
 
+@dataclass(frozen=True)
+class Seeds(Mapping[str, int]):
+    """Seeds of one level by signal, drawn when a run asks for them: there may be a million levels.
+
+    Parameters
+    ----------
+    study, level : int
+        Seed of the study, and number of the level.
+    signals : tuple of str
+        Each gets its own number from both and its name.
+    """
+
+    study: int
+    level: int
+    signals: tuple[str, ...]
+
+    def __getitem__(self, signal: str) -> int:
+        if signal not in self.signals:
+            raise KeyError(signal)
+        # The name enters by its checksum: a new component does not change the seeds of others.
+        generator = np.random.default_rng([self.study, self.level, zlib.crc32(signal.encode())])
+        return int(generator.integers(1, LARGEST_SEED))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.signals)
+
+    def __len__(self) -> int:
+        return len(self.signals)
+
+
 class Levels:
     """Make the levels of a study's factors, and collect their problems.
 
@@ -78,7 +107,15 @@ class Levels:
         self.problems.append(problem_of(self._study, keys, found, remedy))
 
     def of(self, number: int) -> list[Level]:
-        """Levels of the factor with a number."""
+        """Levels of the factor with a number; each may be there once."""
+        levels = self._made(number)
+        labels = [level.label for level in levels]
+        if len(set(labels)) < len(labels):
+            twice = next(label for place, label in enumerate(labels) if label in labels[:place])
+            self.complain(("factor", number), f"The level {twice} is there twice.", "Keep one.")
+        return levels
+
+    def _made(self, number: int) -> list[Level]:
         factor = self._study.factor[number]
         # Cases, directions and conditions: each sets several things at once.
         if cases := factor.cases:
@@ -270,11 +307,10 @@ class Levels:
         if not signals and not self.problems:
             found = "Nothing in the system has a seed: it has no parameter named seed."
             self.complain(keys, found, "Name the signals: signal = [...].")
-        levels = []
         # Seeds of one level differ between signals, so that two sensors have independent noise.
-        for level in range(1, (factor.seeds or 0) + 1):
-            values = {signal: _drawn(self._study.seed, level, signal) for signal in signals}
-            levels.append(Level(level, values))
+        numbers = range(1, (factor.seeds or 0) + 1)
+        named = tuple(signals)
+        levels = [Level(number, Seeds(self._study.seed, number, named)) for number in numbers]
         if levels:
             self.checked(levels[0].values, keys)
         return levels
@@ -299,12 +335,6 @@ def seeds_of(system: System) -> Iterator[str]:
             is_seed = variable.name == "seed" or variable.name.endswith("_seed")
             if is_seed and variable.causality == "parameter" and variable.kind == "Integer":
                 yield f"{component.name}.{variable.name}"
-
-
-def _drawn(seed: int, level: int, signal: str) -> int:
-    # The name enters by its checksum: a new component does not change the seeds of others.
-    generator = np.random.default_rng([seed, level, zlib.crc32(signal.encode())])
-    return int(generator.integers(1, LARGEST_SEED))
 
 
 def _number(value: Any, unit: Unit | None, difference: bool = False) -> Any:

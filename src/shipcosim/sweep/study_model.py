@@ -42,7 +42,10 @@ def _label(value: Any) -> str | int | float:
 
 Label = Annotated[str | int | float, PlainValidator(_label)]
 Column = Annotated[str, AfterValidator(_column)]
+MOST_LEVELS = 100_000
+"""Largest number of levels of a factor, which are all made before the first run."""
 Count = Annotated[int, Field(ge=1)]
+Several = Annotated[int, Field(ge=2, le=MOST_LEVELS)]
 KINDS = "values", "from (with to and count or step)", "case", "directions", "conditions", "seeds"
 
 
@@ -68,10 +71,10 @@ class Factor(Part):
     values: list[Value] | None = Field(default=None, min_length=1)
     start: Amount | None = Field(default=None, alias="from")
     to: Amount | None = None
-    count: Annotated[int, Field(ge=2)] | None = None
+    count: Several | None = None
     step: Amount | None = None
     case: list[Case] | None = Field(default=None, min_length=1)
-    directions: Annotated[int, Field(ge=2)] | None = Field(
+    directions: Several | None = Field(
         default=None, description="how many, that wind, waves and current come from"
     )
     conditions: list[Literal[weather.NUMBERS]] | None = Field(  # pyright: ignore[reportInvalidTypeForm]
@@ -79,7 +82,7 @@ class Factor(Part):
         min_length=1,
         description="DP capability numbers whose wind, waves and current are set",
     )
-    seeds: Count | None = None
+    seeds: Annotated[int, Field(ge=1, le=MOST_LEVELS)] | None = None
     at_fork: bool = Field(default=False, description="acts at fork_at, as an event that overrides")
 
     @model_validator(mode="after")

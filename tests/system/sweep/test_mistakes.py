@@ -620,3 +620,25 @@ def parts_in(annotation):
     if isinstance(annotation, type) and not isinstance(annotation, types.GenericAlias):
         return [annotation] if issubclass(annotation, BaseModel) else []
     return [part for inner in typing.get_args(annotation) for part in parts_in(inner)]
+
+
+@pytest.mark.parametrize(
+    ("values", "level"),
+    [
+        ("[2.0, 2.0]", "2.0"),
+        ('["100 cm", 2.0, "1 m"]', "1.0"),
+        ("[1, 1.0, 3.0]", "1.0"),
+        ("[3.0, 2.0, 1.0, 2.0]", "2.0"),
+    ],
+)
+def test_a_level_that_is_there_twice_is_refused(complaints, values, level):
+    (first,) = complaints(WHOLE.replace('["100 cm", 2.0]', values))
+    assert f"The level {level} is there twice." in first.found
+
+
+@pytest.mark.parametrize("count", [100_001, 10**9, 10**18])
+@pytest.mark.parametrize("key", ["seeds", "count"])
+def test_more_levels_than_memory_holds_are_refused_at_once(complaints, key, count):
+    text = re.sub(rf"(?m)^{key}( *)= \d+", rf"{key}\1= {count}", WHOLE)
+    assert text != WHOLE
+    assert "less than or equal to 100000" in complaints(text)[0].remedy
