@@ -123,7 +123,7 @@ def separator_of(lines: list[str]) -> str:
         return told.strip()[4]
     rows = [line for line in lines if line.strip() and not is_comment(line)]
     sample = (
-        [rows[int(i * (len(rows) - 1) / _SAMPLE)] for i in range(_SAMPLE + 1)][_SAMPLE // 4 :]
+        [rows[round(i * (len(rows) - 1) / _SAMPLE)] for i in range(_SAMPLE + 1)][_SAMPLE // 4 :]
         if rows
         else []
     )

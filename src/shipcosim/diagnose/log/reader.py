@@ -39,6 +39,8 @@ _FARTHEST = {
     "longitude": 540.0,
 }  # deg; some loggers count on beyond the date line
 
+MOST_NAMED = 20
+"""Largest number of columns that a remark lists."""
 LARGEST_NUMBER = 1e100
 """Largest number that a log can hold, in the unit of its role."""
 
@@ -109,7 +111,7 @@ def read_log(
     said += more + _over_the_earth(signals)
     if "latitude" in signals:
         attributes |= _local_position(columns.source, signals, said)
-    said += _without_value(signals)
+    said += _without_value(columns.source, signals)
     attributes["column_remarks"] = [
         *columns.remarks,
         *said,
@@ -262,16 +264,16 @@ def _beyond(where, values):
 
 
 def _check_time(source, time):
-    # Times beyond any date, or counts since 1970 in another unit, are errors of the unit.
-    if (beyond := np.abs(time) > LATEST).any() and np.isfinite(time[beyond]).any():
-        row = int(np.flatnonzero(beyond)[0])
-        found = f"is {time[row]:g} s in row {row + 2}."
-        remedy = f"Times are at most {LATEST:g} s, say since 1970."
-        raise error_at(f"{source}, time", found, remedy)
+    # Counts since 1970 in another unit, or times beyond any date, are errors of the unit.
     known = finite(time)
     if (epoch := epoch_unit(known)) not in (None, "s"):
         found = f"begins at {known[0]:.4g} s: are these {epoch} since 1970?"
         remedy = f'Say the unit in a channel file: time = {{column = "...", unit = "{epoch}"}}.'
+        raise error_at(f"{source}, time", found, remedy)
+    beyond = np.flatnonzero(np.isfinite(time) & (np.abs(time) > LATEST))
+    if len(beyond):
+        found = f"is {time[beyond[0]]:g} s in row {beyond[0] + 2}: is the unit right?"
+        remedy = f"Times are at most {LATEST:g} s, the year 9999 counted from 1970."
         raise error_at(f"{source}, time", found, remedy)
     # What follows takes as many rows as an even series of this step has, so a wrong unit would fill the memory.
     step = usual_rise(known, np.inf)
@@ -366,9 +368,12 @@ def _local_position(source, signals, said):
     return {"latitude_origin": float(origin[0]), "longitude_origin": float(origin[1])}
 
 
-def _without_value(signals):
+def _without_value(source, signals):
     """Takes away channels without any value, and says so."""
     empty = [name for name, (values, _) in signals.items() if not np.isfinite(values).any()]
+    if empty and len(empty) == len(signals):
+        found = f"no row has a value of {_few(empty)}."
+        raise error_at(source, found, "A log has numbers beside its times.")
     for name in empty:
         del signals[name]
     return [f"{name}: no row has a value, so it is not used." for name in empty]
@@ -388,13 +393,19 @@ def _told(proposal):
         if not _is_unnamed(guess.column):
             reasons.setdefault(guess.why, []).append(f"'{guess.column}'")
     for why, names in reasons.items():
-        yield f"Column{'s' * (len(names) > 1)} not used: {', '.join(names)}: {why}."
+        yield f"Column{'s' * (len(names) > 1)} not used: {_few(names)}: {why}."
+
+
+def _few(names):
+    """The first of many names."""
+    more = len(names) - MOST_NAMED
+    return ", ".join(names[:MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
 
 
 def _not_named(unused):
     """Columns that a channel file does not name."""
     return (
-        [f"Columns that the channel file does not name are not used: {', '.join(unused)}."]
+        [f"Columns that the channel file does not name are not used: {_few(unused)}."]
         if unused
         else []
     )

@@ -260,7 +260,7 @@ LONGEST_SPAN = 50.0
 """Span of a log over what its rows can fill, from which on some of its stamps are wrong. Assumed."""
 UNEVEN = 0.02
 """Spread of the steps as a share of the usual one, from which on it is remarked. Assumed."""
-LATEST = 1e19
-"""Latest time that is one: nanoseconds since 1970 in a column of seconds. [s]"""
+LATEST = 2.6e11
+"""Latest time that is one, after the year 9999 counted from 1970. [s]"""
 SHORTEST_STEP = 2e-4
 """Least usual time between rows, below which a unit is hardly right. Assumed. [s]"""

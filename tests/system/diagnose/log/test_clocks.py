@@ -1,9 +1,12 @@
 """Clocks that start anew, are put back or count something else than seconds are read on, or refused: never silently."""
 
 from datetime import datetime, timedelta
+from zoneinfo import ZoneInfo
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as some
 
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.errors import ShipcosimError
@@ -70,3 +73,27 @@ def test_a_stated_unit_is_believed(read):
     assert passed(read("time [s]", [f"{1000.0 * t:.0f}" for t in SECONDS]))[-1] == pytest.approx(
         299500.0
     )
+
+
+ZONES = ["Europe/London", "Europe/Oslo", "Atlantic/Azores", "America/St_Johns", "Australia/Sydney"]
+CHANGES = ["2024-03-31T00:58:00", "2024-10-27T00:58:00", "2024-10-05T15:58:00"]
+
+
+@settings(max_examples=25, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@given(some.sampled_from(ZONES), some.sampled_from(CHANGES), some.booleans(), some.booleans())
+def test_no_row_is_lost_where_summer_time_comes_or_goes(read, zone, start, as_z, blank):
+    first = datetime.fromisoformat(start).replace(tzinfo=ZoneInfo("UTC"))
+    moments = [first + timedelta(seconds=float(t)) for t in SECONDS]
+    texts = [m.astimezone(ZoneInfo(zone)).isoformat(timespec="milliseconds") for m in moments]
+    texts = [text.replace("+00:00", "Z") if as_z else text for text in texts]
+    log = read("time", [text.replace("T", " ") if blank else text for text in texts])
+    assert len(log["time"]) == len(SECONDS)
+    assert passed(log) == pytest.approx(SECONDS, abs=1e-3)
+
+
+@settings(max_examples=30, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@given(some.sampled_from(["ms", "us", "ns"]), some.sampled_from(["s", "min", "h", "d", "week"]))
+def test_counts_since_1970_in_a_column_of_a_larger_unit_are_refused(read, counted, stated):
+    size = {"ms": 10**3, "us": 10**6, "ns": 10**9}[counted]
+    with pytest.raises(ShipcosimError, match=r"is the unit right|since 1970\?"):
+        read(f"time [{stated}]", [str(1_700_000_000 * size + int(t * size)) for t in SECONDS])

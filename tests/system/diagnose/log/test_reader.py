@@ -153,3 +153,64 @@ def test_numbers_by_which_ais_says_that_there_is_none_are_left_out(tmp_path):
     assert float(np.nanmax(log["heading"])) == 120.0
     said = " ".join(log.attrs["column_remarks"])
     assert "'Heading' is 511 in 1 of its rows" in said and "'SOG' is 102.3" in said
+
+
+IN_METRES_PER_SECOND = {
+    "nm/h": 1852 / 3600,
+    "nm/hr": 1852 / 3600,
+    "nmph": 1852 / 3600,
+    "nautical miles per hour": 1852 / 3600,
+    "nmi/h": 1852 / 3600,
+    "knots": 1852 / 3600,
+    "KTS": 1852 / 3600,
+    "cm/s": 0.01,
+    "mm/s": 0.001,
+}
+
+
+@pytest.mark.parametrize("unit", IN_METRES_PER_SECOND)
+def test_a_speed_is_read_in_the_unit_as_ships_write_it(tmp_path, unit):
+    log = read_log(written(tmp_path, f"time [s],surge [{unit}],heading [deg]\n0,1,5\n1,2,6\n"))
+    wanted = IN_METRES_PER_SECOND[unit] * np.array([1.0, 2.0])
+    assert log["surge"].values == pytest.approx(wanted, rel=1e-9)
+
+
+@pytest.mark.parametrize(("unit", "metres"), [("nm", 1852.0), ("NM", 1852.0), ("mm", 1e-3)])
+def test_a_nautical_mile_is_no_nanometre(tmp_path, unit, metres):
+    log = read_log(written(tmp_path, f"time [s],north [{unit}],east [{unit}]\n0,1,0\n1,2,0\n"))
+    assert log["north"].values == pytest.approx([metres, 2 * metres])
+
+
+@pytest.mark.parametrize("unit", ["1/s", "s-1", "s^-1"])
+def test_per_second_is_radians_of_a_turn_and_revolutions_of_a_shaft(tmp_path, unit):
+    log = read_log(
+        written(tmp_path, f"time [s],yaw_rate [{unit}],bow_rpm [{unit}]\n0,1,1\n1,2,2\n")
+    )
+    assert log["yaw_rate"].values == pytest.approx(np.degrees([1.0, 2.0]))
+    assert log["bow_rpm"].values == pytest.approx([60.0, 120.0])
+
+
+@pytest.mark.parametrize("count", [1, 2, 7])
+def test_a_log_without_any_value_is_refused(tmp_path, count):
+    names = ["north [m]", "east [m]", "heading [deg]", "surge [m/s]", "sway [m/s]", "u", "v"][
+        :count
+    ]
+    rows = [",".join([str(t), *["nan"] * count]) for t in range(5)]
+    text = "\n".join([",".join(["time [s]", *names]), *rows])
+    with pytest.raises(ShipcosimError, match="no row has a value of|no column but time"):
+        read_log(written(tmp_path, text))
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+def test_a_table_of_one_row_is_refused_for_its_one_row(tmp_path, separator):
+    text = "time [s],north [m],east [m]\n0,1.5,2.5\n".replace(",", separator)
+    with pytest.raises(ShipcosimError, match="fewer than two different times"):
+        read_log(written(tmp_path, text))
+
+
+def test_a_remark_does_not_list_thousands_of_columns(tmp_path):
+    names = ["time [s]", "north [m]", "east [m]", *(f"c{i}" for i in range(3000))]
+    rows = [",".join([str(t)] * len(names)) for t in range(3)]
+    log = read_log(written(tmp_path, "\n".join([",".join(names), *rows])))
+    assert all(len(remark) < 500 for remark in log.attrs["column_remarks"])
+    assert "and 2980 more" in " ".join(log.attrs["column_remarks"])

@@ -181,17 +181,18 @@ def _whole(parsed, cells):
 def _uniform(cells) -> tuple[Any, np.ndarray | None]:
     """Stamps without their zone, with a point before the fraction everywhere or nowhere; what zones are ahead. [s]"""
     texts = cells.where(cells.notna(), None).astype("str").str.strip().where(cells.notna())
+    is_utc = texts.str.contains(_ZONE, na=False)
     texts = texts.str.replace(_ZONE, "", regex=True)
     first = texts.dropna().iloc[0] if texts.notna().any() else ""
     ahead = None
-    # Offset of the time zone, east positive.
-    if _OTHER_ZONE.search(first):
-        zones = texts.str.extract(_OTHER_ZONE)["zone"].str.replace(":", "")
-        sign = np.where(zones.str.startswith("-"), -1.0, 1.0)
-        ahead = (
-            sign * (zones.str[1:3].astype(float) * 3600 + zones.str[3:5].astype(float) * 60)
-        ).to_numpy(float)
+    # Offset of the time zone, east positive. Summer time may come and go: stamps of UTC stand beside others.
+    zones = texts.str.extract(_OTHER_ZONE)["zone"].str.replace(":", "")
+    if zones.notna().any():
+        sign = np.where(zones.str.startswith("-", na=False), -1.0, 1.0)
+        seconds = zones.str[1:3].astype(float) * 3600 + zones.str[3:5].astype(float) * 60
+        ahead = (sign * seconds).mask(is_utc, 0.0).to_numpy(float)
         texts = texts.str.replace(_OTHER_ZONE, lambda found: found["fraction"] or "", regex=True)
+        first = texts.dropna().iloc[0]
     if _COLON_FRACTION.match(first):
         texts = _with_point(texts)
     # Point as decimal sign, and a fraction in all stamps if any has one.

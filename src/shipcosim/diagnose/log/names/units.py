@@ -74,12 +74,15 @@ def unit_for(spelling: str, target: str) -> str:
     ('kN', 'parsec')
     """
     spelling = spelling.strip()
-    # A spelling such as ms can stand for several units:
-    # take the first that measures the same quantity.
+    # Per second an angle is rad/s: only what turns on a shaft is counted in revolutions.
+    if target == "deg/s" and _plain(spelling) in ("1/s", "s-1", "s^-1", "s⁻¹"):
+        return "rad/s"
+    # A spelling such as ms can stand for several units: take the first that measures the same quantity. What it means
+    # on ships goes first: nm is a nautical mile, not a nanometre.
     wanted = spelled_unit(target)
     options = [
         unit
-        for unit in (spelling, *_spellings().get(_plain(spelling), ()))
+        for unit in (*_spellings().get(_plain(spelling), ()), spelling)
         if spelled_unit(unit) is not None
     ]
     for unit in options:
