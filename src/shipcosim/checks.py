@@ -352,9 +352,9 @@ def _check_system_file(file: str, path: Path) -> list[Problem]:
 
         problems += _driven_by_water(file, read_system(file, fmus=fmus))
     if path.suffix.lower() == ".fmu" and is_readable:
-        from shipcosim.cosim.slaves.validation import missing_libraries, validation_problems
+        from shipcosim.cosim.slaves.validation import library_problems, validation_problems
 
-        problems += [*validation_problems(path), *missing_libraries(path)]
+        problems += [*validation_problems(path), *library_problems(path)]
     if any(problem.severity == "error" for problem in problems):
         missing = [
             folder

@@ -8,6 +8,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from shipcosim.cosim.slaves.slave import SlaveError
+
 
 class EventIndicators:
     """Signs of the event indicators at the last event, and what has become of them.
@@ -48,4 +50,8 @@ class EventIndicators:
     def _of_now(self):
         if len(self._now):
             self._values(self._now)
+            # Without a sign it would be an event in every step.
+            if np.isnan(self._now).any():
+                number = int(np.flatnonzero(np.isnan(self._now))[0]) + 1
+                raise SlaveError(f"Its event indicator {number} is no number (NaN).")
         return self._now

@@ -2,7 +2,6 @@
 
 import os
 import re
-import sys
 from collections.abc import Mapping, Sequence
 from ctypes import Array, byref, c_char, c_char_p, c_size_t, c_uint, c_void_p, cast
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from shipcosim.cosim.slaves.in_process import DirectCalls, python_object_of
+from shipcosim.cosim.slaves.library_file import library_problem
 from shipcosim.cosim.slaves.slave import (
     ERROR,
     FAILED,
@@ -59,6 +59,8 @@ class LibrarySlave(Slave):
         # Marks of the two kinds of FMU that need special care with messages and calls.
         self._is_python = (Path(folder) / "resources" / "slavemodule.txt").is_file()
         self._is_container = (Path(folder) / "resources" / "container.json").is_file()
+        if problem := library_problem(folder, self._prefix[-1], identifier):
+            raise SlaveError(problem)
         # Loading may change the working directory; it is restored in any case.
         here = os.getcwd()
         try:
@@ -71,11 +73,9 @@ class LibrarySlave(Slave):
             )
             self._instantiate()
         except Exception as error:
-            # The FMU's own messages tell more than the error; a missing binary is the usual other
-            # cause.
-            raise SlaveError(
-                self.last_messages() or f"{error} {_platform_hint(folder)}".strip()
-            ) from error
+            # The FMU's own messages tell more than the error, whose paths are those of the unpacked FMU.
+            text = str(error).replace(f"{folder}{os.sep}", "")
+            raise SlaveError(self.last_messages() or text) from error
         finally:
             os.chdir(here)  # FMPy stays in the library's folder where loading fails
         self.component = self._fmu.component
@@ -276,12 +276,3 @@ class LibrarySlave(Slave):
 def references(variables: Variables) -> Array:
     """Value references of variables as FMI 1.0 and 2.0 take them."""
     return (c_uint * len(variables))(*(variable.value_reference for variable in variables))
-
-
-def _platform_hint(folder):
-    # A folder without a file is no binary.
-    binaries = Path(folder) / "binaries"
-    there = sorted(path.name for path in binaries.glob("*") if any(path.glob("*")))
-    return (
-        f"The FMU brings binaries for: {', '.join(there) or 'no platform'}; this is {sys.platform}."
-    )

@@ -5,8 +5,11 @@ import re
 import subprocess
 from pathlib import Path
 
+from shipcosim.cosim.slaves.library_file import library_problem
 from shipcosim.cosim.slaves.unpacked import UnpackedFmus
 from shipcosim.errors import Problem
+from shipcosim.ssp.fmu.reader import describe_fmu
+from shipcosim.ssp.xml.document import Findings
 
 LONGEST = 10.0
 """For the system's loader to list what a binary needs. [s]"""
@@ -27,11 +30,10 @@ def validation_problems(path: Path) -> list[Problem]:
     return [Problem(str(path), text, remedy) for text in dict.fromkeys(found) if text]
 
 
-def missing_libraries(path: Path) -> list[Problem]:
-    """Libraries that an FMU's binary for this platform needs and that are not here, as errors.
+def library_problems(path: Path) -> list[Problem]:
+    """What is wrong with an FMU's libraries for this platform, and which others they need that are not here, as errors.
 
-    Only on Linux with glibc: its loader lists them without running any code of the binary. Elsewhere nothing is looked
-    at, and the list is empty.
+    The others only on Linux with glibc: its loader lists them without running any code of the binary.
 
     Parameters
     ----------
@@ -40,13 +42,19 @@ def missing_libraries(path: Path) -> list[Problem]:
     """
     from fmpy import platform, platform_tuple
 
+    fmu = describe_fmu(path, Findings())
+    if fmu is None or not {platform, platform_tuple} & set(fmu.platforms):
+        return []  # the check of the description says so
     loader = next(Path("/").glob("lib*/ld-linux-*.so.*"), None)
-    if loader is None:
-        return []
-    problems = []
     with UnpackedFmus() as unpacked:
+        folder = unpacked.folder(path)
+        version = fmu.fmi_version[0]
+        found = [library_problem(folder, version, fmu.identifier(one)) for one in fmu.interfaces]
+        problems = [Problem(str(path), text) for text in dict.fromkeys(found) if text]
+        if problems or loader is None:
+            return problems
         for name in (platform, platform_tuple):
-            for binary in sorted(unpacked.folder(path).glob(f"binaries/{name}/*.so")):
+            for binary in sorted(folder.glob(f"binaries/{name}/*.so")):
                 listing = [loader, "--list", binary]
                 listed = subprocess.run(listing, capture_output=True, timeout=LONGEST, check=False)
                 needed = re.findall(

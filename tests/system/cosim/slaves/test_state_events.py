@@ -82,6 +82,16 @@ static void equations(M* m) { m->r[1] = m->i[0] ? 1 : -1; }
 static void indicators(M* m, double* z) { z[0] = m->r[0] - m->r[2]; }
 static void event(M* m) { m->i[0] = m->r[0] <= m->r[2]; }
 """,
+    # Its second indicator is NaN from r[2] s on.
+    "undefined": """
+#define NX 1
+#define NZ 2
+#define STATES {0}
+static void start(M* m) {}
+static void equations(M* m) { m->r[1] = 1; }
+static void indicators(M* m, double* z) { z[0] = m->r[0] + 1; z[1] = sqrt(m->r[2] - m->r[0]); }
+static void event(M* m) {}
+""",
 }
 X = [("x", 0, "output", "Real", None)]
 RATE = [("der(x)", 1, "local", "Real", None)]
@@ -102,8 +112,10 @@ VARIABLES = {
     + _parameters(4, force=3.0, rate=-1.0)
     + COUNTS[:1],
     "relay": X + RATE + _parameters(2, level=0.3) + COUNTS[:1],
+    "undefined": X + RATE + _parameters(2, until=0.5),
 }
 SIZES = {"thermostat": (1, 2), "levels": (1, 1), "pair": (1, 2), "block": (2, 3), "relay": (1, 1)}
+SIZES["undefined"] = (1, 2)
 STEP_SIZES = st.sampled_from([0.01, 0.05, 0.1, 0.25, 1.0])
 
 
@@ -230,3 +242,10 @@ def test_chattering_ends_the_run_and_says_so(run_of, version, level, step_size):
     with pytest.raises(RunError, match="m: failed in the step .* It chatters at t = ") as caught:
         run_of("relay", version, 4.0, step_size, level=level)
     assert np.all(caught.value.table["m.x"] <= level + 1e-9)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("until", [-1.0, 0.25, 0.5, 0.51, 0.9])
+def test_an_indicator_without_a_value_is_named(run_of, version, until):
+    with pytest.raises(RunError, match="Its event indicator 2 is no number"):
+        run_of("undefined", version, 1.0, 0.1, until=until)
