@@ -57,8 +57,10 @@ def assemble_fmu(
         FMU that runs in place of this one, with its inputs.
     """
     # Build an SSD around the FMU in memory, and read it as any other.
-    fmu = describe_fmu(path, findings)
+    described = Findings()
+    fmu = describe_fmu(path, described)
     if fmu is None:
+        findings.problems += described.problems
         return None
     root = _structure(path, fmu)
     package = Package(path.parent, str(path.parent), f"{path.stem}.ssd", tuple(map(Path, fmus)))

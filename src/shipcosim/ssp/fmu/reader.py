@@ -3,6 +3,7 @@
 Reference: FMI 1.0 for co-simulation and for model exchange, FMI 2.0.4 and FMI 3.0.1, section 2 of each.
 """
 
+from math import inf, isfinite
 from pathlib import Path
 
 import lxml.etree as etree
@@ -124,7 +125,7 @@ def _description(
         [part for part in derivatives if local(part)]
     )
     given = next((dict(part.attrib) for part in root if local(part) == "DefaultExperiment"), {})
-    experiment = {name: float(text) for name, text in given.items()}
+    experiment = _experiment(document, given, findings)
     return FmuDescription(
         path=path,
         fmi_version=version,
@@ -140,6 +141,23 @@ def _description(
         n_states=n_states,
         n_event_indicators=int(root.get("numberOfEventIndicators") or len(_indicators(root))),
     )
+
+
+def _experiment(document: Document, given: dict[str, str], findings: Findings) -> dict[str, float]:
+    """Numbers of the default experiment; those that no run can have are left out, and remarked."""
+    numbers = {name: float(text) for name, text in given.items()}
+    unusable = [
+        name
+        for name, number in numbers.items()
+        if not isfinite(number) or (name in ("stepSize", "tolerance") and number <= 0.0)
+    ]
+    if not unusable and numbers.get("stopTime", inf) < numbers.get("startTime", 0.0):
+        unusable = ["stopTime"]
+    for name in unusable:
+        found = f"The default experiment has {name}={given[name]!r}, which is not used."
+        findings.flaw(f"{document.file}: DefaultExperiment", found, "Correct it, or leave it out.")
+        del numbers[name]
+    return numbers
 
 
 def _interfaces(root: etree._Element) -> dict[str, dict[str, str]]:

@@ -194,3 +194,38 @@ def test_fmi_1_without_an_implementation_is_model_exchange(tmp_path):
         set(described.interfaces) == {"ModelExchange"}
         and described.identifier("ModelExchange") == "m"
     )
+
+
+EXPERIMENTS = [
+    ('startTime="NaN" stopTime="1"', "startTime", {"stopTime": 1.0}),
+    ('stopTime="INF"', "stopTime", {}),
+    ('stopTime="-INF" stepSize="0.1"', "stopTime", {"stepSize": 0.1}),
+    ('stopTime="1e999"', "stopTime", {}),
+    ('stopTime="2" stepSize="0"', "stepSize", {"stopTime": 2.0}),
+    ('stopTime="2" stepSize="-0.1"', "stepSize", {"stopTime": 2.0}),
+    ('stopTime="2" stepSize="NaN"', "stepSize", {"stopTime": 2.0}),
+    ('stopTime="2" tolerance="0"', "tolerance", {"stopTime": 2.0}),
+    ('startTime="5" stopTime="3"', "stopTime", {"startTime": 5.0}),
+    ('stopTime="-1"', "stopTime", {}),
+    ('startTime="-2" stopTime="-1" stepSize="0.1" tolerance="1e-4"', None, None),
+    ('startTime="0" stopTime="0"', None, None),
+]
+
+
+@pytest.mark.parametrize(("attributes", "unusable", "left"), EXPERIMENTS)
+def test_of_a_default_experiment_only_what_a_run_can_have_is_kept(
+    shop, tmp_path, attributes, unusable, left
+):
+    with zipfile.ZipFile(shop.fmu("one", "output y Real m")) as archive:
+        text = archive.read("modelDescription.xml").decode()
+    given = f"<DefaultExperiment {attributes}/><ModelVariables>"
+    path = fmu(tmp_path / "new.fmu", text.replace("<ModelVariables>", given))
+    findings = Findings()
+    described = describe_fmu(path, findings)
+    assert not findings.errors
+    if unusable is None:
+        assert not findings.problems and len(described.experiment) == attributes.count("=")
+    else:
+        assert described.experiment == left
+        (remark,) = findings.problems
+        assert f"has {unusable}=" in remark.found and remark.flaw
