@@ -85,8 +85,8 @@ def keep_digest(made: Path, path: Path) -> None:
 def is_intact(path: Path) -> bool:
     """Whether a file of the cache is there as it was written: a cut one would end the process when it is loaded."""
     try:
-        digest = path.with_name(f"{path.name}.sha256").read_text()
-        return digest == hashlib.sha256(path.read_bytes()).hexdigest()
+        digest = path.with_name(f"{path.name}.sha256").read_bytes()
+        return digest == hashlib.sha256(path.read_bytes()).hexdigest().encode()
     except OSError:
         return False
 

@@ -105,16 +105,23 @@ def kept_record(key: str, numbers: Sequence[float]) -> Record | None:
     # First the records in memory; the file is read again only if none of them fits.
     if (record := _fitting(_READ.get(path, ()), numbers)) is not None:
         return record
-    try:
-        _READ[path] = pickle.loads(path.read_bytes())
-    # A damaged or old file counts as none: the step is recorded again.
-    except (OSError, EOFError, pickle.UnpicklingError, AttributeError, ImportError):
-        return None
+    _READ[path] = _records_in(path)
     return _fitting(_READ[path], numbers)
 
 
 _READ: dict[Path, list[Record]] = {}
 """Records that this process has read."""
+
+
+def _records_in(path: Path) -> list[Record]:
+    """Records of a file of the cache; none where it is missing, damaged or old: the step is recorded again."""
+    try:
+        content = path.read_bytes()
+        digest = content[:DIGEST]
+        records = content[DIGEST:]
+        return pickle.loads(records) if hashlib.sha256(records).digest() == digest else []
+    except (OSError, AttributeError, ImportError):
+        return []
 
 
 def _fitting(records, numbers):
@@ -132,21 +139,16 @@ def keep_record(key: str, record: Record) -> None:
     path = _path(key)
     try:
         # The newest first; old ones drop out beyond the limit.
-        records = pickle.loads(path.read_bytes()) if path.is_file() else []
-        replace_file(path, pickle.dumps([record, *records][:MOST]))
-    except (
-        OSError,
-        EOFError,
-        pickle.PicklingError,
-        pickle.UnpicklingError,
-        AttributeError,
-        ImportError,
-    ):
+        records = pickle.dumps([record, *_records_in(path)][:MOST])
+        replace_file(path, hashlib.sha256(records).digest() + records)
+    except (OSError, pickle.PicklingError, AttributeError):
         return
 
 
 MOST = 8
 """Records that are kept of one shape."""
+DIGEST = 32
+"""Length of the digest at the head of a file, by which damage is seen. [bytes]"""
 
 
 def _guarded(step: Step) -> set[int]:

@@ -103,8 +103,9 @@ def check_file(
     -------
     list of Problem
     """
-    # A variant may be named after '#': the ending before it decides.
-    suffix = Path(str(path).partition("#")[0]).suffix.lower()
+    # A variant may be named after '#': the ending before it decides. A folder may have one in its name, too.
+    archive = path if Path(path).exists() else str(path).partition("#")[0]
+    suffix = Path(archive).suffix.lower()
     if suffix in (".ssp", ".ssd", ".xml") or Path(path).is_dir():
         return check_system(path, fmus=fmus)
     findings = Findings()

@@ -57,6 +57,9 @@ def assemble_fmu(
         FMU that runs in place of this one, with its inputs.
     """
     # Build an SSD around the FMU in memory, and read it as any other.
+    if not path.name.isprintable():
+        findings.error(str(path), "Its file name has control characters.", "Rename the file.")
+        return None
     described = Findings()
     fmu = describe_fmu(path, described)
     if fmu is None:

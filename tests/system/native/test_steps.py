@@ -311,14 +311,32 @@ def test_an_error_of_the_model_leaves_the_memory_and_the_step_to_python():
         assert step.memory[step.places["y"]] == before[step.places["y"]]
 
 
-def test_a_cache_that_is_spoilt_is_made_again(tmp_path, monkeypatch):
+DAMAGES = {
+    "text": lambda content: b"nothing",
+    "empty": lambda content: b"",
+    "cut": lambda content: content[: len(content) // 2],
+    "noise": lambda content: bytes(range(256)) * 20,
+    **{
+        f"byte at {share}": lambda content, share=share: (
+            content[: int(share * len(content))]
+            + bytes([content[int(share * len(content))] ^ 0xFF])
+            + content[int(share * len(content)) + 1 :]
+        )
+        for share in (0.0, 0.02, 0.3, 0.6, 0.99)
+    },
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_cache_that_is_spoilt_is_made_again(tmp_path, monkeypatch, damage):
     monkeypatch.setenv("SHIPCOSIM_CACHE", str(tmp_path))
     record_cache._READ.clear()
     compiled(Arithmetic)
     records = list((tmp_path / "native").glob("*.record"))
     assert records
     for path in records:
-        path.write_bytes(b"nothing")
+        path.write_bytes(DAMAGES[damage](path.read_bytes()))
+        assert record_cache._records_in(path) == []
     record_cache._READ.clear()
     _, step = compiled(Arithmetic)
     assert isinstance(step, CompiledStep)

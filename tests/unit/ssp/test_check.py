@@ -2,7 +2,8 @@
 
 import pytest
 
-from shipcosim.ssp import check_file, check_system
+from shipcosim.errors import ShipcosimError
+from shipcosim.ssp import check_file, check_system, read_system
 
 
 def messages(problems):
@@ -106,3 +107,18 @@ def test_ssp_2_types_are_read(shop):
     assert messages(check_file(shop.path)) == ""
     shop.path.write_text(shop.path.read_text().replace('kind="output"', 'kind="outputt"'))
     assert "The kind of connector 'outputt' does not exist." in messages(check_file(shop.path))
+
+
+@pytest.mark.parametrize("name", ["#", "a#b", "100%", "ü ö", "x;y"])
+def test_a_file_is_checked_in_a_folder_of_any_name(shop, name):
+    folder = shop.folder / name
+    folder.mkdir()
+    path = shop.fmu("one", "output y Real m").rename(folder / "one.fmu")
+    assert messages(check_file(path)) == ""
+
+
+@pytest.mark.parametrize("name", ["a\x1bb.fmu", "a\x07.fmu", "a\x9b31m.fmu", "a\u202eb.fmu"])
+def test_an_fmu_with_control_characters_in_its_name_is_no_system(shop, name):
+    path = shop.fmu("one", "output y Real m").rename(shop.folder / name)
+    with pytest.raises(ShipcosimError, match="Its file name has control characters"):
+        read_system(path)

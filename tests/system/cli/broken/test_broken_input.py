@@ -119,6 +119,10 @@ def test_a_damaged_library_of_the_cache_is_seen(tmp_path):
     for content in (b"", path.read_bytes()[:300], path.read_bytes() + b"x"):
         path.write_bytes(content)
         assert not is_intact(path)
+    beside = path.with_name("library.so.sha256")
+    for digest in (b"", b"\xff\xfe\x80", b"0" * 63, bytes(64)):
+        beside.write_bytes(digest)
+        assert not is_intact(path)
 
 
 def test_a_damaged_fmu_of_the_cache_is_unpacked_again(call, monkeypatch, tmp_path, project):

@@ -7,6 +7,7 @@ import pytest
 
 from shipcosim.cosim import simulate
 from shipcosim.cosim.slaves import unpacked
+from shipcosim.errors import ShipcosimError
 
 
 @pytest.fixture
@@ -49,3 +50,29 @@ def test_what_nobody_has_used_for_a_month_leaves_the_cache(make_system, make_sce
         os.utime(folder, (folder.stat().st_mtime - age,) * 2)
     simulate(make_system({"lag": ("lag", {"u": 1.0})}), make_scenario())
     assert not old.exists() and recent.exists() and len(list((cache / "unpacked").iterdir())) == 2
+
+
+@pytest.mark.parametrize(
+    "name", ["Jörg", "a b", "ü ö", "x(86)+y&z", "q'q", "a#b", "100%", "@;,=$!"]
+)
+@pytest.mark.parametrize("own", [True, False], ids=["ours", "PythonFMU's"])
+def test_an_fmu_in_python_runs_from_a_folder_of_any_name(
+    make_system, pythonfmu_system, make_scenario, tmp_path, monkeypatch, name, own
+):
+    # PythonFMU decodes blanks in the address of its resources alone, and a process ended where it found none.
+    (tmp_path / name).mkdir()
+    monkeypatch.setenv("SHIPCOSIM_CACHE", str(tmp_path / name))
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / name))
+    if own:
+        system = make_system({"lag": ("lag", {"u": 1.0})})
+    else:
+        system = pythonfmu_system("float(helper.VALUE)", "VALUE = 1", "VALUE = 2")
+    assert simulate(system, make_scenario()).attrs["complete"] == 1
+
+
+def test_a_folder_that_pythonfmu_cannot_read_from_is_named(
+    make_system, make_scenario, tmp_path, monkeypatch
+):
+    monkeypatch.setenv("SHIPCOSIM_CACHE", str(tmp_path / "my%20folder"))
+    with pytest.raises(ShipcosimError, match="with '%20' in its name"):
+        simulate(make_system({"lag": ("lag", {"u": 1.0})}), make_scenario())
