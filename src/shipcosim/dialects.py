@@ -9,54 +9,12 @@ from collections import Counter
 
 from shipcosim.errors import error_at
 
-NOTHING = frozenset(
-    (
-        "",
-        "n/a",
-        "na",
-        "#n/a",
-        "#na",
-        "nan",
-        "nat",
-        "null",
-        "none",
-        "nil",
-        "-",
-        "--",
-        "---",
-        "?",
-        "*",
-        "**",
-        "***",
-    )
-    + (
-        "missing",
-        "invalid",
-        "void",
-        "undefined",
-        "empty",
-        "no data",
-        "nodata",
-        "no value",
-        "n.a.",
-        "1.#qnan",
-        "-nan",
-    )
-    + (
-        "#value!",
-        "#ref!",
-        "#div/0!",
-        "-1.#ind",
-        "1.#ind",
-        "....",
-        "off",
-        "fault",
-        "error",
-        "bad",
-        "<null>",
-        "(null)",
-    )
+_WORDS = (
+    "n/a na #n/a #na nan nat null none nil - -- --- ? * ** *** missing invalid void "
+    "undefined empty nodata n.a. 1.#qnan -nan #value! #ref! #div/0! -1.#ind 1.#ind .... off "
+    "fault error bad <null> (null) "
 )
+NOTHING = frozenset(("", "no data", "no value", *_WORDS.split()))
 """Words that loggers write where they have no value, in lower case."""
 _NUMBER = r"[+-]?(?:\d[\d.,' ]*|[.,]\d+)(?:[eEdD][+-]?\d+)?"
 _STAMP = r"[+-]?\d[\d:./\-+TZ ,]*(?:[AaPp]\.?[Mm]\.?)?"

@@ -142,25 +142,7 @@ PREFIXES = {
     "u": 1e-6,
     "n": 1e-9,
 }
-WITH_PREFIX = {
-    "g",
-    "m",
-    "s",
-    "A",
-    "K",
-    "mol",
-    "rad",
-    "Hz",
-    "N",
-    "Pa",
-    "bar",
-    "J",
-    "W",
-    "C",
-    "V",
-    "Ohm",
-    "l",
-}
+WITH_PREFIX = set("g m s A K mol rad Hz N Pa bar J W C V Ohm l".split())
 """Symbols that a prefix of the SI can stand before."""
 
 _FACTOR = re.compile(r"(?P<symbol>[A-Za-z%]+|1|-)(?:\^?(?P<exponent>[+-]?\d+))?")

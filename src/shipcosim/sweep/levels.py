@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zlib
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import floor
@@ -53,36 +54,6 @@ class Level:
     stop_time: float | None = None
 
 
-@dataclass(frozen=True)
-class Seeds(Mapping[str, int]):
-    """Seeds of one level by signal, drawn when a run asks for them: there may be a million levels.
-
-    Parameters
-    ----------
-    study, level : int
-        Seed of the study, and number of the level.
-    signals : tuple of str
-        Each gets its own number from both and its name.
-    """
-
-    study: int
-    level: int
-    signals: tuple[str, ...]
-
-    def __getitem__(self, signal: str) -> int:
-        if signal not in self.signals:
-            raise KeyError(signal)
-        # The name enters by its checksum: a new component does not change the seeds of others.
-        generator = np.random.default_rng([self.study, self.level, zlib.crc32(signal.encode())])
-        return int(generator.integers(1, LARGEST_SEED))
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.signals)
-
-    def __len__(self) -> int:
-        return len(self.signals)
-
-
 class Levels:
     """Make the levels of a study's factors, and collect their problems.
 
@@ -109,10 +80,9 @@ class Levels:
     def of(self, number: int) -> list[Level]:
         """Levels of the factor with a number; each may be there once."""
         levels = self._made(number)
-        labels = [level.label for level in levels]
-        if len(set(labels)) < len(labels):
-            twice = next(label for place, label in enumerate(labels) if label in labels[:place])
-            self.complain(("factor", number), f"The level {twice} is there twice.", "Keep one.")
+        (label, times), *_ = Counter(level.label for level in levels).most_common(1) or [("", 0)]
+        if times > 1:
+            self.complain(("factor", number), f"The level {label} is there twice.", "Keep one.")
         return levels
 
     def _made(self, number: int) -> list[Level]:
@@ -308,9 +278,10 @@ class Levels:
             found = "Nothing in the system has a seed: it has no parameter named seed."
             self.complain(keys, found, "Name the signals: signal = [...].")
         # Seeds of one level differ between signals, so that two sensors have independent noise.
-        numbers = range(1, (factor.seeds or 0) + 1)
-        named = tuple(signals)
-        levels = [Level(number, Seeds(self._study.seed, number, named)) for number in numbers]
+        levels = []
+        for level in range(1, (factor.seeds or 0) + 1):
+            values = {signal: _drawn(self._study.seed, level, signal) for signal in signals}
+            levels.append(Level(level, values))
         if levels:
             self.checked(levels[0].values, keys)
         return levels
@@ -335,6 +306,12 @@ def seeds_of(system: System) -> Iterator[str]:
             is_seed = variable.name == "seed" or variable.name.endswith("_seed")
             if is_seed and variable.causality == "parameter" and variable.kind == "Integer":
                 yield f"{component.name}.{variable.name}"
+
+
+def _drawn(seed: int, level: int, signal: str) -> int:
+    # The name enters by its checksum: a new component does not change the seeds of others.
+    generator = np.random.default_rng([seed, level, zlib.crc32(signal.encode())])
+    return int(generator.integers(1, LARGEST_SEED))
 
 
 def _number(value: Any, unit: Unit | None, difference: bool = False) -> Any:

@@ -42,7 +42,7 @@ def _label(value: Any) -> str | int | float:
 
 Label = Annotated[str | int | float, PlainValidator(_label)]
 Column = Annotated[str, AfterValidator(_column)]
-MOST_LEVELS = 100_000
+MOST_LEVELS = 10_000
 """Largest number of levels of a factor, which are all made before the first run."""
 Count = Annotated[int, Field(ge=1)]
 Several = Annotated[int, Field(ge=2, le=MOST_LEVELS)]

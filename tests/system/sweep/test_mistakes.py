@@ -636,9 +636,9 @@ def test_a_level_that_is_there_twice_is_refused(complaints, values, level):
     assert f"The level {level} is there twice." in first.found
 
 
-@pytest.mark.parametrize("count", [100_001, 10**9, 10**18])
+@pytest.mark.parametrize("count", [10_001, 10**9, 10**18])
 @pytest.mark.parametrize("key", ["seeds", "count"])
 def test_more_levels_than_memory_holds_are_refused_at_once(complaints, key, count):
     text = re.sub(rf"(?m)^{key}( *)= \d+", rf"{key}\1= {count}", WHOLE)
     assert text != WHOLE
-    assert "less than or equal to 100000" in complaints(text)[0].remedy
+    assert "less than or equal to 10000" in complaints(text)[0].remedy

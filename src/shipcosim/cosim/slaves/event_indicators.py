@@ -51,7 +51,8 @@ class EventIndicators:
         if len(self._now):
             self._values(self._now)
             # Without a sign it would be an event in every step.
-            if np.isnan(self._now).any():
-                number = int(np.flatnonzero(np.isnan(self._now))[0]) + 1
+            undefined = np.isnan(self._now)
+            if undefined.any():
+                number = undefined.argmax() + 1
                 raise SlaveError(f"Its event indicator {number} is no number (NaN).")
         return self._now

@@ -6,9 +6,8 @@ Reference: FMI 2.0.4, section 4.
 from contextlib import suppress
 from ctypes import byref, c_double, c_int, c_size_t
 from functools import partial
-from pathlib import Path
 from typing import Any
-from urllib.parse import unquote
+from urllib.parse import unquote_to_bytes
 
 import numpy as np
 
@@ -103,25 +102,21 @@ class Slave2(LibrarySlave):
             )
         else:
             receive_messages(self, callbacks, fmi2.fmi2CallbackLoggerTYPE)
-        if not self._is_python:
-            self._fmu.instantiate(callbacks=callbacks, loggingOn=True)
-            return
-        # As FMPy does, but with the resources' address decoded: PythonFMU decodes blanks alone, and ends the process
-        # where it does not find them, as below a folder with an umlaut.
-        resources = unquote(Path(self._fmu.unzipDirectory, "resources").as_uri())
-        if "%20" in resources:
-            raise SlaveError(
-                "PythonFMU finds nothing below a folder with '%20' in its name. Rename it."
+        if self._is_python:
+            # PythonFMU decodes blanks in the address of its resources alone, and ends the process where it does not
+            # find them, as below a folder with an umlaut.
+            call = self._fmu.fmi2Instantiate
+            self._fmu.fmi2Instantiate = lambda name, kind, token, address, *more: call(
+                name, kind, token, _decoded(address), *more
             )
-        self._fmu.callbacks = callbacks
-        self._fmu.component = self._fmu.fmi2Instantiate(
-            self.name.encode(),
-            fmi2.fmi2CoSimulation,
-            self._fmu.guid.encode(),
-            resources.encode(),
-            byref(callbacks),
-            0,
-            1,
+        self._fmu.instantiate(callbacks=callbacks, loggingOn=True)
+
+
+def _decoded(address: bytes) -> bytes:
+    """Address of a folder as PythonFMU reads it."""
+    plain = unquote_to_bytes(address)
+    if b"%20" in plain:
+        raise SlaveError(
+            "PythonFMU finds nothing below a folder with '%20' in its name. Rename it."
         )
-        if self._fmu.component is None:
-            raise SlaveError("Failed to instantiate model.")
+    return plain

@@ -22,32 +22,24 @@ def library_problem(folder: Path, fmi_version: str, identifier: str) -> str:
     """
     from fmpy import platform, platform_tuple, sharedLibraryExtension
 
-    name = platform_tuple if fmi_version == "3" else platform
-    binaries = Path(folder) / "binaries"
-    file = f"{identifier}{sharedLibraryExtension}"
-    library = binaries / name / file
-    if library.is_file():
-        if not _is_unusable(library):
-            return ""
-        found = f"binaries/{name}/{file} is cut off, or for another platform."
-        return f"{found} Export or copy the FMU again."
-    # A folder without a file is no binary.
-    there = sorted(path.name for path in binaries.glob("*") if any(path.glob("*")))
-    if name not in there:
-        return f"The FMU brings binaries for: {', '.join(there) or 'no platform'}; this is {name}."
-    others = ", ".join(sorted(path.name for path in (binaries / name).iterdir()))
-    return f"Its modelIdentifier asks for binaries/{name}/{file}. There is: {others}."
+    platform_name = platform_tuple if fmi_version == "3" else platform
+    name = f"binaries/{platform_name}/{identifier}{sharedLibraryExtension}"
+    library = Path(folder, name)
+    if not library.is_file():
+        there = sorted(str(path.relative_to(folder)) for path in Path(folder).glob("binaries/*/*"))
+        return f"It has no {name}, as which FMI loads it here. It has: {', '.join(there[:9])}."
+    if _is_unusable(library):
+        return f"{name} is cut off, or for another platform. Export or copy the FMU again."
+    return ""
 
 
 def _is_unusable(library: Path) -> bool:
     """True if a library of Linux is for another processor, or ends before its last part: loading that may kill us."""
     if sys.platform != "linux":
         return False
-    heads = []
-    for file in (library, Path("/proc/self/exe")):
-        with file.open("rb") as opened:
-            heads.append(opened.read(HEAD))
-    head, own = heads
+    with library.open("rb") as opened, open("/proc/self/exe", "rb") as program:
+        head = opened.read(HEAD)
+        own = program.read(HEAD)
     # Format, width and processor are those of the program that loads it.
     if (head[:6], head[18:20], len(head)) != (own[:6], own[18:20], HEAD):
         return True

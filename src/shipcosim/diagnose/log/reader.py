@@ -259,8 +259,8 @@ def _beyond(where, values):
     """A problem where a number is beyond anything that is measured, so that what is made of it overflows."""
     # A check of the first such row is enough for a message.
     beyond = np.flatnonzero((np.abs(values) > LARGEST_NUMBER) & np.isfinite(values))
-    found = [f"is {values[row]:g} in row {row + 2}." for row in beyond[:1]]
-    return [Problem(where, one, "A missing value is an empty field or nan.") for one in found]
+    remedy = "A missing value is an empty field or nan."
+    return [Problem(where, f"is {values[row]:g} in row {row + 2}.", remedy) for row in beyond[:1]]
 
 
 def _check_time(source, time):

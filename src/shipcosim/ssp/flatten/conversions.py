@@ -187,11 +187,11 @@ def _mapped(
     if kind == "Enumeration":
         # Table of numbers from a table of item names.
         target = port.items or flow.items
-        for name, items in [(name, flow.items) for name in table] + [
-            (name, target) for name in table.values()
-        ]:
-            if name not in items:
-                findings.error(place, f"The enumeration has no item '{name}'.", it_has(name, items))
+        for names, items in ((table, flow.items), (table.values(), target)):
+            for name in names:
+                if name not in items:
+                    found = f"The enumeration has no item '{name}'."
+                    findings.error(place, found, it_has(name, items))
         table = {
             flow.items[a]: target[b] for a, b in table.items() if a in flow.items and b in target
         }

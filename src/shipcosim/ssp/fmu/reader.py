@@ -124,6 +124,9 @@ def _description(
     n_states = int(root.get("numberOfContinuousStates") or 0) or len(
         [part for part in derivatives if local(part)]
     )
+    # FMI 3.0 lists its event indicators.
+    listed = [local(part) for part in parts_of(root, "ModelStructure")]
+    n_indicators = listed.count("EventIndicator")
     given = next((dict(part.attrib) for part in root if local(part) == "DefaultExperiment"), {})
     experiment = _experiment(document, given, findings)
     return FmuDescription(
@@ -139,21 +142,21 @@ def _description(
         platforms=tuple(sorted(platforms)),
         experiment=experiment,
         n_states=n_states,
-        n_event_indicators=int(root.get("numberOfEventIndicators") or len(_indicators(root))),
+        n_event_indicators=int(root.get("numberOfEventIndicators") or n_indicators),
     )
 
 
 def _experiment(document: Document, given: dict[str, str], findings: Findings) -> dict[str, float]:
     """Numbers of the default experiment; those that no run can have are left out, and remarked."""
     numbers = {name: float(text) for name, text in given.items()}
-    unusable = [
+    unusable = {
         name
         for name, number in numbers.items()
         if not isfinite(number) or (name in ("stepSize", "tolerance") and number <= 0.0)
-    ]
-    if not unusable and numbers.get("stopTime", inf) < numbers.get("startTime", 0.0):
-        unusable = ["stopTime"]
-    for name in unusable:
+    }
+    if numbers.get("stopTime", inf) < numbers.get("startTime", 0.0):
+        unusable.add("stopTime")
+    for name in sorted(unusable):
         found = f"The default experiment has {name}={given[name]!r}, which is not used."
         findings.flaw(f"{document.file}: DefaultExperiment", found, "Correct it, or leave it out.")
         del numbers[name]
@@ -163,8 +166,3 @@ def _experiment(document: Document, given: dict[str, str], findings: Findings) -
 def _interfaces(root: etree._Element) -> dict[str, dict[str, str]]:
     known = ("CoSimulation", "ModelExchange", "ScheduledExecution")
     return {local(part): dict(part.attrib) for part in root if local(part) in known}
-
-
-def _indicators(root: etree._Element) -> list[etree._Element]:
-    """Event indicators that FMI 3.0 lists."""
-    return [part for part in parts_of(root, "ModelStructure") if local(part) == "EventIndicator"]

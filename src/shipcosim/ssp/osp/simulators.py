@@ -48,6 +48,7 @@ class Simulators:
         self.tree = tree
         self.findings = findings
         self._described: dict[Path, FmuDescription | None] = {}
+        self._initials: dict[tuple[str, str], object] = {}
 
     @property
     def names(self) -> list[str]:
@@ -80,14 +81,7 @@ class Simulators:
         self.tree.components[name,] = described, fmu
         self.tree.arrays[name,] = {} if fmu is None else dict(fmu.arrays)
         # Initial values act like a parameter set of this component.
-        given: dict[str, str] = {}
         for initial in element.iter(f"{{{NAMESPACE}}}InitialValue"):
-            variable = initial.get("variable")
-            place = self.document.place(initial, f"{name}.{variable}")
-            text = etree.tostring(initial, encoding="unicode", with_tail=False)
-            # Two values of one variable: the order would decide.
-            if given.setdefault(variable, text) != text:
-                self.findings.error(place, "It has two initial values.", "Keep one of them.")
             self._initial(name, initial)
 
     def _initial(self, name: str, element: etree._Element) -> None:
@@ -97,6 +91,9 @@ class Simulators:
         place = self.document.place(element, f"{name}.{variable}")
         with reporting(self.document, element, self.findings, f"{name}.{variable}"):
             value = read_value(local(typed), typed.get("value"))
+            # Of two values the order would decide.
+            if self._initials.setdefault((name, variable), value) != value:
+                self.findings.error(place, "It has two initial values.", "Keep one of them.")
             given = ParameterValue(variable, local(typed), value, place=place)
             self.tree.settings.append(Setting((name,), variable, given, near=True))
 
@@ -151,11 +148,7 @@ class Simulators:
             return None
         # Suggest a similar file of the same folder.
         if found is None:
-            there = (
-                {file.name for file in paths[0].parent.glob("*.fmu")}
-                if paths[0].parent.is_dir()
-                else ()
-            )
+            there = {file.name for file in paths[0].parent.glob("*.fmu")}
             remedy = f"In {paths[0].parent} there{suggestion(paths[0].name, there).removeprefix('There')}"
             self.findings.error(place, f"The file '{source}' does not exist.", remedy)
         return found

@@ -257,14 +257,18 @@ def _parameter(
 
 def _values(kind: str, typed: etree._Element) -> tuple[Value, ...]:
     """Values of an array: a list in one attribute, or an element each where blanks may occur."""
-    listed = [part.get("value") or part.text or "" for part in typed if local(part) == "Value"]
-    return tuple(read_value(kind, text) for text in listed or typed.get("value", "").split())
+    listed = _listed(typed) or typed.get("value", "").split()
+    return tuple(read_value(kind, text) for text in listed)
+
+
+def _listed(typed: etree._Element) -> list[str]:
+    return [part.get("value") or part.text or "" for part in typed if local(part) == "Value"]
 
 
 def _text(typed: etree._Element) -> str:
     """Text of a single value, which SSP 2.0 allows in an element of its own."""
-    listed = [part.get("value") or part.text or "" for part in typed if local(part) == "Value"]
-    return listed[0] if len(listed) == 1 and typed.get("value") is None else typed.get("value", "")
+    listed = _listed(typed)
+    return typed.get("value", listed[0] if len(listed) == 1 else "")
 
 
 def tolerance_of(element: etree._Element) -> float | None:

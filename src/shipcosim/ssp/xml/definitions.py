@@ -30,17 +30,14 @@ def read_units(elements: Iterable[etree._Element]) -> dict[str, Unit]:
         if base is None or name is None or _says_nothing(element, base):
             continue
         exponents = tuple(int(base.get(symbol, 0)) for symbol in BASE_UNITS)
-        units[name] = Unit(name, exponents, *_scale(name, base))
+        unit = Unit(name, exponents, float(base.get("factor", 1.0)), float(base.get("offset", 0.0)))
+        # No value can be converted with such numbers.
+        if not unit.factor or not math.isfinite(unit.factor + unit.offset):
+            raise ValueError(
+                f"The unit '{name}' has the factor {unit.factor:g} and the offset {unit.offset:g}."
+            )
+        units[name] = unit
     return units
-
-
-def _scale(name: str, base: etree._Element) -> tuple[float, float]:
-    """Factor and offset of a base unit, or ValueError where no value can be converted with them."""
-    factor = float(base.get("factor", 1.0))
-    offset = float(base.get("offset", 0.0))
-    if factor == 0.0 or not math.isfinite(factor) or not math.isfinite(offset):
-        raise ValueError(f"The unit '{name}' has the factor {factor:g} and the offset {offset:g}.")
-    return factor, offset
 
 
 def _says_nothing(element: etree._Element, base: etree._Element) -> bool:

@@ -320,7 +320,7 @@ def test_arrays_of_fmi_3_are_connected_by_elements_and_sized_by_initial_values(o
 
 @pytest.mark.parametrize(
     ("first", "second", "refused"),
-    [("1", "2", True), ("1", "1", False), ("0", "-0.0", True)],
+    [("1", "2", True), ("1", "1", False), ("0", "-0.0", False)],
 )
 def test_two_initial_values_of_a_variable_must_agree(osp, first, second, refused):
     path = osp(values=value("k", "Real", first) + value("k", "Real", second))

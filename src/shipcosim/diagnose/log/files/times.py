@@ -183,7 +183,6 @@ def _uniform(cells) -> tuple[Any, np.ndarray | None]:
     texts = cells.where(cells.notna(), None).astype("str").str.strip().where(cells.notna())
     is_utc = texts.str.contains(_ZONE, na=False)
     texts = texts.str.replace(_ZONE, "", regex=True)
-    first = texts.dropna().iloc[0] if texts.notna().any() else ""
     ahead = None
     # Offset of the time zone, east positive. Summer time may come and go: stamps of UTC stand beside others.
     zones = texts.str.extract(_OTHER_ZONE)["zone"].str.replace(":", "")
@@ -192,7 +191,7 @@ def _uniform(cells) -> tuple[Any, np.ndarray | None]:
         seconds = zones.str[1:3].astype(float) * 3600 + zones.str[3:5].astype(float) * 60
         ahead = (sign * seconds).mask(is_utc, 0.0).to_numpy(float)
         texts = texts.str.replace(_OTHER_ZONE, lambda found: found["fraction"] or "", regex=True)
-        first = texts.dropna().iloc[0]
+    first = texts.dropna().iloc[0] if texts.notna().any() else ""
     if _COLON_FRACTION.match(first):
         texts = _with_point(texts)
     # Point as decimal sign, and a fraction in all stamps if any has one.

@@ -5,30 +5,14 @@ from functools import cache
 
 from shipcosim.diagnose.log.names.vocabulary import vocabulary
 from shipcosim.dialects import name_in
-from shipcosim.units import relation, spelled_unit
+from shipcosim.units import Unit, relation, spelled_unit
 
 _BRACKETS = re.compile(r"^(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]\s*$")
 _OTHERS = re.compile(
     r"^(?P<name>.*?)\s*(?:\((?P<a>[^()]*)\)|\{(?P<b>[^{}]*)\}|<(?P<c>[^<>]*)>|[,/:;]\s+(?P<d>[^,/\s]\S*))\s*$"
 )
 _LONGEST_SUFFIX = 3  # words
-_NO_SUFFIX = {
-    "n",
-    "rpm",
-    "1",
-    "none",
-    "raw",
-    "date",
-    "utc",
-    "local",
-    "iso",
-    "text",
-    "h",
-    "d",
-    "int",
-    "grad",
-    "flag",
-}
+_NO_SUFFIX = set("n rpm 1 none raw date utc local iso text h d int grad flag".split())
 """Spellings of units that at the end of a name, after an underscore, mean something else."""
 
 
@@ -86,8 +70,7 @@ def unit_for(spelling: str, target: str) -> str:
         if spelled_unit(unit) is not None
     ]
     for unit in options:
-        given = spelled_unit(unit)
-        if wanted is None or given is None or relation(given, wanted) in ("same", "convertible"):
+        if wanted is None or _alike(spelled_unit(unit), wanted):
             return unit
     return options[-1] if options else _spellings().get(_plain(spelling), (spelling,))[0]
 
@@ -100,11 +83,14 @@ def converts(unit: str, target: str) -> bool:
     >>> converts("rps", "rpm"), converts("knots", "deg")
     (True, False)
     """
-    given = spelled_unit(unit_for(unit, target))
-    wanted = spelled_unit(target)
-    if given is None or wanted is None:
+    return _alike(spelled_unit(unit_for(unit, target)), spelled_unit(target))
+
+
+def _alike(unit: Unit | None, other: Unit | None) -> bool:
+    """True if two units that are defined convert into each other."""
+    if unit is None or other is None:
         return False
-    return relation(given, wanted) in ("same", "convertible")
+    return relation(unit, other) in ("same", "convertible")
 
 
 def unit_after(words: tuple[str, ...], target: str) -> tuple[tuple[str, ...], str]:
@@ -130,8 +116,7 @@ def unit_after(words: tuple[str, ...], target: str) -> tuple[tuple[str, ...], st
             if text in _NO_SUFFIX:
                 continue
             for unit in _spellings().get(text, ()):
-                given = spelled_unit(unit)
-                if wanted and given and relation(given, wanted) in ("same", "convertible"):
+                if _alike(spelled_unit(unit), wanted):
                     return words[:-count], unit
     return words, ""
 
