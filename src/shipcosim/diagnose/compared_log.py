@@ -128,7 +128,7 @@ def compared(log: CheckedLog) -> ComparedLog:
     ship = as_logged(log.ship, log.repaired)
     record = record_of(log.repaired, ship)
     felt = felt_by(record, length)
-    ship = with_surrogates(ship, record, first_motion(record, ship))
+    ship = with_surrogates(ship, record, first_motion(record))
     errors = errors_of(record, felt, ship)
     # What to say where rows are too far apart for the ship's answers.
     step = float(np.diff(log.repaired["time"].values[:2])[0])
@@ -213,7 +213,7 @@ def learned_from(
     for part, (log, _) in enumerate(logs):
         logged = as_logged(ship, log)
         record = record_of(log, logged)
-        logged = with_surrogates(logged, record, first_motion(record, logged))
+        logged = with_surrogates(logged, record, first_motion(record))
         parts.append(craft_log(record, logged, horizons, part, whole=len(logs) > 1))
     usable = [one for one in parts if one is not None]
     # All logs must be usable, and the result surely better on held-out parts.

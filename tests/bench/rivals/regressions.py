@@ -64,7 +64,7 @@ def problem_of(path):
         ship_model_of(system()), span=(float(clean["time"][0]), float(clean["time"][-1]))
     )
     record = record_of(clean, model)
-    motion = first_motion(record, model, SMOOTH)
+    motion = first_motion(record, SMOOTH)
     problem = Problem(
         record, model, motion, np.ones(3), list(hypotheses_of(read_catalogue(), model)), faults
     )

@@ -31,7 +31,7 @@ def along(ship, log):
     """ShipModel of a system, record and motion of a log of her."""
     model = ship_model_of(ship().checked())
     record = record_of(log(), model)
-    return model, record, first_motion(record, model)
+    return model, record, first_motion(record)
 
 
 def test_a_propeller_that_nothing_turns_pushes_where_the_system_points_it():

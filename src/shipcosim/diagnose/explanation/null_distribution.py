@@ -90,9 +90,7 @@ def healthy_products(
     def products_of(first):
         # Each healthy log is linearised about its own smoothed motion.
         record = _some(records, slice(first, first + batch))
-        here = prepared(
-            replace(problem, record=record, motion=first_motion(record, problem.model)), rounds=1
-        )
+        here = prepared(replace(problem, record=record, motion=first_motion(record)), rounds=1)
         return inner_products(here.linear, problem.noise, record).products
 
     return problem.known(()), np.concatenate(each(products_of, range(0, count, batch)))
@@ -141,7 +139,7 @@ def healthy_records(
     ships, units = kept_on_track(
         model, count, motion, record, DpController(problem.model, record.step), jolts=jolts
     )
-    return _logged(ships, units, model, problem, rng)
+    return _logged(ships, units, problem, rng)
 
 
 def drawn_within_tolerances(
@@ -163,7 +161,7 @@ def drawn_within_tolerances(
     return model.with_values(values)
 
 
-def _logged(motion, units, model, problem, rng):
+def _logged(motion, units, problem, rng):
     """The log of the ships' motion, with the noise of the log: white, of waves, and slow in position and heading."""
     record = problem.record
     (count, n) = motion.x.shape

@@ -248,7 +248,7 @@ def _insert(
     if not own or rule.by in ("parameters", "log"):
         return False
     if rule.by == "instruments":
-        add_instruments(draft, finding, rule, own)
+        add_instruments(draft, finding, own)
         return False
     if rule.by == "force":
         add_force(draft, finding, rule, own)

@@ -71,7 +71,6 @@ def _unit(draft: ExtensionDraft, component: str, parameter: str) -> str:
 def add_instruments(
     draft: ExtensionDraft,
     finding: Finding,
-    rule: ExtensionRule,
     estimates: Mapping[str, ParameterEstimate],
 ) -> None:
     """Put instruments with some errors between the ship and her log.
@@ -81,7 +80,6 @@ def add_instruments(
     draft : ExtensionDraft
         Changed.
     finding : Finding
-    rule : ExtensionRule
     estimates : dict of str to Estimate
         By field of `InstrumentParameters`.
     """

@@ -43,7 +43,7 @@ def identification_problem(
     # The ship as this log needs it, with third-party thrusters replaced by their surrogates.
     ship = as_logged(ship, repaired)
     record = record_of(repaired, ship)
-    motion = first_motion(record, ship)
+    motion = first_motion(record)
     ship = with_surrogates(ship, record, motion)
     # Hypotheses that the channels of the log cannot show are left out.
     everyone = hypotheses_of(causes, ship)

@@ -1,7 +1,7 @@
 """What a channel can be instead of what its label says, and how to put it right."""
 
 from collections.abc import Callable, Container, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -65,7 +65,7 @@ class Mislabel:
     cause: str
     channels: tuple[str, ...]
     sentence: str
-    undo: Callable[[dict], dict]
+    undo: Callable[[dict], dict] = field(compare=False)
     scale: float | None = None
 
 
@@ -188,12 +188,6 @@ HEADING_FROM_EAST = Mislabel(
 POSITION_IN_DEGREES = Mislabel(
     "frame", POSITION, "north and east are degrees of latitude and longitude", _from_degrees
 )
-HEADING_LABELS = (
-    negative("yaw_rate"),
-    mislabel_of_unit(("yaw_rate",), "rad/s", "deg/s"),
-    mislabel_of_unit(("yaw_rate",), "deg/s", "rad/s"),
-    mislabel_of_unit(("yaw_rate",), "deg/min", "deg/s"),
-)
 POSITION_LABELS = (
     swap_of("north", "east"),
     swap_of("surge", "sway"),
@@ -218,10 +212,10 @@ WIND_LABELS = (
     _in_unit(("wind_speed",), 1.0 / KNOT, "wind_speed is in m/s, not kn"),
 )
 MISLABELS = (
-    *HEADING_LABELS,
     *POSITION_LABELS,
     *WIND_LABELS,
     negative("heading"),
+    negative("yaw_rate"),
     HEADING_FROM_EAST,
     POSITION_IN_DEGREES,
     velocity_frame("east", "north"),

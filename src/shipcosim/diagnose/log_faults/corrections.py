@@ -107,9 +107,7 @@ def _with_right_wind_label(found, place):
     as_logged = replace(found, repaired=_without(found, (*before, *after)))
     # First the label of the direction, then the segment.
     fault, problem = _likeliest_direction(as_logged, found.faults[place])
-    fault, right = _with_settled_segment(
-        replace(as_logged, problem=problem), mislabel_of(fault), fault
-    )
+    fault, right = _with_settled_segment(replace(as_logged, problem=problem), fault)
     # A fault throughout of which only a segment is left
     # needs evidence from the ship, else it is dropped.
     shrunk = fault.segments and not found.faults[place].segments
@@ -196,20 +194,19 @@ def _with_right_input(explained):
     best = explained.fits[0]
     # Candidates by their likelihood about the present motion, each then identified anew.
     candidates = []
-    for _, mislabel, fault in suspected_inputs(found.repaired, found.problem)[:MOST_TRIED]:
-        again = _relabelled(found, mislabel, fault)
-        candidates.append((at_first_sight(again.problem), mislabel, fault, again.problem))
+    for fault in suspected_inputs(found.repaired, found.problem)[:MOST_TRIED]:
+        again = _relabelled(found, fault)
+        candidates.append((at_first_sight(again.problem), fault, again.problem))
     # A fault must at least beat the log as it is, and after settling the best fit with causes.
     least = min(best.score, at_first_sight(found.problem) + FAULT) if candidates else 0.0
-    for score, mislabel, fault, problem in sorted(candidates, key=lambda entry: -entry[0]):
+    for score, fault, problem in sorted(candidates, key=lambda entry: -entry[0]):
         if score < least:
             return None
         least = best.score
         # Settle the segment before the costly comparison with all causes.
-        fault, right = _with_settled_segment(replace(found, problem=problem), mislabel, fault)
-        if at_first_sight(right.problem) < best.score or not _shows_at_its_ends(
-            found.repaired, mislabel, fault
-        ):
+        fault, right = _with_settled_segment(replace(found, problem=problem), fault)
+        shows = _shows_at_its_ends(found.repaired, fault)
+        if at_first_sight(right.problem) < best.score or not shows:
             continue
         # Fit causes beside the fault. It must gain over the best fit without it.
         fits = tuple(explain(right.problem))
@@ -239,32 +236,33 @@ def _without(found, faults):
     return in_stretches(repaired(found.log, faults), found.ship.length)
 
 
-def _relabelled(found, mislabel, fault):
+def _relabelled(found, fault):
     """An identification anew, of its repaired log with a mislabel undone too."""
-    log = with_label(found.repaired, mislabel, fault.segments)
+    log = with_label(found.repaired, mislabel_in(fault), fault.segments)
     return replace(
         found, repaired=log, problem=identification_problem(log, found.ship, found.causes)
     )
 
 
-def _with_settled_segment(found, mislabel, fault):
+def _with_settled_segment(found, fault):
     """A mislabel with its segment settled, and the identification with it put right.
 
     `found` has the log without it put right, and the problem with it put right in its first segment.
     """
     # Segment and motion depend on each other: refine one with the other, a few times.
-    right = replace(found, repaired=with_label(found.repaired, mislabel, fault.segments))
+    right = replace(found, repaired=with_label(found.repaired, mislabel_in(fault), fault.segments))
     for _ in range(ROUNDS_OF_SEGMENT):
-        refined = with_refined_segment(found.repaired, mislabel, fault, right.problem)
+        refined = with_refined_segment(found.repaired, fault, right.problem)
         if refined is fault:
             break
         fault = refined
-        right = _relabelled(found, mislabel, refined)
+        right = _relabelled(found, refined)
     return fault, right
 
 
-def _shows_at_its_ends(log, mislabel, fault):
+def _shows_at_its_ends(log, fault):
     """Whether another unit of the wind in a part of a log shows at its ends: what takes her wind away does not."""
+    mislabel = mislabel_in(fault)
     if mislabel not in WIND_LABELS or mislabel.scale is None:
         return True
     speed = log["wind_speed"].values

@@ -24,6 +24,7 @@ from shipcosim.diagnose.log.mislabels import (
     Mislabel,
     exchanged,
     finding_of,
+    mislabel_in,
     negative,
     possible,
     undone,
@@ -45,9 +46,7 @@ from shipcosim.diagnose.ship.inputs import Record, record_of, with_inputs_of
 from shipcosim.diagnose.ship.instruments import LAGS
 
 
-def suspected_inputs(
-    log: xarray.Dataset, problem: IdentificationProblem
-) -> list[tuple[float, Mislabel, Finding]]:
+def suspected_inputs(log: xarray.Dataset, problem: IdentificationProblem) -> list[Finding]:
     """Channels of thrusters and wind that could be mislabelled, likeliest first.
 
     Parameters
@@ -59,8 +58,8 @@ def suspected_inputs(
 
     Returns
     -------
-    list of (float, Mislabel, Finding)
-        Gain in log-likelihood [nats], what would be wrong, and about where.
+    list of Finding
+        What would be wrong, and about where.
     """
     # Log-likelihood of each row as logged, as the reference.
     base = _by_row(problem, problem.record)
@@ -71,12 +70,12 @@ def suspected_inputs(
         gain = _by_row(problem, record_of(with_label(log, mislabel), problem.model)) - base
         total, finding = where_best(gain, mislabel, problem.record)
         if total > LEAST_ROW_GAIN:
-            found.append((total, mislabel, finding))
-    return sorted(found, key=lambda entry: -entry[0])
+            found.append((total, finding))
+    return [finding for _, finding in sorted(found, key=lambda entry: -entry[0])]
 
 
 def with_refined_segment(
-    log: xarray.Dataset, mislabel: Mislabel, finding: Finding, problem: IdentificationProblem
+    log: xarray.Dataset, finding: Finding, problem: IdentificationProblem
 ) -> Finding:
     """A finding with the ends of its segment where the log is likeliest.
 
@@ -84,9 +83,8 @@ def with_refined_segment(
     ----------
     log : xarray.Dataset
         Repaired, the finding not put right.
-    mislabel : Mislabel
     finding : Finding
-        With one segment, or throughout.
+        Of a mislabel, with one segment, or throughout.
     problem : IdentificationProblem
         Of the log with the finding put right.
 
@@ -98,7 +96,7 @@ def with_refined_segment(
     # Log-likelihoods by the ends of the segment, kept since the search returns to the same ones.
     time = problem.record.time
     known = {}
-    relabelled = _Relabelled(log, mislabel, problem)
+    relabelled = _Relabelled(log, mislabel_in(finding), problem)
     least = round(SHORTEST_INPUT / problem.record.step)
     last = time.size - 1
 
@@ -268,14 +266,10 @@ def where_best(
 def best_run(gain: np.ndarray, least: int) -> tuple[int, int, float]:
     """First and last row of the run of at least `least` rows whose gains add up to most, and the sum."""
     # Maximum subarray of a minimal length: the running minimum stays this many rows behind.
+    if gain.size < least:
+        return 0, 0, -np.inf
     total = running_sums(gain)
-    lowest = 0
-    first = 0
-    best = (0, 0, -np.inf)
-    for last in range(least, gain.size + 1):
-        if total[last - least] < total[lowest]:
-            lowest = last - least
-        first = lowest
-        if total[last] - total[first] > best[2]:
-            best = (first, last - 1, float(total[last] - total[first]))
-    return best
+    sums = total[least:] - np.minimum.accumulate(total[: total.size - least])
+    last = int(np.argmax(sums))
+    first = int(np.argmin(total[: last + 1]))
+    return first, last + least - 1, float(sums[last])

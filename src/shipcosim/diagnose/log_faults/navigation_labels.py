@@ -17,10 +17,10 @@ from shipcosim.diagnose.inference.noise import first_noise
 from shipcosim.diagnose.inference.parts import linearised_by_parts
 from shipcosim.diagnose.log.checks.kinematics import filter_for, is_clear, position_motion
 from shipcosim.diagnose.log.mislabels import (
-    HEADING_LABELS,
     POSITION_LABELS,
     mislabel_in,
     mislabel_of,
+    negative,
     possible,
 )
 from shipcosim.diagnose.log.repair import repaired
@@ -37,7 +37,7 @@ from shipcosim.diagnose.log_faults.thresholds import (
 from shipcosim.diagnose.ship.inputs import CHANNELS, first_motion, record_of
 from shipcosim.diagnose.ship.stretches import in_stretches
 
-LABELS = (HEADING_LABELS[0], *POSITION_LABELS)
+LABELS = (negative("yaw_rate"), *POSITION_LABELS)
 
 
 @dataclass(frozen=True)
@@ -166,7 +166,7 @@ def _gain(plain, label, problem):
 def _by_row(problem, record):
     """Log-likelihood of each row, about the motion that the record itself describes."""
     # Linearise about the smoothed motion of the relabelled record, twice for the nonlinearity.
-    motion = first_motion(record, problem.model)
+    motion = first_motion(record)
     for _ in range(2):
         motion, _ = smoothed(
             linearised_by_parts(motion, record, problem.model, []), problem.noise, record, motion

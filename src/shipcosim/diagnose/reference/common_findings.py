@@ -138,13 +138,10 @@ class RatioOfLogs:
         By name of the log; those that tell it.
     common : CommonRatio or None
         Of all; None where they contradict each other, or none tells it.
-    chance : float
-        That logs of one ratio differ as much as these do.
     """
 
     each: dict[str, CommonRatio]
     common: CommonRatio | None
-    chance: float
 
     @property
     def apart(self) -> tuple[str, ...]:
@@ -189,7 +186,7 @@ def ratio_of_logs(each: Mapping[str, CommonRatio]) -> RatioOfLogs:
         By name of the log.
     """
     if not each:
-        return RatioOfLogs({}, None, 1.0)
+        return RatioOfLogs({}, None)
     # Mean of the logarithms, as a ratio has relative errors.
     logs = np.log([one.ratio for one in each.values()])
     mean, std, squares = _weighted(logs, np.array([one.std / one.ratio for one in each.values()]))
@@ -202,7 +199,7 @@ def ratio_of_logs(each: Mapping[str, CommonRatio]) -> RatioOfLogs:
     )  # forms of a hull differ alike in all logs
     ratio = float(np.exp(mean))
     common = CommonRatio(ratio, ratio * std, axes) if chance > SAME_RATIO else None
-    return RatioOfLogs(dict(each), common, chance)
+    return RatioOfLogs(dict(each), common)
 
 
 def common_discrepancies(each: Mapping[str, Sequence[Discrepancy]]) -> list[Shared[Discrepancy]]:

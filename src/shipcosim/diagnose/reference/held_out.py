@@ -66,11 +66,6 @@ class LogErrors:
     remark: str = ""
     misses: np.ndarray | None = field(default=None, repr=False, compare=False)
 
-    @property
-    def is_held_out(self) -> bool:
-        """Whether the causes' sizes are by other logs alone."""
-        return bool(self.fitted_on) and not self.own
-
     def as_json(self) -> dict:
         """The entry ``errors`` of a log in diagnosis.json."""
         after = "after" in self.position

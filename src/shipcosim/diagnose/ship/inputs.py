@@ -211,7 +211,7 @@ def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     remarks = [_about_third_party(name, one) for name, one in model.third_party.items()]
     record = replace(record, remarks=(*_about_stretches(time), *record.remarks, *remarks))
     thinned = _thinned_for(model, record)
-    _check_length(log, model, first_motion(thinned, model))
+    _check_length(log, model, first_motion(thinned))
     return thinned
 
 
@@ -287,7 +287,7 @@ def _thinned_for(model: ShipModel, record: Record) -> Record:
     rows = min(rows_averaged(model.length, record.step), record.time.size // 2)
     thinned = _thinned(record, rows, model)
     # The fastest response sets the integration step; it is estimated from the averaged motion.
-    thinned = replace(thinned, rate=fastest_rate(model, first_motion(thinned, model)))
+    thinned = replace(thinned, rate=fastest_rate(model, first_motion(thinned)))
     if rows == 1:
         return thinned
     far = f"Rows {record.step:.3g} s apart are averaged over {thinned.step:.3g} s"
@@ -442,7 +442,7 @@ def _filled(series: np.ndarray) -> np.ndarray:
     return np.interp(np.arange(series.size), np.flatnonzero(whole), series[whole])
 
 
-def first_motion(record: Record, model: ShipModel, smooth: float = 4.0) -> Motion:
+def first_motion(record: Record, smooth: float = 4.0) -> Motion:
     """A motion near the measured one, to start from: smoothed measurements, rates from positions where not measured.
 
     Returns

@@ -84,7 +84,7 @@ def fitting_horizon(record: Record, model: ShipModel) -> float:
     """Length of predictions: some of the craft's slowest time constants, and a part of the log at most. [s]"""
     # As long as the ship needs to respond, within limits, and so that the log holds several
     # predictions.
-    slowest = response_times(model, first_motion(record, model)).slowest
+    slowest = response_times(model, first_motion(record)).slowest
     wanted = np.clip(TIME_CONSTANTS * slowest, SHORTEST_HORIZON, LONGEST_HORIZON)
     return float(min(wanted, LEAST_SHARE * (record.time[-1] - record.time[0])))
 
@@ -216,7 +216,7 @@ def _segments(record: Record, horizon: float) -> tuple[np.ndarray, int]:
 
 
 def _seen(record: Record, model: ShipModel, horizon: float) -> Motion:
-    return first_motion(record, model, smooth=min(4.0, SMOOTHED_SHARE * horizon))
+    return first_motion(record, smooth=min(4.0, SMOOTHED_SHARE * horizon))
 
 
 def _measured(record: Record) -> xarray.Dataset:

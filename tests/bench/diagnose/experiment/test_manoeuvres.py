@@ -37,7 +37,7 @@ def logged(values, manoeuvre=None, seed=1, minutes=8.0):
     )
     names = {"current", "wave_drift", "tow", "wind_scale", "thrust_loss of port"}
     asked = tuple(hypothesis for hypothesis in problem().hypotheses if hypothesis.label in names)
-    return prepared(IdentificationProblem(record, model, asked, NOISE, first_motion(record, model)))
+    return prepared(IdentificationProblem(record, model, asked, NOISE, first_motion(record)))
 
 
 def test_a_log_that_cannot_tell_drift_from_current_can_after_the_prescribed_manoeuvre():

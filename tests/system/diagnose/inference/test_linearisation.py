@@ -59,7 +59,7 @@ def about():
     """Record, ship and motion that the ship is linearised about, and the linear problem."""
     record = record_of(twin.logs()["healthy"], twin.model())
     model = twin.model().with_values(WRONG)
-    motion = first_motion(record, model)
+    motion = first_motion(record)
     return record, model, motion, linearise(motion, record, model, REGRESSORS)
 
 

@@ -26,7 +26,7 @@ NO_LIMIT = np.full(3, 1.0)
 @pytest.fixture(scope="module")
 def problem():
     record = record_of(twin.logs()["healthy"], twin.model())
-    motion = first_motion(record, twin.model())
+    motion = first_motion(record)
     linear = linearise(motion, record, twin.model(), [])
     return record, twin.drawn(3, linear, TRUTH, record)
 
@@ -79,7 +79,7 @@ def test_an_unexplained_force_is_kept_from_swallowing_causes(problem):
 def test_what_is_explained_is_taken_out():
     """A problem whose log is twice its second column is left with nothing."""
     record = record_of(twin.logs()["healthy"], twin.model())
-    motion = first_motion(record, twin.model())
+    motion = first_motion(record)
     linear = linearise(motion, record, twin.model(), [Regressor({"vessel.mass_scale": 0.1})])
     doubled = linear._replace(
         driven=linear.driven[..., [1, 1]] * [2.0, 1.0], seen=linear.seen[..., [1, 1]]

@@ -29,7 +29,7 @@ def log():
     """Record and motion of 361 rows, one step of which is not known."""
     record = record_of(twin.logs()["healthy"], twin.model())
     record.known[90] = False
-    return record, first_motion(record, twin.model())
+    return record, first_motion(record)
 
 
 def whole():

@@ -384,6 +384,17 @@ def test_a_rate_that_is_rounded_away_is_told_by_the_signs_of_its_zeros():
     assert "frame" not in [f.cause for f in examine(table(log | {"yaw_rate": np.abs(rate)}))]
 
 
+def test_a_rate_that_is_rounded_away_in_a_part_is_named_with_it():
+    """No rate is left in the part once it is put right: its ends stay where they were found first."""
+    log = measured(seed=21)
+    turned = np.mod(log["heading"] + 180.0, 360.0) - 180.0
+    rate = 0.3 * log["yaw_rate"]
+    rate = np.round(np.where(inside(log, 300, 800), np.radians(rate), rate), 2)
+    finding = only(log | {"heading": np.mod(0.3 * turned, 360.0), "yaw_rate": rate})
+    assert (finding.cause, finding.channels) == ("frame", ("yaw_rate",))
+    near(finding.segments, (300.0, 800.0))
+
+
 @pytest.mark.parametrize("step", [0.5, 1.0, 2.0])
 def test_a_craft_that_spins_goes_the_long_way_round_and_that_is_no_heading_wrap(step):
     time, random = np.arange(0.0, 300.0, step), np.random.default_rng(3)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from diagnose import twin
 
-from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
+from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of, mislabel_in
 from shipcosim.diagnose.log_faults.input_labels import (
     best_run,
     suspected_inputs,
@@ -32,8 +32,8 @@ def changed(channels, part=True):
 
 
 def best(log):
-    _, mislabel, finding = suspected_inputs(log, twin.ready(log))[0]
-    return finding, with_label(log, mislabel, finding.segments)
+    finding = suspected_inputs(log, twin.ready(log))[0]
+    return finding, with_label(log, mislabel_in(finding), finding.segments)
 
 
 def test_a_tunnel_of_the_other_sign_is_found_in_its_part_of_the_log():
@@ -52,12 +52,11 @@ def test_a_tunnel_of_the_other_sign_is_found_in_its_part_of_the_log():
 def test_the_ends_of_a_segment_are_settled_to_a_few_rows():
     """From ends that are half a minute off, about the motion that the log tells of with those."""
     log = changed({"tunnel_rpm": -twin.logs()["healthy"]["tunnel_rpm"].values})
-    _, mislabel, finding = suspected_inputs(log, twin.ready(log))[0]
+    finding = suspected_inputs(log, twin.ready(log))[0]
     finding = replace(finding, segments=((FIRST + 25.0, LAST - 30.0),))
     for _ in range(2):
-        finding = with_refined_segment(
-            log, mislabel, finding, twin.ready(with_label(log, mislabel, finding.segments))
-        )
+        right = with_label(log, mislabel_in(finding), finding.segments)
+        finding = with_refined_segment(log, finding, twin.ready(right))
     ((first, last),) = finding.segments
     assert abs(first - FIRST) <= 4.0 and abs(last - LAST) <= 4.0
 
@@ -68,7 +67,7 @@ def test_what_is_told_throughout_is_settled_to_the_part_where_it_is_so(part):
         {"wind_speed": 3600.0 / 1852.0 * twin.logs()["healthy"]["wind_speed"].values}, part
     )
     told = finding_of(KNOTS, 0.99)
-    found = with_refined_segment(log, KNOTS, told, twin.ready(with_label(log, KNOTS)))
+    found = with_refined_segment(log, told, twin.ready(with_label(log, KNOTS)))
     np.testing.assert_allclose(found.segments, [(FIRST, LAST)] if part else np.zeros(0), atol=10.0)
 
 

@@ -150,8 +150,8 @@ def test_too_little_is_refused_with_what_is_needed(rows, absent, said):
 
 
 def test_first_motion_has_rates_of_positions_where_none_are_measured():
-    given = first_motion(record_of(log(), twin.model()), twin.model())
-    made = first_motion(record_of(log(("surge", "sway", "yaw_rate")), twin.model()), twin.model())
+    given = first_motion(record_of(log(), twin.model()))
+    made = first_motion(record_of(log(("surge", "sway", "yaw_rate")), twin.model()))
     psi = np.radians(350.0 + 0.1 * TIME)
     np.testing.assert_allclose(made.psi[INNER], psi[INNER], atol=1e-9)
     np.testing.assert_allclose(made.r[INNER], np.radians(0.1), rtol=1e-6)

@@ -70,7 +70,7 @@ def test_each_stretch_is_smoothed_on_its_own(parted):
     record = record_of(log, twin.model(12.0))
     assert [(part.start, part.stop) for part in record.stretches] == [(0, 300), (300, 601)]
     alone = record_of(whole.isel(time=slice(420, 721)), twin.model(12.0))
-    there, here = first_motion(alone, twin.model()), first_motion(record, twin.model())
+    there, here = first_motion(alone), first_motion(record)
     np.testing.assert_allclose(
         np.stack(here)[[0, 1, 3, 4, 5], 300:], np.stack(there)[[0, 1, 3, 4, 5]], rtol=1e-9
     )

@@ -40,7 +40,7 @@ def along(minutes=6.0):
 
 def with_laws(model, log):
     record = record_of(log, model)
-    motion = first_motion(record, model)
+    motion = first_motion(record)
     return with_surrogates(model, record, motion), record, motion
 
 

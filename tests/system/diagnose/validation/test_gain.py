@@ -87,9 +87,7 @@ def diagnosed(model, tmp_path_factory):
             s for s in hypotheses_of(read_catalogue(), ship) if (s.cause, s.component) == here
         )
         noise = first_noise(record, ship.parts["hull"].length)
-        case = prepared(
-            IdentificationProblem(record, ship, only, noise, first_motion(record, ship))
-        )
+        case = prepared(IdentificationProblem(record, ship, only, noise, first_motion(record)))
         fit = fitted(case)
         if not healthy:
             fit = fitted(case, only, screened(case, fit)[0][2])

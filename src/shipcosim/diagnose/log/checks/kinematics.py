@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from shipcosim.angles import unwrap_series
-from shipcosim.diagnose.finding import Segment
 from shipcosim.diagnose.log.thresholds import (
     CLEAR_MOTION,
     LONGEST_BRIDGE,
@@ -50,8 +49,6 @@ class Motion:
         Position or heading. [m or deg]
     velocity : (n, a) array
         Rate of `seen` as logged. [m/s or deg/s]
-    parts : dict of (n, a) arrays
-        What each channel of the log has in the velocity, by role.
     starts : (n,) array of bool
         Rows that cannot be compared with the one before.
     """
@@ -59,7 +56,6 @@ class Motion:
     time: np.ndarray
     seen: np.ndarray
     velocity: np.ndarray
-    parts: dict[str, np.ndarray]
     starts: np.ndarray
 
     def way(self, velocity: np.ndarray | None = None) -> np.ndarray:
@@ -89,21 +85,11 @@ def position_motion(log: dict) -> Motion | None:
     rows = complete_rows(log, roles)
     if len(rows) < 30:
         return None
-    # Turn the velocity from body to earth axes, and keep the
-    # share of each channel: a wrong label changes only its share.
+    # Turn the velocity from body to earth axes.
     north, east, surge, sway, heading = (log[role][rows] for role in roles)
-    cosine = np.cos(np.radians(heading))
-    sine = np.sin(np.radians(heading))
-    ahead = np.column_stack([cosine * surge, sine * surge])
-    aside = np.column_stack([-sine * sway, cosine * sway])
-    velocity = ahead + aside
-    none = np.zeros(len(rows))
-    axes = {
-        "north": np.column_stack([velocity[:, 0], none]),
-        "east": np.column_stack([none, velocity[:, 1]]),
-    }
-    parts = {"surge": ahead, "sway": aside, **axes}
-    return _motion(log["time"][rows], np.column_stack([north, east]), velocity, parts)
+    over_ground = (surge + 1j * sway) * np.exp(1j * np.radians(heading))
+    velocity = np.column_stack([over_ground.real, over_ground.imag])
+    return _motion(log["time"][rows], np.column_stack([north, east]), velocity)
 
 
 def heading_motion(log: dict) -> Motion | None:
@@ -113,7 +99,7 @@ def heading_motion(log: dict) -> Motion | None:
         return None
     rate = log["yaw_rate"][rows, None]
     heading = np.degrees(unwrap_series(np.radians(log["heading"][rows])))[:, None]
-    return _motion(log["time"][rows], heading, rate, {"yaw_rate": rate})
+    return _motion(log["time"][rows], heading, rate)
 
 
 def complete_rows(log: dict, roles: Sequence[str]) -> np.ndarray:
@@ -123,15 +109,15 @@ def complete_rows(log: dict, roles: Sequence[str]) -> np.ndarray:
     return np.flatnonzero(np.all([np.isfinite(log[role]) for role in roles], axis=0))
 
 
-def _motion(time, seen, velocity, parts):
-    return Motion(time, seen, velocity, parts, after_gaps(time) | jumps(seen))
+def _motion(time, seen, velocity):
+    return Motion(time, seen, velocity, after_gaps(time) | jumps(seen))
 
 
-def after_gaps(time: np.ndarray, longest: float = LONGEST_BRIDGE) -> np.ndarray:
+def after_gaps(time: np.ndarray) -> np.ndarray:
     """Rows before which more than so many usual steps are missing, the first row among them."""
     # The first row counts as after a gap, since the time before it is minus infinity.
     steps = np.diff(time, prepend=-np.inf)
-    return steps > longest * np.median(steps[1:])
+    return steps > LONGEST_BRIDGE * np.median(steps[1:])
 
 
 def jumps(seen: np.ndarray) -> np.ndarray:
@@ -258,15 +244,13 @@ def _togetherness(white):
     return max(1.0, 1.0 + 2.0 * sum(together))
 
 
-def is_clear(motion: Motion, whitener: Filter, segment: Segment | None = None) -> bool:
+def is_clear(motion: Motion, whitener: Filter) -> bool:
     """Whether the ship moves so much that the noise of its velocity hardly makes slopes on it too small."""
-    time = motion.time
     moving = whitener.gains < 1.0
-    inner = slice(None) if segment is None else (time >= segment[0]) & (time <= segment[1])
-    slow = motion.slow(motion.velocity)[inner]
+    slow = motion.slow(motion.velocity)
     # Noise of the velocity per unit of time, from gain and innovations of the filter.
     gain = np.median(whitener.gains[moving])
     std = whitener.std * np.median(whitener.scale[moving])
-    wander = (gain * std) ** 2 / np.median(np.diff(time))
+    wander = (gain * std) ** 2 / np.median(np.diff(motion.time))
     # A Gaussian kernel of width T leaves 1 / (2 sqrt(pi) T) of the density of white noise.
     return bool(np.mean(slow**2) > CLEAR_MOTION**2 * wander / (2.0 * np.sqrt(np.pi) * SLOW_MOTION))

@@ -60,7 +60,11 @@ def refined(log: dict, mislabel: Mislabel, segment: Segment) -> Segment:
     if motion is None:
         return segment
     time = log["time"]
-    whitener = filter_for(motion_of(undone(log, mislabel, [segment])) or motion)[0]
+    right = motion_of(undone(log, mislabel, [segment])) or motion
+    # What was rounded away in a unit that is too large leaves no rows whose places could be compared.
+    if len(right.time) < len(motion.time):
+        return segment
+    whitener = filter_for(right)[0]
     ends = [int(i) for i in np.searchsorted(time, segment)]
     # Rows at which the position leaps are candidates too: a wrong label makes leaps at its ends.
     leaps = np.searchsorted(time, motion.time[motion.starts])

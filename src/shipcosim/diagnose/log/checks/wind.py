@@ -66,27 +66,22 @@ def mislabelled_wind(log: dict) -> list[Finding]:
     velocity = (surge + 1j * sway) * np.exp(1j * np.radians(heading))
     angles = {BOW: wind_from + heading, MIRRORED: heading - wind_from, NORTH: wind_from}
     winds = {name: _axes(speed * np.exp(1j * np.radians(angle))) for name, angle in angles.items()}
-    motion = _Wind(time, _axes(velocity), _axes(velocity), {}, after_gaps(time, 4.5))
+    motion = Motion(time, _axes(velocity), _axes(velocity), after_gaps(time))
     # The wind sensor averages, so compare with the velocity averaged over the same time.
-    slow = motion.slow(motion.velocity)
+    width = WIND_AVERAGING / np.median(np.diff(time))
+    slow = gaussian_filter(motion.velocity, width, axis=0)
     # What is left is the wind over ground: a random walk
     # with noise, with its own filter for each reading.
     levels = np.stack([wind - slow for wind in winds.values()], axis=2)
     filters = dict(zip(winds, filter_for(motion, levels), strict=True))
     # First how the direction is counted, then unit and frame of the speed in that reading.
     frame, segment, gain = _frame(time, winds, slow, filters)
-    return _finding(
-        time, winds[frame], motion.slow(winds[frame]), slow, filters[frame], frame, segment, gain
-    )
+    smooth = gaussian_filter(winds[frame], width, axis=0)
+    return _finding(time, winds[frame], smooth, slow, filters[frame], frame, segment, gain)
 
 
 def _axes(vector):
     return np.column_stack([vector.real, vector.imag])
-
-
-class _Wind(Motion):
-    def slow(self, velocity: np.ndarray) -> np.ndarray:
-        return gaussian_filter(velocity, WIND_AVERAGING / np.median(np.diff(self.time)), axis=0)
 
 
 def _frame(time, winds, slow, filters):

@@ -10,10 +10,10 @@ from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.checks.kinematics import heading_motion
 from shipcosim.diagnose.log.checks.samples import quantum
 from shipcosim.diagnose.log.checks.segments import best_segment, in_segment
-from shipcosim.diagnose.log.mislabels import HEADING_LABELS, finding_of
+from shipcosim.diagnose.log.mislabels import finding_of, mislabel_of_unit
 from shipcosim.diagnose.log.thresholds import LIKELY_SIGNS, QUIET_CLIP, QUIET_GAIN, QUIETER
 
-RADIAN = HEADING_LABELS[1]
+RADIAN = mislabel_of_unit(("yaw_rate",), "rad/s", "deg/s")
 
 
 def silent_rate(log: dict) -> list[Finding]:

@@ -9,6 +9,7 @@ import numpy as np
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.interpolation import at_times
 from shipcosim.diagnose.log.files.table import LogColumns
+from shipcosim.diagnose.log.rows import usable_rows
 from shipcosim.diagnose.numerics import finite
 from shipcosim.errors import error_at, suggestion
 
@@ -165,9 +166,7 @@ def brought_together(
     found = {}
     # Interpolate each channel from its own rows, in order of time and without repeated times.
     for name, (values, unit) in signals.items():
-        rows = np.flatnonzero(is_finite[name] & np.isfinite(time))
-        rows = rows[np.argsort(time[rows], kind="stable")]
-        rows = rows[np.diff(time[rows], prepend=-np.inf) > 0.0]
+        rows = usable_rows(np.where(is_finite[name], time, np.nan))
         found[name] = at_times(clock, time[rows], values[rows], unit), unit
     said = f"Rows hold one sensor each: all channels are interpolated to the {len(clock)} times of {base}."
     return clock, found, [said]

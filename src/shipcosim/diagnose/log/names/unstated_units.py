@@ -41,7 +41,7 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: FileLayout) -> None
     _settle_axes(chosen, log, form, motion)
     for role in ("surge", "sway", "speed_over_ground", "north_velocity", "east_velocity"):
         if _is_open(chosen, role):
-            _settle_speed(chosen, role, log, form, motion)
+            _settle_speed(chosen, role, log, motion)
     if "yaw_rate" in chosen and not chosen["yaw_rate"].unit:
         _settle_rate(chosen, log, form, motion)
     for role in ("wind_speed", "true_wind_speed"):
@@ -231,7 +231,7 @@ def _settle_axes(chosen, log, form, motion):
             _told(chosen, role, "x is east and y north, as the heading says")
 
 
-def _settle_speed(chosen, role, log, form, motion):
+def _settle_speed(chosen, role, log, motion):
     """Unit of a speed by the positions."""
     raw = log.values[chosen[role].column]
     unit = None

@@ -76,7 +76,7 @@ def rows_of_relations(log: dict) -> list[RowsOfRelation]:
     found = []
     rows = complete_rows(log, ("heading", "yaw_rate"))
     if len(rows) and _can_be_followed(change := wrap_series(np.diff(log["heading"][rows]))):
-        told = _integral(log["time"][rows], log["yaw_rate"][rows]).astype(complex)
+        told = spline_integral(log["time"][rows], log["yaw_rate"][rows]).astype(complex)
         found.append(RowsOfRelation(rows, running_sums(change).astype(complex), {RATE: told}, 1))
     rows = complete_rows(log, ("heading", *POSITION, *VELOCITY))
     if len(rows) and _can_be_followed(wrap_series(np.diff(log["heading"][rows]))):
@@ -89,7 +89,8 @@ def rows_of_relations(log: dict) -> list[RowsOfRelation]:
 
 def _ways(time, velocity, turn):
     """What each form of the velocity adds up to."""
-    return {form: _integral(time, change(velocity, turn)) for form, change in FORMS.items()}
+    # By a spline: the trapezium loses a tenth of a motion with six rows a period.
+    return {form: spline_integral(time, change(velocity, turn)) for form, change in FORMS.items()}
 
 
 def position_relations(log: dict, headings: dict, positions: dict) -> dict:
@@ -157,7 +158,7 @@ def rate_relations(time: np.ndarray, headings: dict, rate: np.ndarray) -> dict:
     if len(rows) < 2 * FEWEST_INCREMENTS:
         return {}
     # The change of heading that the yaw rate predicts.
-    told = _integral(time[rows], rate[rows])
+    told = spline_integral(time[rows], rate[rows])
     pairs = {}
     # Unwrap the heading between rows, which needs turns of less than half a revolution.
     for name, heading in headings.items():
@@ -176,8 +177,3 @@ def rate_relations(time: np.ndarray, headings: dict, rate: np.ndarray) -> dict:
 
 def _can_be_followed(turns):
     return np.quantile(np.abs(turns), 1.0 - TURNED_TOO_FAR) <= LARGEST_TURN
-
-
-def _integral(time, series):
-    """By a spline: the trapezium loses a tenth of a motion with six rows a period."""
-    return spline_integral(time, series)
