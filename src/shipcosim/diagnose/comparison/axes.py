@@ -46,8 +46,6 @@ class AxisFit:
         Of the felt force's mean square that is explained.
     damping, damping_std : float
         The water's load as fitted over that of the model, along the log.
-    hull : (n,) array
-        The water's load as fitted.
     """
 
     gains: np.ndarray
@@ -57,7 +55,6 @@ class AxisFit:
     share: float
     damping: float
     damping_std: float
-    hull: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -213,12 +210,12 @@ class Axis:
             * min(found.independent, without.independent)
             * np.log(without.squares / found.squares)
         )
-        hull, damping, std = self._water(found, k)
+        damping, std = self._water(found, k)
         gains = found.coefficients[:k]
         deviations = found.std[:k]
         # Coefficient of determination about zero.
         share = 1.0 - found.squares / self.felt_unit**2
-        return AxisFit(gains, deviations, float(support), found.squares, share, damping, std, hull)
+        return AxisFit(gains, deviations, float(support), found.squares, share, damping, std)
 
     @cached_property
     def _prior(self) -> np.ndarray:
@@ -236,19 +233,15 @@ class Axis:
         """The felt force explained by all but the thrusters."""
         return regressed(self.felt, self.rest, self.positive, self.block, self._prior)
 
-    def _water(self, found: Regression, k: int) -> tuple[np.ndarray, float, float]:
-        """The water's load as fitted, and its size along the model's with the standard deviation."""
+    def _water(self, found: Regression, k: int) -> tuple[float, float]:
+        """Size of the water's load as fitted, along the model's, with its standard deviation."""
         own = slice(k, k + _OF_HULL)
         columns = self.rest[:, :_OF_HULL]
         # Project the fitted water load onto the model's: a weighted sum of the coefficients, whose
         # variance follows from their covariance.
         along = columns.T @ self.hull / max(float(self.hull @ self.hull), 1e-30)
         variance = float(along @ found.covariance[own, own] @ along)
-        return (
-            columns @ found.coefficients[own],
-            float(along @ found.coefficients[own]),
-            float(np.sqrt(variance)),
-        )
+        return float(along @ found.coefficients[own]), float(np.sqrt(variance))
 
 
 def axes_of(felt: Felt, commanded: Commanded, model: ShipModel) -> list[Axis]:

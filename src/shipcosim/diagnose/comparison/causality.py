@@ -17,7 +17,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     COMMANDS_BEFORE,
     HUBER,
 )
-from shipcosim.diagnose.numerics import least_squares
+from shipcosim.diagnose.numerics import least_squares, running_sums
 
 
 def causal_support(felt: Felt, commanded: Sequence[Commanded], unit: float) -> np.ndarray:
@@ -49,8 +49,7 @@ def causal_support(felt: Felt, commanded: Sequence[Commanded], unit: float) -> n
     # A block counts if all of its rows are usable.
     usable = blocks(felt.usable.astype(float), count) > 1.0 - 1e-9
     # Blocks with a complete past of all lags.
-    rows = np.arange(CAUSAL_ORDER + 1, usable.size)
-    rows = rows[[bool(usable[row - CAUSAL_ORDER - 1 : row + 1].all()) for row in rows]]
+    rows = with_past(usable, CAUSAL_ORDER + 1)
     found = np.zeros(len(commanded))
     # Total commanded load of each interpretation, averaged as the velocities are.
     loads = [
@@ -78,6 +77,14 @@ def blocks(series: np.ndarray, count: int) -> np.ndarray:
     """Averages over blocks of `count` rows, along the last axis."""
     whole = series.shape[-1] // count
     return series[..., : whole * count].reshape(*series.shape[:-1], whole, count).mean(-1)
+
+
+def with_past(usable: np.ndarray, count: int) -> np.ndarray:
+    """Usable blocks before which so many others are usable too."""
+    # Cumulative count of bad blocks: equal at both ends where the past is complete.
+    bad = running_sums(~usable)
+    rows = np.arange(count, usable.size)
+    return rows[bad[rows + 1] == bad[rows - count]]
 
 
 def _past(axis: int, speeds: np.ndarray, heading: np.ndarray, rows: np.ndarray) -> np.ndarray:

@@ -46,8 +46,6 @@ class AxisGain:
         Log-likelihood that the thrusters gain, each with a gain of its own. [nats]
     share_of_each : float
         Of the felt force's mean square that they then explain, with the water.
-    correlation : float
-        Of what is commanded with what is felt less the model's other loads.
     ways : tuple of two pairs of floats, or None
         Gains of thrust ahead and astern with their standard deviations; None where the log does not have both.
     support_of_ways : float
@@ -65,7 +63,6 @@ class AxisGain:
     each_std: dict[str, float]
     support_of_each: float
     share_of_each: float
-    correlation: float
     ways: tuple[tuple[float, float], tuple[float, float]] | None
     support_of_ways: float
     error: float
@@ -169,13 +166,11 @@ def _gain(axis: Axis, commanded: Commanded, ahead: Mapping[str, np.ndarray]) -> 
             gain = middle
     # Force left for the thrusters by the modelled hull and wind loads.
     other = axis.felt - axis.hull - axis.wind
-    size = root_mean_square(total)
-    correlation = float(np.corrcoef(other, total)[0, 1]) if total.std() > 0.0 else 0.0
-    error = root_mean_square(other - total) / size
+    error = root_mean_square(other - total) / root_mean_square(total)
     each = dict(zip(names, map(float, apart.gains), strict=True))
     each_std = dict(zip(names, map(float, apart.std), strict=True))
     ways, support = _by_way(axis, commanded, ahead)
-    shares = apart.support, apart.share, correlation
+    shares = apart.support, apart.share
     return AxisGain(axis, total, fit, gain, std, each, each_std, *shares, ways, support, error)
 
 

@@ -152,7 +152,7 @@ def reading(
     units = record.units
     for change in changes:
         units = change.undo(units)
-    commanded = commanded_by(*driven(units, record, felt, model))
+    commanded = driven(units, record, felt, model)
     ahead = ahead_of(units)
     # Thrust may act late: each delay has a cost, as a wrong sign can look like a delay.
     tries = []
@@ -176,10 +176,8 @@ def ahead_of(units: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> dict[str, np
     return {name: speed >= 0.0 for name, (speed, _) in units.items()}
 
 
-def driven(
-    units: ThrusterSeries, record: Record, felt: Felt, model: ShipModel
-) -> tuple[Record, Felt, ShipModel]:
-    """A log and its ship with thrusters that are driven otherwise, as `commanded_by` takes them.
+def driven(units: ThrusterSeries, record: Record, felt: Felt, model: ShipModel) -> Commanded:
+    """The loads of a model along what a log shows, with thrusters that are driven otherwise.
 
     Parameters
     ----------
@@ -191,14 +189,14 @@ def driven(
 
     Returns
     -------
-    tuple of Record, Felt, ShipModel
+    Commanded
     """
     record = replace(record, units=units)
     if any(
         "rpm" in one.drives for one in model.third_party.values()
     ):  # one that is told its thrust is linear
         model = with_surrogates(model, record, felt.motion)
-    return record, felt, model
+    return commanded_by(record, felt, model)
 
 
 def support_of(commanded: Commanded, ahead: dict[str, np.ndarray], axes: Sequence[Axis]) -> float:

@@ -17,7 +17,7 @@ import numpy as np
 
 from shipcosim.diagnose.comparison.axes import Axis
 from shipcosim.diagnose.comparison.causality import causal_support
-from shipcosim.diagnose.comparison.commanded import Commanded, commanded_by, late
+from shipcosim.diagnose.comparison.commanded import Commanded, late
 from shipcosim.diagnose.comparison.label_hypotheses import (
     LabelHypothesis,
     changes_of,
@@ -185,11 +185,11 @@ def _weighed(
     # Likelihood and foresight need the log in blocks, prepared once.
     unit = froude_time(model.length)
     smooth = smoothed(felt)
-    log = blocks_of(felt, commanded_by(*driven(found[0].units, record, smooth, model)), model)
+    log = blocks_of(felt, driven(found[0].units, record, smooth, model), model)
     foresight = causal_support(felt, [one.commanded for one in found], unit)
     weighed = []
     for one, seen in zip(found, foresight, strict=True):
-        commanded = commanded_by(*driven(one.units, record, smooth, model))
+        commanded = driven(one.units, record, smooth, model)
         # All measures pay for changes; the likelihood has its own delay.
         cost = CHANGE_COST * len(one.changes)
         likelihood = max(_likelihoods(log, commanded, one, unit))

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from shipcosim.diagnose.comparison.axes import rest_of
-from shipcosim.diagnose.comparison.causality import blocks
+from shipcosim.diagnose.comparison.causality import blocks, with_past
 from shipcosim.diagnose.comparison.commanded import Commanded, moving_mass
 from shipcosim.diagnose.comparison.measured_force import Felt
 from shipcosim.diagnose.comparison.regression import bounded
@@ -28,7 +28,6 @@ from shipcosim.diagnose.comparison.thresholds import (
     THRUSTER_WIDTH,
     WAY_WIDTH,
 )
-from shipcosim.diagnose.numerics import running_sums
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.smoothing import froude_time
 
@@ -108,7 +107,7 @@ def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
     # Average over blocks of a share of the ship's response time.
     speeds = blocks(felt.velocity, count)
     usable = blocks(felt.usable.astype(float), count) > 1.0 - 1e-9
-    rows = _with_past(usable[1:] & usable[:-1])
+    rows = with_past(usable[1:] & usable[:-1], CAUSAL_ORDER)
     # Force that the motion needs between two blocks: M nu_dot + C_RB(nu) nu.
     rates = np.diff(speeds, axis=1) / (count * felt.kernel.step)
     force = model.mass_matrix @ rates + _between(blocks(moving_mass(motion, model), count))
@@ -145,13 +144,6 @@ def _sizes(commanded: Commanded, length: float) -> dict[int, float]:
 def _between(series: np.ndarray) -> np.ndarray:
     # Midpoint rule: loads at the same times as differences of block means.
     return 0.5 * (series[..., 1:] + series[..., :-1])
-
-
-def _with_past(usable: np.ndarray) -> np.ndarray:
-    # Cumulative count of bad steps: equal at both ends where the past is complete.
-    bad = running_sums(~usable)
-    rows = np.arange(CAUSAL_ORDER, usable.size)
-    return rows[bad[rows + 1] == bad[rows - CAUSAL_ORDER]]
 
 
 def likelihood_of(log: Blocks, commanded: Commanded, ahead: dict[str, np.ndarray]) -> float:

@@ -38,6 +38,7 @@ from shipcosim.diagnose.inference.fitting import (
     fitted,
     own_columns,
     prepared,
+    theta_of,
 )
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import Regressor, moved
@@ -306,9 +307,7 @@ def _fitted(problem: IdentificationProblem, one: _Try, linear: InParts) -> _Fitt
         if not np.isfinite(filtered.products).all():
             return None
         # The base stays at its own point of linearisation, the cause at its present values.
-        centre = np.concatenate(
-            [base.centre, [_theta_of(column, model, problem) for column in own]]
-        )
+        centre = np.concatenate([base.centre, [theta_of(column, model, problem) for column in own]])
         score, theta, covariance = evidence(filtered.products, prior, centre)
         values = bounded((one.hypothesis,), values | _values(problem, own, theta[count:]))
     # Log-evidence with the cost of the search over times.
@@ -322,12 +321,6 @@ def _fitted(problem: IdentificationProblem, one: _Try, linear: InParts) -> _Fitt
     return _Fitted(
         one, total, _FitWithCourse(hypotheses, values, spread, total, *posterior, *about, mixed)
     )
-
-
-def _theta_of(column, model, problem) -> float:
-    """θ of a column at the numbers of a ship model."""
-    path, size = next(iter(column.changes.items()))
-    return float((model.get(path) - problem.model.get(path)) / size)
 
 
 def _mixed(plain: InParts, there: InParts, shares: np.ndarray, count: int) -> InParts:

@@ -355,9 +355,14 @@ def linearised(
     centre = np.zeros(len(columns))
     for i, column in enumerate(columns):
         if not column.beside:
-            path, size = next(iter(column.changes.items()))
-            centre[i] = (model.get(path) - problem.model.get(path)) / size
+            centre[i] = theta_of(column, model, problem)
     return Linearised(columns, linear, products, centre, model, motion)
+
+
+def theta_of(column: Regressor, model: ShipModel, problem: IdentificationProblem) -> float:
+    """θ of a column at the numbers of a ship model."""
+    path, size = next(iter(column.changes.items()))
+    return float((model.get(path) - problem.model.get(path)) / size)
 
 
 def deviations(hypotheses: Sequence[Hypothesis], covariance: np.ndarray) -> dict[str, float]:

@@ -25,7 +25,7 @@ def told():
     blocks = blocks_of(felt, commanded_by(record, smoothed(felt), ship), ship)
 
     def likelihood(units):
-        commanded = commanded_by(*driven(units, record, smoothed(felt), ship))
+        commanded = driven(units, record, smoothed(felt), ship)
         return likelihood_of(
             blocks, commanded, {name: speed >= 0.0 for name, (speed, _) in units.items()}
         )

@@ -50,7 +50,8 @@ def test_the_filter_is_the_recursion_of_kalman():
 
 def test_a_wave_of_six_seconds_is_integrated_at_one_hertz():
     wave = {"time": TIME, "heading": TIME, "yaw_rate": np.cos(TIME * 2 * np.pi / 6.0)}
-    way = heading_motion(wave).way()[:, 0]
+    motion = heading_motion(wave)
+    way = (motion.seen - motion.level)[:, 0]
     exact = np.sin(TIME * 2 * np.pi / 6.0) * 6.0 / (2 * np.pi)
     assert np.max(np.abs(way - exact)[10:-10]) < 0.02
 

@@ -34,7 +34,7 @@ from shipcosim.diagnose.log.thresholds import (
     SCALE_SLAB,
     SHORTEST_BLOCK,
 )
-from shipcosim.diagnose.numerics import Bands, running_sums
+from shipcosim.diagnose.numerics import Bands, running_sums, spline_integral
 
 _AT_ONCE = (
     8  # columns that are whitened together, over the rows in which any of them is not nothing
@@ -174,7 +174,7 @@ def _side(motion):
     rest = np.clip(whitener(motion.level), -CLOCK_CLIP, CLOCK_CLIP)
     # The way that a wrong clock adds, from the smoothed
     # velocity: its noise would correlate with the level.
-    way = motion.way(motion.slow(motion.velocity))
+    way = spline_integral(motion.time, motion.slow(motion.velocity))
     # A filter of gain K forgets a factor 1 - K in each row; the sum counts it in nats.
     forgotten = np.cumsum(-np.log(np.maximum(1.0 - whitener.gains, np.exp(-_FORGOTTEN))))
     steps = np.diff(way, axis=0, prepend=way[:1])

@@ -58,11 +58,6 @@ class Motion:
     velocity: np.ndarray
     starts: np.ndarray
 
-    def way(self, velocity: np.ndarray | None = None) -> np.ndarray:
-        """Integral of a velocity; a spline, since the trapezium loses a tenth of a wave of 6 s at 1 Hz."""
-        velocity = self.velocity if velocity is None else velocity
-        return spline_integral(self.time, velocity)
-
     def slow(self, velocity: np.ndarray) -> np.ndarray:
         """A velocity without its noise and waves."""
         return gaussian_filter(velocity, SLOW_MOTION / np.median(np.diff(self.time)), axis=0)
@@ -70,7 +65,8 @@ class Motion:
     @property
     def level(self) -> np.ndarray:
         """What is seen less the way made, (n, a)."""
-        return self.seen - self.way()
+        # By a spline, since the trapezium loses a tenth of a wave of 6 s at 1 Hz.
+        return self.seen - spline_integral(self.time, self.velocity)
 
 
 def position_motion(log: dict) -> Motion | None:

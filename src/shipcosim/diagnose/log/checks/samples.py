@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shipcosim.angles import unwrap_series, wrap_series
-from shipcosim.diagnose.finding import Finding, log_fault
+from shipcosim.diagnose.finding import Finding, Segment, log_fault
 from shipcosim.diagnose.log.roles import NAVIGATION
 from shipcosim.diagnose.log.thresholds import (
     CHANGES,
@@ -61,18 +61,28 @@ def gaps(log: dict) -> list[Finding]:
     """
     time = log["time"]
     # Rows that are missing.
-    found = [_finding(time, run) for run in _missing(log)]
+    found = _missing(log)
     # Rows in which the whole navigation is empty, held or interpolated; other channels may follow.
     everywhere = list(_flat_runs(log, tuple(role for role in NAVIGATION if role in log)))
-    found += [_finding(time, _with_followers(log, run)) for run in everywhere]
+    found += [_with_followers(log, run) for run in everywhere]
     # The same for single groups of channels, where the navigation as a whole is not lost.
     for group in GROUPS:
         for run in _flat_runs(log, tuple(role for role in group if role in log)):
             if not any(_overlap(run, known) for known in everywhere):
-                found.append(_finding(time, run))
+                found.append(run)
     # Leaps of the position, which lost rows leave when a logger closes the gap.
-    found += [_finding(time, run) for run in _leaps(log)]
-    return _joined(found)
+    found += _leaps(log)
+    # Gaps of the same channels and kind are one finding.
+    step = np.median(np.diff(time))
+    segments: dict[tuple[tuple[str, ...], str], list[Segment]] = {}
+    for run in found:
+        inner = step if run.kind == NO_ROWS else 0.0
+        segment = (float(time[run.first] + inner), float(time[run.last] - inner))
+        segments.setdefault((run.channels, run.kind), []).append(segment)
+    return [
+        log_fault("gap", channels, kind, tuple(sorted(where)))
+        for (channels, kind), where in segments.items()
+    ]
 
 
 def lifeless(log: dict) -> list[Finding]:
@@ -157,24 +167,6 @@ def _missing(log):
     lost = (steps > SHORTEST_GAP) & (steps > (FEWEST_GAP_ROWS + 0.5) * np.median(steps))
     every = tuple(role for role in log if role != "time")
     return [_Run(int(row), int(row) + 1, every, NO_ROWS) for row in np.flatnonzero(lost)]
-
-
-def _finding(time, run):
-    step = np.median(np.diff(time)) if run.kind == NO_ROWS else 0.0
-    segment = (float(time[run.first] + step), float(time[run.last] - step))
-    return log_fault("gap", run.channels, run.kind, (segment,))
-
-
-def _joined(found):
-    """Gaps of the same channels and kind as one finding."""
-    groups = {}
-    for finding in found:
-        groups.setdefault((finding.channels, finding.note), []).append(finding)
-    joined = []
-    for (channels, note), group in groups.items():
-        segments = tuple(sorted(finding.segments[0] for finding in group))
-        joined.append(log_fault("gap", channels, note, segments))
-    return joined
 
 
 def _overlap(one, other):

@@ -12,7 +12,7 @@ from shipcosim.diagnose.log.checks.kinematics import (
     whiteness,
 )
 from shipcosim.diagnose.log.checks.segments import best_segment, in_segment
-from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
+from shipcosim.diagnose.log.mislabels import KNOT, WIND_LABELS, finding_of
 from shipcosim.diagnose.log.rows import inside
 from shipcosim.diagnose.log.thresholds import (
     BESIDE_SEGMENT,
@@ -32,7 +32,7 @@ ROLES = ("wind_speed", "wind_from", "heading", "surge", "sway")
 BOW = "from the bow"
 MIRRORED = "mirrored"
 NORTH = "from north"
-SLOPES = {BOW: {"apparent": 1.0, "kn": 1852.0 / 3600.0, "m/s": 3600.0 / 1852.0, "over ground": 0.0}}
+SLOPES = {BOW: {"kn": KNOT, "m/s": 1.0 / KNOT, "over ground": 0.0}}
 SLOPES |= {MIRRORED: {"apparent": 1.0}, NORTH: {"apparent": 1.0, "over ground": 0.0}}
 LABEL = {
     (MIRRORED, "apparent"): WIND_LABELS[0],
@@ -146,7 +146,7 @@ def _unit(time, y, x, smooth, wind, slow):
         # Weigh the evidence by the correlation of the
         # residuals; a unit of the whole log needs more.
         rough = whiteness(in_segment(y - b * x, time, segment))
-        if kind == "apparent" or gain / rough < (LABEL_GAIN if segment else WIND_UNIT_GAIN):
+        if gain / rough < (LABEL_GAIN if segment else WIND_UNIT_GAIN):
             continue
         # The slope must be near that of the unit, for the wind as
         # logged and smoothed: noise affects these differently.

@@ -42,8 +42,7 @@ class LogInterpretation:
     heading_unit, rate, time : float
         Factors of the heading's unit, of the yaw rate with its sign, of the time.
     free : frozenset of str
-        What may have any value besides: ``"time"``, ``"scale"`` of the velocity, ``"rate"``, ``"angle"`` of frames;
-        with ``"axes"`` that angle is one of surge and sway.
+        ``"angle"`` where the angle of frames may have any value; with ``"axes"`` it is one of surge and sway.
     """
 
     position: complex = 1.0
@@ -188,6 +187,11 @@ TIME_COSTS |= {
 }
 FACTORS = {2.0: 6.5, 0.5: 6.5, 10.0: 8.0}  # of true over logged time
 ODD_FACTORS = {2.0: 8.0, 0.5: 8.0, 10.0: 8.0, 0.1: 8.0}  # of a velocity or a rate
+ODD_UNITS = (
+    ("velocity", "surge and sway", "are", "north and east are in another unit, or badly scaled"),
+    ("rate", "yaw_rate", "is", "heading is in another unit, or badly scaled"),
+)
+"""What may be in an odd unit, its channels in words, and what looks the same."""
 
 
 def _factor_of(name, factor):
@@ -224,11 +228,8 @@ def _time(stated):
         said = f"{factor:g} s pass in each logged second"
         yield LogMistake("time", cost, _factor_of("time", factor), None, said)
     # A clock of any rate: a narrow prior for small errors, and a wide one that costs more.
-    said = CLOCK
     for std, cost in ((0.05, 5.5), (1.5, 8.0)):
-        yield LogMistake(
-            "time", cost, lambda reading: _freed(reading, "time"), None, said, Slab("time", std)
-        )
+        yield LogMistake("time", cost, lambda reading: reading, None, CLOCK, Slab("time", std))
 
 
 def _units(stated) -> Iterator[LogMistake]:
@@ -274,37 +275,19 @@ def _freed(reading, what):
 
 def _odd(stated) -> Iterator[LogMistake]:
     """What has no name or cannot be put right, and must be beaten by what has one."""
-    # Units that a header states are wrong less often, so these mistakes cost more then.
-    of_velocity, of_rate = (STATED * bool(stated.get(role)) for role in ("surge", "yaw_rate"))
-    lengths = ("north and east are in another unit, or badly scaled",)
-    angles = ("heading is in another unit, or badly scaled",)
-    # Usual wrong factors that belong to no unit.
-    for factor, cost in ODD_FACTORS.items():
-        said = f"surge and sway must be multiplied by {factor:.3g}"
-        yield LogMistake(
-            "unit of velocity",
-            cost + of_velocity,
-            _factor_of("velocity", factor),
-            None,
-            said,
-            None,
-            lengths,
-        )
-        said = f"yaw_rate must be multiplied by {factor:.3g}"
-        yield LogMistake(
-            "unit of rate", cost + of_rate, _factor_of("rate", factor), None, said, None, angles
-        )
-    # Factors of any size, with a wide prior of their logarithm.
-    said = "surge and sway are in an unknown unit, or badly scaled"
-    free = Slab("scale", 1.5)
-    cost = 8.0 + of_velocity
-    yield LogMistake(
-        "unit of velocity", cost, lambda r: _freed(r, "scale"), None, said, free, lengths
-    )
-    said = "yaw_rate is in an unknown unit, or badly scaled"
-    free = Slab("rate", 1.5)
-    cost = 8.0 + of_rate
-    yield LogMistake("unit of rate", cost, lambda r: _freed(r, "rate"), None, said, free, angles)
+    for name, what, verb, alike in ODD_UNITS:
+        # Units that a header states are wrong less often, so these mistakes cost more then.
+        slot = f"unit of {name}"
+        extra = STATED * bool(stated.get(SLOT_CHANNELS[slot][0]))
+        # Usual wrong factors that belong to no unit.
+        for factor, cost in ODD_FACTORS.items():
+            apply = _factor_of(name, factor)
+            said = f"{what} must be multiplied by {factor:.3g}"
+            yield LogMistake(slot, cost + extra, apply, None, said, None, (alike,))
+        # Factors of any size, with a wide prior of their logarithm.
+        said = f"{what} {verb} in an unknown unit, or badly scaled"
+        slab = Slab(name, 1.5)
+        yield LogMistake(slot, 8.0 + extra, lambda reading: reading, None, said, slab, (alike,))
     # An angle between the grid and the heading looks the same as an error of the heading.
     yield LogMistake(
         "turned",

@@ -226,7 +226,7 @@ def _off_position(relation, reading, slabs):
         relation.factor.real - reading.factor.real,
         relation.std[0],
         SCALE_TOLERANCE,
-        slabs.get("scale"),
+        slabs.get("velocity"),
     )
 
 
