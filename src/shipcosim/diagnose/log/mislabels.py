@@ -5,10 +5,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from shipcosim.angles import wrap_series
 from shipcosim.diagnose.finding import Finding, Segment, log_fault
 from shipcosim.diagnose.log.checks.samples import noise_of, quantum
-from shipcosim.diagnose.log.degree_size import metres_per_degree
+from shipcosim.diagnose.log.degree_size import local_plane
 from shipcosim.diagnose.log.rows import inside
 from shipcosim.diagnose.numerics import finite
 
@@ -141,13 +140,7 @@ def velocity_frame(first: str, second: str) -> Mislabel:
 
 def _from_degrees(log):
     """Positions in m about the first fix, from degrees of latitude and longitude; WGS 84."""
-    # Local plane about the first fix: degrees times metres per degree of the
-    # ellipsoid. The longitude is wrapped, for tracks over the date line.
-    known = np.flatnonzero(np.isfinite(log["north"]) & np.isfinite(log["east"]))
-    first = known[0] if len(known) else 0
-    meridian, parallel = metres_per_degree(log["north"][first])
-    east = wrap_series(log["east"] - log["east"][first])
-    return {"north": meridian * (log["north"] - log["north"][first]), "east": parallel * east}
+    return dict(zip(POSITION, local_plane(log["north"], log["east"])[:2], strict=True))
 
 
 def turned_grid(angle: float) -> Mislabel:

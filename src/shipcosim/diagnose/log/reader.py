@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import os
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.angles import TURN, wrap_series
 from shipcosim.diagnose.log.channels import Channel, ChannelFile, read_channels
-from shipcosim.diagnose.log.degree_size import metres_per_degree
+from shipcosim.diagnose.log.degree_size import local_plane
 from shipcosim.diagnose.log.files.bags import is_bag, tables_of_bag
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.joined_tables import joined, tables_in
@@ -43,14 +41,6 @@ MOST_NAMED = 20
 """Largest number of columns that a remark lists."""
 LARGEST_NUMBER = 1e100
 """Largest number that a log can hold, in the unit of its role."""
-
-
-@dataclass(frozen=True)
-class _Source:
-    """A log as columns, and what says which file it is."""
-
-    columns: LogColumns
-    file: dict[str, str]
 
 
 def read_log(
@@ -89,8 +79,7 @@ def read_log(
     # Settings of the channel file; without channels in it, names decide.
     given = read_channels(channels) if isinstance(channels, (str, os.PathLike)) else channels
     form = given.form if given else FileLayout()
-    source = _source_of(log, form)
-    columns = source.columns
+    columns, file = _source_of(log, form)
     proposal = None
     if given is None or not given.channels:
         proposal = propose(columns, thrusters, form)
@@ -120,7 +109,7 @@ def read_log(
     table = make_table(
         time, [(n, v, unit, _meaning(n)) for n, (v, unit) in signals.items()], attributes
     )
-    table.encoding |= source.file
+    table.encoding |= file
     # Units that were stated are kept, as they make a unit mistake less likely.
     for name, unit in stated.items():
         if unit and name in table.variables:
@@ -164,17 +153,14 @@ def _digest(path: Path) -> str:
     return total.hexdigest()
 
 
-def _source_of(log, form):
+def _source_of(log, form) -> tuple[LogColumns, dict[str, str]]:
+    """A log as columns, and what says which file it is."""
     if isinstance(log, (str, os.PathLike)):
-        columns = columns_of(log, form)
-        return _Source(
-            columns,
-            {"source": str(log), "sha256": _digest(Path(log))},
-        )
+        return columns_of(log, form), {"source": str(log), "sha256": _digest(Path(log))}
     values = {"time": np.asarray(log["time"].values, float)}
     values |= {str(name): np.asarray(v.values) for name, v in log.data_vars.items()}
     units = {name: str(log[name].attrs.get("units", "")) for name in values}
-    return _Source(LogColumns("log", values, units), {})
+    return LogColumns("log", values, units), {}
 
 
 def _is_unnamed(name):
@@ -355,17 +341,12 @@ def _local_position(source, signals, said):
             said.append(f"{int(rows.sum())} row{'s' * int(rows.sum() > 1)} with {why}: left empty.")
     values = [np.where(lost | nowhere, np.nan, degrees[name]) for name in LARGEST]
     # Local plane about the first fix; east by the length of a degree at its latitude.
-    fixed = np.flatnonzero(np.isfinite(values[0]) & np.isfinite(values[1]))
-    if not len(fixed):
+    north, east, first = local_plane(*values)
+    if not np.isfinite(east[first]):
         raise error_at(f"{source}, latitude", "has no row with a longitude.", "A fix needs both.")
-    latitude = np.radians(values[0])
-    longitude = np.radians(values[1])
-    first = fixed[0]
-    meridian, parallel = metres_per_degree(float(np.degrees(latitude[first])))
-    signals["north"] = meridian * np.degrees(latitude - latitude[first]), "m"
-    signals["east"] = parallel * np.degrees(wrap_series(longitude - longitude[first], TURN)), "m"
-    origin = np.degrees([latitude[first], longitude[first]])
-    return {"latitude_origin": float(origin[0]), "longitude_origin": float(origin[1])}
+    signals["north"] = north, "m"
+    signals["east"] = east, "m"
+    return {f"{name}_origin": float(of[first]) for name, of in zip(LARGEST, values, strict=True)}
 
 
 def _without_value(source, signals):

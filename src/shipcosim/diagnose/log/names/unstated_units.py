@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.angles import TURN, wrap_series
-from shipcosim.diagnose.log.degree_size import metres_per_degree
+from shipcosim.diagnose.log.degree_size import local_plane
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.evidence import frame_of_angle, unit_of_rate, unit_of_speed
@@ -125,14 +124,9 @@ def _motion(chosen, log, form) -> Any:
         )
         if latitude is None or longitude is None:
             return time, None, None
-        known = np.flatnonzero(
-            np.isfinite(latitude) & np.isfinite(longitude) & (np.abs(latitude) < 90.0)
-        )
-        if not len(known):
+        position = local_plane(np.where(np.abs(latitude) < 90.0, latitude, np.nan), longitude)[:2]
+        if np.isnan(position).any(axis=0).all():
             return time, None, None
-        meridian, parallel = metres_per_degree(float(latitude[known[0]]))
-        turned = wrap_series(np.radians(longitude - longitude[known[0]]), TURN)
-        position = [meridian * (latitude - latitude[known[0]]), parallel * np.degrees(turned)]
     # Only rows with increasing times can be compared.
     rows = np.concatenate(([True], np.diff(time) > 0.0))
     return time, *(np.where(rows, values, np.nan) for values in position)
