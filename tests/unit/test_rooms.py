@@ -123,6 +123,7 @@ MAY_IMPORT = {
         "sweep",
         "checks",
         "results",
+        "ships",
     },
     "cli": {
         "temporary",

@@ -23,13 +23,16 @@ from shipcosim.calls.arguments import (
     values_of_sets,
 )
 from shipcosim.calls.keywords import with_known_keywords
+from shipcosim.calls.learning import assumed_craft, check_learning
 from shipcosim.errors import Problem, error_at
 from shipcosim.results.diagnosis import DiagnosisOfLog, DiagnosisOfLogs
 from shipcosim.results.log import Log
 from shipcosim.results.shown import parts_of
 from shipcosim.results.studies import Calibration, Replay, SeaTrials
+from shipcosim.ships import make_systems
 from shipcosim.ssp import System, SystemStructure, read, with_values
 from shipcosim.staging import check_targets, staged
+from shipcosim.temporary import temporary_folder
 
 if TYPE_CHECKING:
     import xarray
@@ -45,7 +48,7 @@ if TYPE_CHECKING:
 
 WRITING = "writing the page"
 """What the progress function is told at the end, where results are written."""
-EXTENDED = ("extended.ssp", "extended.ssv")
+EXTENDED = ("extended.ssp", "extended.ssv", "craft.toml", "craft_open.ssp")
 CALIBRATED = ("calibrated.ssv", "reference.json")
 """Files that an earlier diagnosis or calibration may have left, and a later one does not always write."""
 Saved = TypeVar("Saved", bound=DiagnosisOfLog | DiagnosisOfLogs | SeaTrials)
@@ -132,6 +135,8 @@ def diagnose(
     out: AnyPath | None = None,
     force: bool = False,
     reference: AnyPath | Reference | None = None,
+    learn: bool = False,
+    length: float | str | None = None,
 ) -> DiagnosisOfLog: ...
 @overload
 def diagnose(
@@ -156,6 +161,8 @@ def diagnose(
     out: AnyPath | None = None,
     force: bool = False,
     reference: AnyPath | Reference | None = None,
+    learn: bool = False,
+    length: float | str | None = None,
 ) -> DiagnosisOfLog | DiagnosisOfLogs:
     """Say what the simulation gets wrong of a log, and why: causes by name, the system with them, what that gains.
 
@@ -178,6 +185,11 @@ def diagnose(
         Replace files of these names there, instead of keeping them in a numbered folder beside it.
     reference : path or Reference, optional
         What `calibrate` left of logs in which the ship was well: the diagnosis then says what has changed since.
+    learn : bool
+        Learn a craft that no file describes from the log, with `length` and without `system`. `out` gets craft.toml
+        and craft_open.ssp too, her file and system with assumed numbers; extended.ssp has the learned ones.
+    length : float or str, optional
+        Her length, such as ``"1.2 m"``. [m]
 
     Returns
     -------
@@ -197,6 +209,12 @@ def diagnose(
     check_inputs(sources, channels, causes)
     if out is not None:
         check_targets(Path(out))
+    if learn or length is not None:
+        check_learning(learn, length, several=several, system=system, reference=reference)
+        return _written(
+            lambda stage: _learned(sources[0], channels, length, progress, stage),
+            *(out, force, progress),
+        )
     ship = ship_of(system)
 
     def result_in(stage: Path | None) -> DiagnosisOfLog | DiagnosisOfLogs:
@@ -209,6 +227,30 @@ def diagnose(
         )
 
     return _written(result_in, out, force, progress)
+
+
+def _learned(
+    source: Any,
+    channels: AnyPath | None,
+    length: float | str | None,
+    progress: Progress | None,
+    stage: Path | None,
+) -> DiagnosisOfLog:
+    """A craft that no file describes, by her length and her log."""
+    from shipcosim.diagnose.pipeline import diagnose
+
+    folder = temporary_folder()
+    text = assumed_craft(source, channels, length)
+    (Path(folder.name) / "craft.toml").write_text(text, encoding="utf-8")
+    fmus = library.fmus()
+    system = make_systems(Path(folder.name) / "craft.toml", folder.name, fmus)[0]
+    ship = read(system, fmus=fmus)
+    if stage is not None:
+        (stage / "craft.toml").write_text(text, encoding="utf-8")
+        ship.write(stage / "craft_open.ssp")
+    found = diagnose(source, ship, channels, None, progress, out=stage, is_assumed=True)
+    # The folder of her system stays as long as what was found.
+    return replace(DiagnosisOfLog(**parts_of(found)), folder=(folder, found.folder))
 
 
 @with_known_keywords
@@ -302,7 +344,10 @@ def _replayed_systems(
 
 
 def _extended_from(system: System, given: str) -> str:
-    """Name of the system that was extended, where it is one of the project's."""
+    """The system that was extended: it lies beside the extended one, or has a name in the project."""
+    beside = Path(given).with_name(f"{system.name}.ssp")
+    if beside.exists():
+        return str(beside)
     if library.named("system", system.name) is None:
         found = f"it extends a system '{system.name}', which has no name here."
         raise error_at(given, found, f"Say which one it was: {named('before')}.")

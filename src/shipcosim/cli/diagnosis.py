@@ -70,7 +70,8 @@ def _sections(diagnosis):
     ]
     # What would have shown matters most where nothing in the ship was found; the page always has it.
     is_found = any(finding.kind == "physics" for finding in diagnosis.findings)
-    silent = ", ".join(title(name).lower() for name in diagnosis.not_testable)
+    names = () if diagnosis.is_assumed else diagnosis.not_testable
+    silent = ", ".join(title(name).lower() for name in names)
     columns = diagnosis.log.measured.attrs.get("column_remarks", ()) if diagnosis.log else ()
     extension = diagnosis.extension
     extended = (
@@ -80,7 +81,7 @@ def _sections(diagnosis):
     return [
         ("Wrong, largest first", list(discrepancy_rows(diagnosis))),
         ("Found", list(finding_rows(diagnosis.findings))),
-        ("Learned of the craft", craft_table(diagnosis.craft).rows),
+        ("Learned of the craft", craft_table(diagnosis.craft)),
         ("This log cannot tell apart", alike),
         ("Errors", list(key_figures(diagnosis))),
         ("This log could not have shown", Text(silent) if silent else None),

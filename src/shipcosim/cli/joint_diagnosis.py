@@ -54,7 +54,7 @@ def _sections(found):
         ("Wrong, largest first", list(discrepancy_rows(found))),
         ("Faults of the data in common", list(fault_rows(found))),
         ("Causes in common", list(cause_rows(found))),
-        ("Learned of the craft", craft_table(found.craft).rows),
+        ("Learned of the craft", craft_table(found.craft)),
         ("Errors by log", Table(errors, head)),
         (
             "Each log by itself: verdict, own faults, causes",

@@ -18,7 +18,12 @@ from shipcosim.diagnose.comparison.measured_force import felt_by
 from shipcosim.diagnose.comparison.missing_loads import MissingLoad, missing_loads
 from shipcosim.diagnose.comparison.thresholds import FEWEST_USABLE, GROSS, PLAIN, RESOLVED
 from shipcosim.diagnose.craft.learn import learn
-from shipcosim.diagnose.craft.learned import LearnedCraft, ratio_alone, ratio_findings
+from shipcosim.diagnose.craft.learned import (
+    HeldOutErrors,
+    LearnedCraft,
+    ratio_alone,
+    ratio_findings,
+)
 from shipcosim.diagnose.craft.logged import craft_log
 from shipcosim.diagnose.finding import Discrepancy, Finding
 from shipcosim.diagnose.hypotheses.cause import Cause
@@ -30,6 +35,10 @@ from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.smoothing import froude_time
 from shipcosim.diagnose.ship.stretches import in_stretches
 from shipcosim.diagnose.ship.surrogate_building import with_surrogates
+
+LEARNED = (
+    "All numbers of the craft were assumed or learned from this log: no cause in her is sought."
+)
 
 
 @dataclass(frozen=True)
@@ -57,6 +66,8 @@ class LogComparison:
         Why no cause can be named from the log, whatever it shows, and what would do.
     missing : tuple of MissingLoad
         What the model lacks by axis, largest first; empty where the log has too few usable rows.
+    is_assumed : bool
+        Whether all numbers of the ship were guesses, so that only the craft is told.
     """
 
     errors: dict[str, list[float]] = field(default_factory=dict)
@@ -69,6 +80,7 @@ class LogComparison:
     remarks: tuple[str, ...] = ()
     obstacles: tuple[str, ...] = ()
     missing: tuple[MissingLoad, ...] = ()
+    is_assumed: bool = False
 
     def told(self, verdict: str) -> tuple[Discrepancy, ...]:
         """Discrepancies for a verdict.
@@ -181,6 +193,49 @@ def _started_with_craft(log: ComparedLog) -> ComparedLog:
     return replace(log, comparison=known, ship=craft.on(log.ship))
 
 
+def learned_alone(log: ComparedLog) -> ComparedLog:
+    """A log of a craft whose numbers were all guesses: she is learned from it, and no cause in her is sought.
+
+    She has to predict better, beyond doubt, than who keeps the velocity that each prediction starts with.
+    """
+    comparison = log.comparison
+    given = comparison.given(log.ship)
+    craft, obstacles = None, comparison.obstacles
+    if not any(gain.is_known for gain in comparison.gains):
+        obstacles = obstacles or (
+            "This log does not teach the craft: her motion does not show what her thrusters did.",
+        )
+    if not obstacles:
+        craft = _taught_by([(log.repaired, comparison)], given)
+        errors = craft.errors if craft else None
+        is_better = errors is not None and errors.beats_steady
+        obstacles = (LEARNED if is_better else _not_learned(errors),)
+        craft = craft if is_better else None
+    told = LogComparison(
+        comparison.errors,
+        labels=comparison.labels,
+        craft=craft,
+        is_started_with=craft is not None,
+        obstacles=obstacles,
+        is_assumed=True,
+    )
+    return replace(log, comparison=told, ship=craft.on(given) if craft else given)
+
+
+def _not_learned(errors: HeldOutErrors | None) -> str:
+    """Why a log does not teach a craft, and what would help."""
+    remedy = (
+        "A longer log with turns and changes of speed helps, and the right length of the craft."
+    )
+    if errors is None:
+        return f"This log does not teach the craft: it is too short, or no ship moves as it shows. {remedy}"
+    return (
+        "This log does not teach the craft: her best numbers predict parts that were held out no better, for sure, than "
+        f"a craft that keeps her velocity. After {errors.horizon:.3g} s they are {errors.after:.2g} m and "
+        f"{errors.after_deg:.2g} deg off, she is {errors.steady:.2g} m and {errors.steady_deg:.2g} deg. {remedy}"
+    )
+
+
 def with_learned_craft(
     comparison: LogComparison, repaired: xarray.Dataset, ship: ShipModel
 ) -> LogComparison:
@@ -206,6 +261,14 @@ def learned_from(
     LearnedCraft or None
         None where logs are too short, or she predicts no better than the file's for sure.
     """
+    craft = _taught_by(logs, ship)
+    return craft if craft and craft.errors and craft.errors.is_better else None
+
+
+def _taught_by(
+    logs: Sequence[tuple[xarray.Dataset, LogComparison]], ship: ShipModel
+) -> LearnedCraft | None:
+    """The craft that logs teach, however well she predicts; None where one of them is too short."""
     # Common horizons for all logs: the median of what suits each.
     each = [comparison.errors["horizon_s"] for _, comparison in logs]
     horizons = [float(horizon) for horizon in np.median(each, axis=0)]
@@ -216,10 +279,7 @@ def learned_from(
         logged = with_surrogates(logged, record, first_motion(record))
         parts.append(craft_log(record, logged, horizons, part, whole=len(logs) > 1))
     usable = [one for one in parts if one is not None]
-    # All logs must be usable, and the result surely better on held-out parts.
-    craft = learn(usable) if len(usable) == len(logs) else None
-    is_better = craft is not None and craft.errors is not None and craft.errors.is_better
-    return craft if is_better else None
+    return learn(usable) if len(usable) == len(logs) else None
 
 
 def _unknown_thrusters(repaired: xarray.Dataset, ship: ShipModel) -> tuple[str, ...]:

@@ -36,7 +36,7 @@ from dataclasses import replace
 from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.checked_log import ReadLog, checked
-from shipcosim.diagnose.compared_log import compared
+from shipcosim.diagnose.compared_log import compared, learned_alone
 from shipcosim.diagnose.explanation.course_search import with_course
 from shipcosim.diagnose.explanation.form import with_learnt_form, with_settled_form
 from shipcosim.diagnose.explanation.identification import Identification, identified
@@ -84,6 +84,7 @@ def diagnose(
     *,
     out: AnyPath | None = None,
     reference: AnyPath | Reference | None = None,
+    is_assumed: bool = False,
 ) -> Diagnosis:
     """Diagnose a log: what the simulation gets wrong, by which causes, the system with them, and what that gains.
 
@@ -104,6 +105,8 @@ def diagnose(
         there as long as the diagnosis if not given.
     reference : path or Reference, optional
         What logs in which the ship was well say of her, as a calibration leaves it: what has changed since is told.
+    is_assumed : bool
+        Whether all numbers of the ship are guesses: they are learned, and no cause in her is sought.
 
     Returns
     -------
@@ -116,7 +119,7 @@ def diagnose(
     """
     say = progress or (lambda *_: None)
     given, reference, out, folder = prepared_system(system, reference, out)
-    found = find_causes(log, given.given, channels, causes, say, reference)
+    found = find_causes(log, given.given, channels, causes, say, reference, is_assumed)
     say("what does the simulation get wrong")
     basis = found.basis
     if basis is None:
@@ -167,6 +170,7 @@ def find_causes(
     causes: AnyPath | None = None,
     progress: Progress | None = None,
     reference: Reference | None = None,
+    is_assumed: bool = False,
 ) -> Diagnosis:
     """Diagnose a log: its faults, and the causes for which the ship does not behave as modelled.
 
@@ -184,6 +188,8 @@ def find_causes(
         Called with what is being done, in words.
     reference : Reference, optional
         As for `diagnose`, read by `read_reference`.
+    is_assumed : bool
+        As for `diagnose`.
 
     Returns
     -------
@@ -200,7 +206,7 @@ def find_causes(
     say("is the log right?")
     with threadpool_limits(1):  # many small matrices: threads would only wait for each other
         read = read_measurements(log, system, channels, causes, reference)
-        return causes_in(problem_of(read), read.ship, say, reference)
+        return causes_in(problem_of(read, is_assumed), read.ship, say, reference)
 
 
 def causes_in(
@@ -235,9 +241,10 @@ def ship_by(system: System, reference: Reference | None) -> ShipModel:
     return ship if reference is None else with_reference(ship, reference)
 
 
-def problem_of(read: ReadLog) -> Identification:
+def problem_of(read: ReadLog, is_assumed: bool = False) -> Identification:
     """A log as an identification problem; what cannot be used is said here, later stages refuse nothing."""
-    return identified(compared(checked(read)))
+    log = compared(checked(read))
+    return identified(learned_alone(log) if is_assumed else log)
 
 
 def verdict_on(problem: Identification, progress: Progress) -> JudgedLog:

@@ -101,6 +101,8 @@ class Diagnosis:
         Why no cause can be named from the log, whatever it shows, and what would do.
     craft : LearnedCraft or None
         What the log teaches of a craft that is not the file's, with what that gains on parts that were held out.
+    is_assumed : bool
+        Whether all numbers of the ship were guesses, so that she is learned and no cause in her is sought.
     basis : JudgedLog or None
         What the findings rest on, for further work: the log, the identification problem, the fits.
     folder : TemporaryDirectory or None
@@ -133,6 +135,7 @@ class Diagnosis:
     healthy: HealthyErrors | None = None
     obstacles: tuple[str, ...] = ()
     craft: LearnedCraft | None = None
+    is_assumed: bool = False
     smallest_visible: tuple[VisibleSize, ...] = field(default=(), repr=False)
     basis: JudgedLog | None = field(default=None, repr=False)
     folder: object = field(default=None, repr=False, compare=False)

@@ -66,6 +66,8 @@ def stated(log: JudgedLog) -> Diagnosis:
         verdict = "named"
     elif verdict == "consistent" and (comparison.craft or (form_of and form_of.numbers)):
         verdict = "form"
+    elif comparison.is_assumed and comparison.craft:
+        verdict = "form"
     return Diagnosis(
         verdict,
         (
@@ -81,6 +83,7 @@ def stated(log: JudgedLog) -> Diagnosis:
         form=form_of,
         obstacles=comparison.obstacles,
         craft=comparison.craft,
+        is_assumed=comparison.is_assumed,
         smallest_visible=tuple(
             one for one in sizes if label_of(one.cause, one.component) not in named
         ),

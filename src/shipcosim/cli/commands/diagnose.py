@@ -9,6 +9,15 @@ from shipcosim.cli.options import AsJson, Channels, Debug, Effects, Force, Junit
 from shipcosim.cli.outcomes.exits import Conclusion
 from shipcosim.cli.start.completion import names_of
 
+Learn = Annotated[
+    bool,
+    typer.Option("--learn", help="Learn a craft that no file describes; needs --length."),
+]
+Length = Annotated[
+    str | None,
+    typer.Option("--length", metavar="LENGTH", help='With --learn: her length, "1.2 m".'),
+]
+
 
 def diagnose(
     data: Annotated[
@@ -30,6 +39,8 @@ def diagnose(
             help="What `shipcosim calibrate` left: say what has changed since.",
         ),
     ] = None,
+    learn: Learn = False,
+    length: Length = None,
     out: Annotated[
         Path | None,
         typer.Option("--out", metavar="DIR", help="Folder of the results. [default: results/DATA]"),
@@ -46,6 +57,9 @@ def diagnose(
     code 0 if simulation and log agree, 1 if something was found. Several logs are weighed together: the ship is common,
     the weather each log's own, and each is predicted by what the others say.
 
+    With --learn the log teaches a craft that has no system: her numbers, what they gain on parts that were held out,
+    and extended.ssp, which runs with them.
+
     Example: shipcosim diagnose log.csv --out results/log
     """
     from shipcosim.calls.arguments import default_folder
@@ -58,7 +72,7 @@ def diagnose(
 
     folder = out or default_folder(data[0])
     asked: dict[str, Any] = {"channels": channels, "causes": effects, "reference": reference}
-    asked |= {"out": folder, "force": force}
+    asked |= {"out": folder, "force": force, "learn": learn, "length": length}
     if len(data) > 1:
         with shown_progress(steps_of(data)) as progress:
             joint = diagnose_logs(data, system, progress=progress, **asked)

@@ -100,11 +100,19 @@ def _errors(
     logs: Sequence[CraftLog], numbers: Sequence[CraftNumber], values: np.ndarray
 ) -> _HeldOut:
     """Errors by part with the values without each, (k, parts + 1, p) array."""
+    # Each prediction uses the numbers fitted without its own part (cross-validation).
+    return _by_part(
+        logs,
+        [log.missed(numbers, np.moveaxis(values[:, log.part_of_start], -1, 0)) for log in logs],
+    )
+
+
+def _by_part(logs: Sequence[CraftLog], missed: Sequence[np.ndarray]) -> _HeldOut:
+    """Errors by part, of what each log's predictions miss at the two longest horizons."""
     squares, counts = [], []
-    for log in logs:
-        # Each prediction uses the numbers fitted without its own part (cross-validation).
+    for log, off in zip(logs, missed, strict=True):
         part = log.part_of_start
-        off = log.missed(numbers, np.moveaxis(values[:, part], -1, 0))[:, :, -2:]
+        off = off[:, :, -2:]
         position = (off[:, :2] ** 2).sum(1)
         each = np.concatenate([position, off[:, 2] ** 2], axis=1)
         for number in np.unique(part):
@@ -182,6 +190,7 @@ def _stated(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> Learne
     rival = fitted(logs, current, range(len(current)))
     in_current = rival.values(rival.solved(range(len(current)))[None])
     alike = _errors(logs, current, in_current)
+    steady = _by_part(logs, [log.missed_if_steady() for log in logs])
     # Jackknife standard deviation of each number.
     spread = _jackknife(each[:-1])
     gains = [float(np.exp(found.gain(k, 0)[0])) for k in range(1, len(tries) - 1)]
@@ -192,29 +201,30 @@ def _stated(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> Learne
             for one, i, gain in zip(numbers, free, gains, strict=True)
             if values[i] != one.given
         ]
-        return learned_craft(logs[0].model, learned, _of_all(found, alike, logs), len(logs))
+        return learned_craft(
+            logs[0].model, learned, _of_all(found, (alike, steady), logs), len(logs)
+        )
 
     if len(logs) == 1:
         return craft(each[-1])
     return replace(craft(each[-1]), each_without=tuple(map(craft, each[:-1])))
 
 
-def _of_all(found: _HeldOut, rival: _HeldOut, logs: Sequence[CraftLog]) -> HeldOutErrors:
-    """Errors on held-out parts: of the learned craft, the first; of the given ship, the last; and in a current."""
+def _of_all(found: _HeldOut, rivals: Sequence[_HeldOut], logs: Sequence[CraftLog]) -> HeldOutErrors:
+    """Errors on held-out parts: of the learned craft, the first; of the given ship, the last; and of two rivals."""
     # Bootstrap over the parts: multinomial counts are draws with repetition.
     weights = found.counts
     draws = np.random.default_rng(1).multinomial(
         weights.size, np.full(weights.size, 1.0 / weights.size), size=DRAWS
     )
     # Position and heading at the longest horizon: errors, and ratios of errors over the draws.
-    squares = np.concatenate([found.squares[[-1, 0]], rival.squares])
+    squares = np.concatenate([found.squares[[0, -1]], *(rival.squares for rival in rivals)])
     sums = squares[:, [1, 3]] * weights
     errors = np.sqrt(sums.sum(-1) / weights.sum())
     drawn = np.sqrt(np.maximum(sums[:, 0] @ draws.T, 1e-30))
-    over_given, over_current = (
-        tuple(map(float, np.quantile(drawn[1] / one, (0.025, 0.975)))) for one in drawn[[0, 2]]
-    )
-    (before, before_turn), (after, after_turn), _ = errors
+    over = [tuple(map(float, np.quantile(drawn[0] / one, (0.025, 0.975)))) for one in drawn[1:]]
+    after, before, _, steady = ((float(place), float(np.degrees(turn))) for place, turn in errors)
     horizon = logs[0].counts[-1] * logs[0].record.step
-    turned = float(np.degrees(before_turn)), float(np.degrees(after_turn))
-    return HeldOutErrors(horizon, float(before), float(after), *turned, over_given, over_current)
+    return HeldOutErrors(
+        horizon, before[0], after[0], before[1], after[1], over[0], over[1], *steady, over[2]
+    )

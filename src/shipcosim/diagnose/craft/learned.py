@@ -79,6 +79,10 @@ class HeldOutErrors:
         95 % interval of after over before, in position, by a bootstrap over the parts.
     current_ci95 : tuple of two floats
         The same over the error of the given ship in a steady current, learned from the same rows.
+    steady, steady_deg : float
+        Errors of who keeps the velocity and the rate of turn that each prediction starts with. [m, deg]
+    steady_ci95 : tuple of two floats
+        The interval of after over that, in position.
     """
 
     horizon: float
@@ -88,12 +92,20 @@ class HeldOutErrors:
     after_deg: float
     ratio_ci95: tuple[float, ...]
     current_ci95: tuple[float, ...]
+    steady: float
+    steady_deg: float
+    steady_ci95: tuple[float, ...]
 
     @property
     def is_better(self) -> bool:
         """Whether the learned craft predicts positions better beyond doubt, in a current too; headings no worse."""
         is_nearer = max(self.ratio_ci95[1], self.current_ci95[1]) < 1.0
         return is_nearer and self.after_deg < NOT_WORSE * self.before_deg
+
+    @property
+    def beats_steady(self) -> bool:
+        """Whether she predicts positions better, beyond doubt, than who keeps her velocity; headings no worse."""
+        return self.steady_ci95[1] < 1.0 and self.after_deg < NOT_WORSE * self.steady_deg
 
     def as_gain(self) -> dict[str, Any]:
         """The entry ``gain`` of diagnosis.json; what is only known beside a fit of fine causes is None."""

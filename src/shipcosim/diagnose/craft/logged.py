@@ -97,8 +97,26 @@ class CraftLog:
         # Predictions of all crafts from the same smoothed states.
         start = true_motion(at_rows(self.seen, rows), self.model)
         start = Motion(*(value + np.zeros((values.shape[1], 1)) for value in start))
-        found = readings(predicted(start, rows, self.record, model, self.counts), model)
-        ends = (rows + np.array(self.counts)[:, None])[:, None]
+        return self._off(readings(predicted(start, rows, self.record, model, self.counts), model))
+
+    def missed_if_steady(self) -> np.ndarray:
+        """The same errors, (1, 3, h, s), of who keeps the velocity and the rate of turn that she starts with."""
+        start = at_rows(self.seen, self.rows)
+        time = self.record.step * np.array(self.counts)[:, None, None]
+        # The way along an arc: the velocity at half of its turn, shorter by the chord over the arc.
+        half = 0.5 * start.r * time
+        way = (
+            (start.u + 1j * start.v)
+            * np.exp(1j * (start.psi + half))
+            * time
+            * np.sinc(half / np.pi)
+        )
+        x, y, psi = start.x + way.real, start.y + way.imag, start.psi + 2.0 * half
+        return self._off(start._replace(x=x, y=y, psi=psi))
+
+    def _off(self, found: Motion) -> np.ndarray:
+        """Predicted less seen place and heading after each horizon, (k, 3, h, s), of (h, k, s) arrays."""
+        ends = (self.rows + np.array(self.counts)[:, None])[:, None]
         # Error of heading wrapped to half a turn, positions north and east.
         turned = np.angle(np.exp(1j * (found.psi - self.seen.psi[ends])))
         off = np.stack([found.x - self.seen.x[ends], found.y - self.seen.y[ends], turned])

@@ -86,7 +86,8 @@ def cause_section(diagnosis: Diagnosis, evidence: Evidence) -> CauseSection:
     ]
     # Causes that this log could not show, and why.
     hidden = diagnosis.form.hides if diagnosis.form else ()
-    weak = not_testable_rows(diagnosis.not_testable, diagnosis.causes, diagnosis.facts, hidden)
+    silent = () if diagnosis.is_assumed else diagnosis.not_testable
+    weak = not_testable_rows(silent, diagnosis.causes, diagnosis.facts, hidden)
     figures = [evidence_figure(evidence)] if evidence.sets else []
     return CauseSection(
         found=_found(diagnosis),
@@ -110,6 +111,8 @@ def cause_section(diagnosis: Diagnosis, evidence: Evidence) -> CauseSection:
 
 
 def _found(diagnosis: Diagnosis) -> str:
+    if diagnosis.is_assumed:
+        return "not sought"
     names = [title_of(f) for f in diagnosis.physics]
     return ", ".join(names) or {
         "consistent": "none",

@@ -97,8 +97,11 @@ def _of_craft(gain: Mapping[str, Any], diagnosis: Diagnosis) -> GainSection:
     """Gain of the craft as the log teaches her, where no cause explains the rest."""
     # Error before, after, and what is left, with its interval.
     after, low, high = f"{gain['horizon_s']:g} s", *map(percent, gain["error_ratio_ci95"])
+    craft = diagnosis.craft
+    steady = craft.errors.steady if craft and craft.errors else None
     rows = (
         ("Simulation as it was", metres(gain["before_m"])),
+        *((("velocity kept", metres(steady)),) if steady is not None else ()),
         ("with what the log teaches", metres(gain["after_m"])),
         ("Error left", f"{percent(gain['error_ratio'])} (95 % sure: {low} to {high})"),
     )
@@ -109,7 +112,7 @@ def _of_craft(gain: Mapping[str, Any], diagnosis: Diagnosis) -> GainSection:
         True,
         after,
         table,
-        numbers=craft_table(diagnosis.craft),
+        numbers=craft_table(craft),
     )
 
 

@@ -5,11 +5,12 @@ from shipcosim.report.theme.numbers import metres, percent, plain
 from shipcosim.report.theme.views import KeyFigure
 
 _GAIN = {
-    "before_m": "position error of the simulation after {:g} s, on rows kept from the fit",
+    "before_m": "position error of the simulation after {} s, on rows kept from the fit",
     "bias_observer_m": "the same with a bias observer, as DP systems have",
     "after_m": "the same with the cause in the model",
     "noise_floor_m": "what a perfect model would still miss",
 }
+_LEARNED = "the same with what the log teaches of the craft"
 
 
 def key_figures(diagnosis: Diagnosis) -> tuple[KeyFigure, ...]:
@@ -35,9 +36,11 @@ def _errors(diagnosis: Diagnosis) -> list[KeyFigure]:
     base = diagnosis.baseline
     # With a gain: each error, then the share of the explainable error with its interval.
     if gain:
+        # The gain of a learned craft has no causes in it.
+        meanings = _GAIN | ({} if diagnosis.is_named else {"after_m": _LEARNED})
         found = [
-            KeyFigure(metres(gain[name]), meaning.format(gain["horizon_s"]))
-            for name, meaning in _GAIN.items()
+            KeyFigure(metres(gain[name]), meaning.format(plain(gain["horizon_s"])))
+            for name, meaning in meanings.items()
             if gain[name] is not None
         ]
         if gain["share_of_explainable"] is not None:
@@ -47,7 +50,7 @@ def _errors(diagnosis: Diagnosis) -> list[KeyFigure]:
         return found
     # Without a gain: the errors of the model as it was.
     if base:
-        after = f"after {base['horizon_s'][-1]:g} s"
+        after = f"after {plain(base['horizon_s'][-1])} s"
         position = metres(base["position_error_m"][-1])
         heading = plain(base["heading_error_deg"][-1], 2)
         return [

@@ -132,6 +132,8 @@ def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[
     data = [told(f) for f in diagnosis.findings if f.kind == "data" and not f.alternatives]
     physics = [told(f, causes) for f in diagnosis.physics]
     log = f" The log itself is faulty: {listed(data)}." if data else ""
+    if diagnosis.is_assumed:
+        return _learned(diagnosis, log)
     # An unknown cause comes first: it puts everything else in doubt.
     if diagnosis.verdict == "unknown":
         return "UNKNOWN", _unknown(diagnosis, physics) + craft_sentence(diagnosis.craft) + log
@@ -177,6 +179,18 @@ def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[
             f"{healthy.largest['heading']:.1f}° after {HORIZONS[-1]:g} s, and she is by less"
         )
     return "CONSISTENT", f"{text}."
+
+
+def _learned(diagnosis: Diagnosis, log: str) -> tuple[str, str]:
+    """What a log teaches of a craft of whom only the length was known."""
+    errors = diagnosis.craft.errors if diagnosis.craft else None
+    if errors is None:
+        return "UNKNOWN", f"{diagnosis.obstacles[0]}{log}"
+    return "LEARNED", (
+        f"The log teaches the craft: after {errors.horizon:.3g} s, on parts that were held out, she is predicted "
+        f"{metres(errors.after)} and {errors.after_deg:.2g}° off. If she kept her velocity, it would be "
+        f"{metres(errors.steady)} and {errors.steady_deg:.2g}°.{log}"
+    )
 
 
 def _form(diagnosis: Diagnosis, form: LoadForm) -> str:
@@ -249,7 +263,8 @@ def craft_sentence(craft: LearnedCraft | None) -> str:
     return (
         f" The craft as {taught} predicts better: after {errors.horizon:.3g} s, on parts that were held "
         f"out, {metres(errors.after)} and {errors.after_deg:.2g}° off instead of {metres(errors.before)} and "
-        f"{errors.before_deg:.2g}°."
+        f"{errors.before_deg:.2g}°. If she kept her velocity, it would be {metres(errors.steady)} and "
+        f"{errors.steady_deg:.2g}°."
     )
 
 
@@ -308,7 +323,12 @@ def next_steps(
     # A manoeuvre that separates causes, better logs, or a look at the missing force.
     if diagnosis.verdict == "ambiguous" and not misread:
         steps.append(manoeuvre_step(diagnosis.prescription))
-    if diagnosis.obstacles:
+    if diagnosis.is_assumed:
+        steps.append(
+            "Write into craft.toml what is known of her, make her systems with shipcosim new ship NAME --from craft.toml, "
+            "and diagnose this and other logs with them."
+        )
+    elif diagnosis.obstacles:
         steps.append(
             "Log as the remarks ask and diagnose again: from this log no cause can be named."
         )

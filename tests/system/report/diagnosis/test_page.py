@@ -121,7 +121,8 @@ def test_gain_is_told_by_condition_with_an_interval_where_there_is_enough(diagno
 
 
 def test_gain_of_a_learned_craft_is_told_over_her_own_time(diagnosis):
-    errors = HeldOutErrors(3.0, 2.0, 0.5, 40.0, 5.0, (0.2, 0.4), (0.2, 0.4))
+    same = (0.2, 0.4)
+    errors = HeldOutErrors(3.0, 2.0, 0.5, 40.0, 5.0, same, same, 1.0, 20.0, same)
     shown = render(replace(diagnosis, gain=errors.as_gain()))
     assert "75 % of the error" in shown and "25 % (95 % sure: 20 % to 40 %)" in shown
     assert "Position error after 3 s" in shown and "bias observer, as DP" not in shown

@@ -1,0 +1,79 @@
+"""A craft that no file describes: what has to be given of her, and the ship file that her log starts from."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from shipcosim.calls.arguments import named
+from shipcosim.errors import error_at
+from shipcosim.ships.assumed import LoggedThruster, assumed_ship_text
+from shipcosim.ships.given import number_in
+from shipcosim.ssp import AnyPath
+
+DRIVES = ("rpm", "azimuth", "thrust")
+"""What a log can have of a thruster."""
+
+
+def check_learning(
+    learn: bool, length: float | str | None, *, several: bool, system: Any, reference: Any
+) -> None:
+    """Raise ShipcosimError where arguments do not go together."""
+    if not learn:
+        remedy = f"It goes with {named('learn')}; a ship that has a system has her length there."
+        raise error_at(named("length"), "nothing is learned.", remedy)
+    if length is None:
+        found = "a log does not tell how long the craft is."
+        raise error_at(named("learn"), found, f'Give {named("length")}, such as "1.2 m".')
+    if system is not None or reference is not None:
+        other = named("reference" if system is None else "system")
+        found = f"with {other}, her numbers are known already."
+        raise error_at(named("learn"), found, "Give one of the two.")
+    if several:
+        remedy = "`shipcosim calibrate` learns from several logs; it takes a system of craft.toml."
+        raise error_at(named("learn"), "there are several logs.", remedy)
+
+
+def assumed_craft(log: Any, channels: AnyPath | None, length: float | str | None) -> str:
+    """Text of the ship file of a craft, from her length and the thrusters that her log has.
+
+    Parameters
+    ----------
+    log : path or xarray.Dataset
+    channels : path, optional
+        Channel file.
+    length : float or str
+        [m]
+
+    Raises
+    ------
+    ShipcosimError
+        A length that is none; a log without a channel of a thruster, or with too few of one.
+    """
+    from shipcosim.diagnose.log.reader import read_log
+
+    try:
+        size = number_in(length, "m")
+    except ValueError as error:
+        raise error_at(named("length"), f"{error}", 'Write "1.2 m".') from None
+    if not isfinite(size) or size <= 0.0:
+        raise error_at(named("length"), f"found {length}.", 'It is greater than 0: "1.2 m".')
+    table = read_log(log, channels)
+    drives: dict[str, set[str]] = {}
+    for name in map(str, table.data_vars):
+        thruster, _, drive = name.rpartition("_")
+        if thruster and drive in DRIVES:
+            drives.setdefault(thruster, set()).add(drive)
+    if not drives:
+        remedy = "Name them NAME_rpm, NAME_azimuth or NAME_thrust, or say in a channel file which they are."
+        raise error_at(
+            f"{table.encoding.get('source', 'log')}", "has no channel of a thruster.", remedy
+        )
+    units = []
+    for name, has in drives.items():
+        speed = np.abs(table[f"{name}_rpm"].values) if "rpm" in has else np.zeros(1)
+        largest = float(np.nanmax(speed, initial=0.0, where=np.isfinite(speed)))
+        units.append(LoggedThruster(name, frozenset(has), largest))
+    return assumed_ship_text(size, units)
