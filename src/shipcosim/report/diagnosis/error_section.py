@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.force_figures import force_figures
 from shipcosim.report.diagnosis.prediction_errors import error_figures, error_table, models_to_show
-from shipcosim.report.theme.numbers import metres, plain
+from shipcosim.report.theme.numbers import metres
 from shipcosim.report.theme.views import Figure, Table
 
 
@@ -40,7 +40,7 @@ def error_section(diagnosis: Diagnosis) -> ErrorSection:
     errors = diagnosis.predictions
     models = models_to_show(("plain", "floor"), diagnosis)
     return ErrorSection(
-        found=f"{metres(base['position_error_m'][-1])} after {plain(base['horizon_s'][-1])} s"
+        found=f"{metres(base['position_error_m'][-1])} after {base['horizon_s'][-1]:.4g} s"
         if base
         else "not measured",
         figures=() if errors is None else tuple(error_figures(errors.overall, models)),

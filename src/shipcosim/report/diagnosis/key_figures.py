@@ -5,7 +5,7 @@ from shipcosim.report.theme.numbers import metres, percent, plain
 from shipcosim.report.theme.views import KeyFigure
 
 _GAIN = {
-    "before_m": "position error of the simulation after {} s, on rows kept from the fit",
+    "before_m": "position error of the simulation after {:.4g} s, on rows kept from the fit",
     "bias_observer_m": "the same with a bias observer, as DP systems have",
     "after_m": "the same with the cause in the model",
     "noise_floor_m": "what a perfect model would still miss",
@@ -39,7 +39,7 @@ def _errors(diagnosis: Diagnosis) -> list[KeyFigure]:
         # The gain of a learned craft has no causes in it.
         meanings = _GAIN | ({} if diagnosis.is_named else {"after_m": _LEARNED})
         found = [
-            KeyFigure(metres(gain[name]), meaning.format(plain(gain["horizon_s"])))
+            KeyFigure(metres(gain[name]), meaning.format(gain["horizon_s"]))
             for name, meaning in meanings.items()
             if gain[name] is not None
         ]
@@ -50,7 +50,7 @@ def _errors(diagnosis: Diagnosis) -> list[KeyFigure]:
         return found
     # Without a gain: the errors of the model as it was.
     if base:
-        after = f"after {plain(base['horizon_s'][-1])} s"
+        after = f"after {base['horizon_s'][-1]:.4g} s"
         position = metres(base["position_error_m"][-1])
         heading = plain(base["heading_error_deg"][-1], 2)
         return [
