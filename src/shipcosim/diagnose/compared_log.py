@@ -127,12 +127,17 @@ class ComparedLog(CheckedLog):
     comparison: LogComparison
 
 
-def compared(log: CheckedLog) -> ComparedLog:
+def compared(log: CheckedLog, is_assumed: bool = False) -> ComparedLog:
     """A checked log held against the simulation: what is grossly wrong is put right before anything else.
 
     Sides and signs of thrusters that the motion contradicts are faults of the log; a common ratio of thrust to inertia
-    that is far off is in the ship from here on.
+    that is far off is in the ship from here on. Where all numbers of the ship are guesses, she is learned instead.
     """
+    found = _compared(log)
+    return _learned_alone(found) if is_assumed else found
+
+
+def _compared(log: CheckedLog) -> ComparedLog:
     length = log.ship.length
     # A long log is reduced to stretches; the ship gets its kind of wind and surrogates of
     # third-party FMUs.
@@ -193,7 +198,7 @@ def _started_with_craft(log: ComparedLog) -> ComparedLog:
     return replace(log, comparison=known, ship=craft.on(log.ship))
 
 
-def learned_alone(log: ComparedLog) -> ComparedLog:
+def _learned_alone(log: ComparedLog) -> ComparedLog:
     """A log of a craft whose numbers were all guesses: she is learned from it, and no cause in her is sought.
 
     She has to predict better, beyond doubt, than who keeps the velocity that each prediction starts with.

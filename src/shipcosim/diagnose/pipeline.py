@@ -36,7 +36,7 @@ from dataclasses import replace
 from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.checked_log import ReadLog, checked
-from shipcosim.diagnose.compared_log import compared, learned_alone
+from shipcosim.diagnose.compared_log import compared
 from shipcosim.diagnose.explanation.course_search import with_course
 from shipcosim.diagnose.explanation.form import with_learnt_form, with_settled_form
 from shipcosim.diagnose.explanation.identification import Identification, identified
@@ -243,8 +243,7 @@ def ship_by(system: System, reference: Reference | None) -> ShipModel:
 
 def problem_of(read: ReadLog, is_assumed: bool = False) -> Identification:
     """A log as an identification problem; what cannot be used is said here, later stages refuse nothing."""
-    log = compared(checked(read))
-    return identified(learned_alone(log) if is_assumed else log)
+    return identified(compared(checked(read), is_assumed))
 
 
 def verdict_on(problem: Identification, progress: Progress) -> JudgedLog:
