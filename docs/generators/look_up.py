@@ -29,7 +29,7 @@ from shipcosim.diagnose.hypotheses.cause import (
 )
 from shipcosim.diagnose.log.channels import Channel
 from shipcosim.diagnose.log.files.file_layout import FileLayout
-from shipcosim.diagnose.log.roles import _THRUSTER, ROLES
+from shipcosim.diagnose.log.roles import ROLES, THRUSTER_ROLES
 from shipcosim.scenario.model import Event, Expectation, Record, Scenario
 from shipcosim.ships import file as ship_file
 from shipcosim.ships.given import Given
@@ -336,7 +336,7 @@ def _unit(metadata: Any) -> str | None:
 def roles() -> str:
     """Channels that a log can have."""
     rows = [[f"`{name}`", role.unit, role.meaning] for name, role in ROLES.items()]
-    rows += [[f"`NAME_{name}`", role.unit, role.meaning] for name, role in _THRUSTER.items()]
+    rows += [[f"`NAME_{name}`", role.unit, role.meaning] for name, role in THRUSTER_ROLES.items()]
     return table(["channel", "unit", "meaning"], rows)
 
 

@@ -13,9 +13,6 @@ from shipcosim.ships.assumed import LoggedThruster, assumed_ship_text
 from shipcosim.ships.given import number_in
 from shipcosim.ssp import AnyPath
 
-DRIVES = ("rpm", "azimuth", "thrust")
-"""What a log can have of a thruster."""
-
 
 def check_learning(
     learn: bool, length: float | str | None, *, several: bool, system: Any, reference: Any
@@ -50,9 +47,10 @@ def assumed_craft(log: Any, channels: AnyPath | None, length: float | str | None
     Raises
     ------
     ShipcosimError
-        A length that is none; a log without a channel of a thruster, or with too few of one.
+        A length that cannot be read; a log without a channel of a thruster, or with too few of one.
     """
     from shipcosim.diagnose.log.reader import read_log
+    from shipcosim.diagnose.log.roles import THRUSTER_ROLES
 
     try:
         size = number_in(length, "m")
@@ -64,7 +62,7 @@ def assumed_craft(log: Any, channels: AnyPath | None, length: float | str | None
     drives: dict[str, set[str]] = {}
     for name in map(str, table.data_vars):
         thruster, _, drive = name.rpartition("_")
-        if thruster and drive in DRIVES:
+        if thruster and drive in THRUSTER_ROLES:
             drives.setdefault(thruster, set()).add(drive)
     if not drives:
         remedy = "Name them NAME_rpm, NAME_azimuth or NAME_thrust, or say in a channel file which they are."

@@ -36,6 +36,7 @@ from shipcosim.diagnose.ship.smoothing import froude_time
 from shipcosim.diagnose.ship.stretches import in_stretches
 from shipcosim.diagnose.ship.surrogate_building import with_surrogates
 
+NOT_SHOWN = "This log does not teach the craft: her motion does not show what her thrusters did."
 LEARNED = (
     "All numbers of the craft were assumed or learned from this log: no cause in her is sought."
 )
@@ -134,7 +135,11 @@ def compared(log: CheckedLog, is_assumed: bool = False) -> ComparedLog:
     that is far off is in the ship from here on. Where all numbers of the ship are guesses, she is learned instead.
     """
     found = _compared(log)
-    return _learned_alone(found) if is_assumed else found
+    if is_assumed:
+        return _learned_alone(found)
+    # A ratio far off would bend every later fit: the ship starts with it.
+    ratio = found.comparison.ratio
+    return _started_with_craft(found) if ratio and ratio.differs(GROSS) else found
 
 
 def _compared(log: CheckedLog) -> ComparedLog:
@@ -171,8 +176,6 @@ def _compared(log: CheckedLog) -> ComparedLog:
     ratio = common_ratio(gains)
     missing = missing_loads(axes, labels.used.commanded, felt, ship, over_none)
     told = tuple(discrepancies_of(labels, gains, ratio, missing))
-    # A ratio far off would bend every later fit: the ship starts with it.
-    gross = ratio is not None and ratio.differs(GROSS)
     comparison = LogComparison(errors, told, tuple(gains), labels, ratio, missing=tuple(missing))
     found = _stage(log, comparison)
     if labels.is_sure and labels.best.changes:
@@ -182,7 +185,7 @@ def _compared(log: CheckedLog) -> ComparedLog:
         faults = (*found.faults, *faults)
         right = in_stretches(repaired(found.log, faults), found.ship.length)
         found = replace(found, faults=faults, repaired=right)
-    return _started_with_craft(found) if gross else found
+    return found
 
 
 def _started_with_craft(log: ComparedLog) -> ComparedLog:
@@ -199,23 +202,12 @@ def _started_with_craft(log: ComparedLog) -> ComparedLog:
 
 
 def _learned_alone(log: ComparedLog) -> ComparedLog:
-    """A log of a craft whose numbers were all guesses: she is learned from it, and no cause in her is sought.
-
-    She has to predict better, beyond doubt, than who keeps the velocity that each prediction starts with.
-    """
+    """A log of a craft whose numbers were all guesses: she is learned from it, and no cause in her is sought."""
     comparison = log.comparison
-    given = comparison.given(log.ship)
     craft, obstacles = None, comparison.obstacles
-    if not any(gain.is_known for gain in comparison.gains):
-        obstacles = obstacles or (
-            "This log does not teach the craft: her motion does not show what her thrusters did.",
-        )
     if not obstacles:
-        craft = _taught_by([(log.repaired, comparison)], given)
-        errors = craft.errors if craft else None
-        is_better = errors is not None and errors.beats_steady
-        obstacles = (LEARNED if is_better else _not_learned(errors),)
-        craft = craft if is_better else None
+        craft, why = _surely_taught(log)
+        obstacles = (why,)
     told = LogComparison(
         comparison.errors,
         labels=comparison.labels,
@@ -224,7 +216,21 @@ def _learned_alone(log: ComparedLog) -> ComparedLog:
         obstacles=obstacles,
         is_assumed=True,
     )
-    return replace(log, comparison=told, ship=craft.on(given) if craft else given)
+    return replace(log, comparison=told, ship=craft.on(log.ship) if craft else log.ship)
+
+
+def _surely_taught(log: ComparedLog) -> tuple[LearnedCraft | None, str]:
+    """The craft that a log teaches, if she surely predicts better than one that keeps her velocity; and what to say.
+
+    A log in which the motion does not show what the thrusters did teaches none.
+    """
+    if not any(gain.is_known for gain in log.comparison.gains):
+        return None, NOT_SHOWN
+    craft = _taught_by([(log.repaired, log.comparison)], log.ship)
+    errors = craft.errors if craft else None
+    if errors is not None and errors.beats_steady:
+        return craft, LEARNED
+    return None, _not_learned(errors)
 
 
 def _not_learned(errors: HeldOutErrors | None) -> str:

@@ -80,7 +80,7 @@ class HeldOutErrors:
     current_ci95 : tuple of two floats
         The same over the error of the given ship in a steady current, learned from the same rows.
     steady, steady_deg : float
-        Errors of who keeps the velocity and the rate of turn that each prediction starts with. [m, deg]
+        Errors of a craft that keeps the velocity and the rate of turn of each start. [m, deg]
     steady_ci95 : tuple of two floats
         The interval of after over that, in position.
     """
@@ -104,7 +104,7 @@ class HeldOutErrors:
 
     @property
     def beats_steady(self) -> bool:
-        """Whether she predicts positions better, beyond doubt, than who keeps her velocity; headings no worse."""
+        """Whether she predicts positions better, beyond doubt, than one that keeps her velocity; headings no worse."""
         return self.steady_ci95[1] < 1.0 and self.after_deg < NOT_WORSE * self.steady_deg
 
     def as_gain(self) -> dict[str, Any]:

@@ -49,11 +49,12 @@ OVER_EARTH = {"speed_over_ground", "course_over_ground", "north_velocity", "east
 """Roles that give surge and sway with the heading, and are none of the log that is read."""
 NAVIGATION = ("north", "east", "heading", "surge", "sway", "yaw_rate")
 
-_THRUSTER = {
+THRUSTER_ROLES = {
     "rpm": Role("rpm", "shaft speed"),
     "azimuth": Role("deg", "direction of positive thrust, clockwise from the bow"),
     "thrust": Role("N", "thrust along the unit's axis"),
 }
+"""Roles of a thruster's channels, by what follows its name and a ``_``."""
 
 
 def role_of(name: str) -> Role | None:
@@ -69,4 +70,4 @@ def role_of(name: str) -> Role | None:
     if name in ROLES:
         return ROLES[name]
     thruster, _, quantity = name.rpartition("_")
-    return _THRUSTER.get(quantity) if thruster else None
+    return THRUSTER_ROLES.get(quantity) if thruster else None
