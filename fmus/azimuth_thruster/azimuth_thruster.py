@@ -21,27 +21,50 @@ class AzimuthThruster(Fmu):
     u_r = Input("m/s", "ship's velocity forward through the water")
     v_r = Input("m/s", "ship's velocity to starboard through the water")
     r = Input("rad/s", "ship's yaw rate")
-    failed = Input("1", "without power: no motor torque, direction kept", start=False)
-    stop = Input("1", "emergency stop: as failed, by command", start=False)
+    failed = Input(
+        "1", "without power: no motor torque, direction kept", start=False, optional=True
+    )
+    stop = Input("1", "emergency stop: as failed, by command", start=False, optional=True)
     full_thrust = Input(
-        "1", "failure: the drive gives its largest thrust ahead, whatever is commanded", start=False
+        "1",
+        "failure: the drive gives its largest thrust ahead, whatever is commanded",
+        start=False,
+        optional=True,
     )
-    rpm_frozen = Input("1", "failure: the drive keeps its last set point of thrust", start=False)
-    azimuth_frozen = Input("1", "failure: the unit keeps its direction", start=False)
-    rpm_reversed = Input("1", "failure: the measured shaft speed has the wrong sign", start=False)
-    azimuth_reversed = Input("1", "failure: the measured direction has the wrong sign", start=False)
+    rpm_frozen = Input(
+        "1", "failure: the drive keeps its last set point of thrust", start=False, optional=True
+    )
+    azimuth_frozen = Input("1", "failure: the unit keeps its direction", start=False, optional=True)
+    rpm_reversed = Input(
+        "1", "failure: the measured shaft speed has the wrong sign", start=False, optional=True
+    )
+    azimuth_reversed = Input(
+        "1", "failure: the measured direction has the wrong sign", start=False, optional=True
+    )
     rate_share = Input(
-        "1", "share that is left of the largest rates of thrust and turning", start=1.0
+        "1",
+        "share that is left of the largest rates of thrust and turning",
+        start=1.0,
+        optional=True,
     )
-    power_limit = Input("W", "power that the switchboard grants the motor", start=PLENTY)
-    rpm_in = Input("rpm", "shaft speed of a replay")
-    azimuth_in = Input("rad", "direction of positive thrust of a replay, clockwise from the bow")
+    power_limit = Input(
+        "W", "power that the switchboard grants the motor", start=PLENTY, optional=True
+    )
+    rpm_in = Input("rpm", "shaft speed of a replay", optional=True)
+    azimuth_in = Input(
+        "rad", "direction of positive thrust of a replay, clockwise from the bow", optional=True
+    )
     neighbour_azimuth = Input(
-        "rad", "direction of positive thrust of the unit whose slipstream can meet this one"
+        "rad",
+        "direction of positive thrust of the unit whose slipstream can meet this one",
+        optional=True,
     )
-    neighbour_rpm = Input("rpm", "shaft speed of that unit")
+    neighbour_rpm = Input("rpm", "shaft speed of that unit", optional=True)
     thrust_share = Input(
-        "1", "share of the thrust that the slipstreams of other units leave", start=1.0
+        "1",
+        "share of the thrust that the slipstreams of other units leave",
+        start=1.0,
+        optional=True,
     )
 
     thrust = Output("N", "delivered thrust along the axis")

@@ -16,11 +16,13 @@ from shipcosim.models.environment.weather import (
 class Environment(Fmu):
     """Wind with gusts, current and waves; the means follow their setpoints at set rates."""
 
-    wind_speed = Input("m/s", "setpoint of the mean wind speed at 10 m", minimum=0.0)
-    wind_from = Input("rad", "setpoint of the direction the wind comes from, clockwise from north")
-    current_speed = Input("m/s", "setpoint of the current's speed", minimum=0.0)
+    wind_speed = Input("m/s", "setpoint of the mean wind speed at 10 m", minimum=0.0, optional=True)
+    wind_from = Input(
+        "rad", "setpoint of the direction the wind comes from, clockwise from north", optional=True
+    )
+    current_speed = Input("m/s", "setpoint of the current's speed", minimum=0.0, optional=True)
     current_to = Input(
-        "rad", "setpoint of the direction the current flows to, clockwise from north"
+        "rad", "setpoint of the direction the current flows to, clockwise from north", optional=True
     )
 
     wind_north = Output("m/s", "velocity of the air towards north, gusts included")

@@ -8,8 +8,8 @@ from shipcosim.models.propulsion.fixed import FixedParameters, fixed_loads
 class FixedThruster(Fmu):
     """Thruster that does not turn: a force as commanded, or quadratic in the speed of its shaft; no drive."""
 
-    thrust_in = Input("N", "commanded force, positive in the thruster's direction")
-    rpm_in = Input("rpm", "speed of the shaft")
+    thrust_in = Input("N", "commanded force, positive in the thruster's direction", optional=True)
+    rpm_in = Input("rpm", "speed of the shaft", optional=True)
     u_r = Input("m/s", "ship's velocity forward through the water")
     v_r = Input("m/s", "ship's velocity to starboard through the water")
     r = Input("rad/s", "ship's yaw rate")

@@ -16,11 +16,11 @@ class MappedThruster(Fmu):
     """Thruster whose thrust over its command was measured, with a lag and a loss under way."""
 
     thrust_cmd = Input("N", "commanded thrust, positive in the thruster's direction")
-    command_in = Input("1", "command of a replay, in the unit of the map")
+    command_in = Input("1", "command of a replay, in the unit of the map", optional=True)
     u_r = Input("m/s", "ship's velocity forward through the water")
     v_r = Input("m/s", "ship's velocity to starboard through the water")
     r = Input("rad/s", "ship's yaw rate")
-    failed = Input("1", "without power: no thrust is wanted", start=False)
+    failed = Input("1", "without power: no thrust is wanted", start=False, optional=True)
 
     thrust = Output("N", "delivered thrust, positive in the thruster's direction")
     command = Output("1", "command in the unit of the map, within its rate")

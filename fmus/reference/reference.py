@@ -8,9 +8,11 @@ from shipcosim.models.control.reference import ReferenceParameters, at_rest, ste
 class Reference(Fmu):
     """Third-order reference of position and heading, with velocities and accelerations."""
 
-    x_set = Input("m", "north position to go to")
-    y_set = Input("m", "east position to go to")
-    psi_set = Input("rad", "heading to go to, clockwise from north; taken the shortest way round")
+    x_set = Input("m", "north position to go to", optional=True)
+    y_set = Input("m", "east position to go to", optional=True)
+    psi_set = Input(
+        "rad", "heading to go to, clockwise from north; taken the shortest way round", optional=True
+    )
 
     x_d = Output("m", "desired north position")
     y_d = Output("m", "desired east position")

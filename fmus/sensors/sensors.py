@@ -26,48 +26,58 @@ class Sensors(Fmu):
         "rad", "direction the apparent wind comes from, clockwise from the bow"
     )
 
-    position_1_lost = Input("1", "position reference 1 drops out", start=False)
-    position_1_frozen = Input("1", "position reference 1 repeats its last value", start=False)
-    position_1_north = Input("m", "offset of position reference 1 towards north")
-    position_1_east = Input("m", "offset of position reference 1 towards east")
+    position_1_lost = Input("1", "position reference 1 drops out", start=False, optional=True)
+    position_1_frozen = Input(
+        "1", "position reference 1 repeats its last value", start=False, optional=True
+    )
+    position_1_north = Input("m", "offset of position reference 1 towards north", optional=True)
+    position_1_east = Input("m", "offset of position reference 1 towards east", optional=True)
     position_1_north_rate = Input(
-        "m/s", "drift of position reference 1 towards north, from when it is not 0"
+        "m/s", "drift of position reference 1 towards north, from when it is not 0", optional=True
     )
     position_1_east_rate = Input(
-        "m/s", "drift of position reference 1 towards east, from when it is not 0"
+        "m/s", "drift of position reference 1 towards east, from when it is not 0", optional=True
     )
-    position_2_lost = Input("1", "position reference 2 drops out", start=False)
-    position_2_frozen = Input("1", "position reference 2 repeats its last value", start=False)
-    position_2_north = Input("m", "offset of position reference 2 towards north")
-    position_2_east = Input("m", "offset of position reference 2 towards east")
+    position_2_lost = Input("1", "position reference 2 drops out", start=False, optional=True)
+    position_2_frozen = Input(
+        "1", "position reference 2 repeats its last value", start=False, optional=True
+    )
+    position_2_north = Input("m", "offset of position reference 2 towards north", optional=True)
+    position_2_east = Input("m", "offset of position reference 2 towards east", optional=True)
     position_2_north_rate = Input(
-        "m/s", "drift of position reference 2 towards north, from when it is not 0"
+        "m/s", "drift of position reference 2 towards north, from when it is not 0", optional=True
     )
     position_2_east_rate = Input(
-        "m/s", "drift of position reference 2 towards east, from when it is not 0"
+        "m/s", "drift of position reference 2 towards east, from when it is not 0", optional=True
     )
-    position_3_lost = Input("1", "position reference 3 drops out", start=False)
-    position_3_frozen = Input("1", "position reference 3 repeats its last value", start=False)
-    position_3_north = Input("m", "offset of position reference 3 towards north")
-    position_3_east = Input("m", "offset of position reference 3 towards east")
+    position_3_lost = Input("1", "position reference 3 drops out", start=False, optional=True)
+    position_3_frozen = Input(
+        "1", "position reference 3 repeats its last value", start=False, optional=True
+    )
+    position_3_north = Input("m", "offset of position reference 3 towards north", optional=True)
+    position_3_east = Input("m", "offset of position reference 3 towards east", optional=True)
     position_3_north_rate = Input(
-        "m/s", "drift of position reference 3 towards north, from when it is not 0"
+        "m/s", "drift of position reference 3 towards north, from when it is not 0", optional=True
     )
     position_3_east_rate = Input(
-        "m/s", "drift of position reference 3 towards east, from when it is not 0"
+        "m/s", "drift of position reference 3 towards east, from when it is not 0", optional=True
     )
-    compass_1_lost = Input("1", "compass 1 drops out", start=False)
-    compass_1_frozen = Input("1", "compass 1 repeats its last value", start=False)
-    compass_1_offset = Input("rad", "offset of compass 1")
-    compass_1_rate = Input("rad/s", "rate at which compass 1 runs off, from when it is not 0")
-    compass_2_lost = Input("1", "compass 2 drops out", start=False)
-    compass_2_frozen = Input("1", "compass 2 repeats its last value", start=False)
-    compass_2_offset = Input("rad", "offset of compass 2")
-    compass_2_rate = Input("rad/s", "rate at which compass 2 runs off, from when it is not 0")
-    wind_lost = Input("1", "the anemometer drops out", start=False)
-    wind_frozen = Input("1", "the anemometer sticks to its last value", start=False)
-    wind_scale = Input("1", "factor on the measured wind speed", start=1.0)
-    wind_offset = Input("rad", "offset of the measured wind direction")
+    compass_1_lost = Input("1", "compass 1 drops out", start=False, optional=True)
+    compass_1_frozen = Input("1", "compass 1 repeats its last value", start=False, optional=True)
+    compass_1_offset = Input("rad", "offset of compass 1", optional=True)
+    compass_1_rate = Input(
+        "rad/s", "rate at which compass 1 runs off, from when it is not 0", optional=True
+    )
+    compass_2_lost = Input("1", "compass 2 drops out", start=False, optional=True)
+    compass_2_frozen = Input("1", "compass 2 repeats its last value", start=False, optional=True)
+    compass_2_offset = Input("rad", "offset of compass 2", optional=True)
+    compass_2_rate = Input(
+        "rad/s", "rate at which compass 2 runs off, from when it is not 0", optional=True
+    )
+    wind_lost = Input("1", "the anemometer drops out", start=False, optional=True)
+    wind_frozen = Input("1", "the anemometer sticks to its last value", start=False, optional=True)
+    wind_scale = Input("1", "factor on the measured wind speed", start=1.0, optional=True)
+    wind_offset = Input("rad", "offset of the measured wind direction", optional=True)
 
     x_1_meas = Output("m", "north position by reference 1")
     y_1_meas = Output("m", "east position by reference 1")

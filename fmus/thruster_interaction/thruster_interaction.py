@@ -16,14 +16,22 @@ class ThrusterInteraction(Fmu):
     rpm_1 = Input("rpm", "its shaft speed, negative astern")
     azimuth_2 = Input("rad", "direction of positive thrust of unit 2, clockwise from the bow")
     rpm_2 = Input("rpm", "its shaft speed, negative astern")
-    azimuth_3 = Input("rad", "direction of positive thrust of unit 3, clockwise from the bow")
-    rpm_3 = Input("rpm", "its shaft speed, negative astern")
-    azimuth_4 = Input("rad", "direction of positive thrust of unit 4, clockwise from the bow")
-    rpm_4 = Input("rpm", "its shaft speed, negative astern")
-    azimuth_5 = Input("rad", "direction of positive thrust of unit 5, clockwise from the bow")
-    rpm_5 = Input("rpm", "its shaft speed, negative astern")
-    azimuth_6 = Input("rad", "direction of positive thrust of unit 6, clockwise from the bow")
-    rpm_6 = Input("rpm", "its shaft speed, negative astern")
+    azimuth_3 = Input(
+        "rad", "direction of positive thrust of unit 3, clockwise from the bow", optional=True
+    )
+    rpm_3 = Input("rpm", "its shaft speed, negative astern", optional=True)
+    azimuth_4 = Input(
+        "rad", "direction of positive thrust of unit 4, clockwise from the bow", optional=True
+    )
+    rpm_4 = Input("rpm", "its shaft speed, negative astern", optional=True)
+    azimuth_5 = Input(
+        "rad", "direction of positive thrust of unit 5, clockwise from the bow", optional=True
+    )
+    rpm_5 = Input("rpm", "its shaft speed, negative astern", optional=True)
+    azimuth_6 = Input(
+        "rad", "direction of positive thrust of unit 6, clockwise from the bow", optional=True
+    )
+    rpm_6 = Input("rpm", "its shaft speed, negative astern", optional=True)
 
     thrust_share_1 = Output("1", "share of its thrust that is left to unit 1", start=1.0)
     thrust_share_2 = Output("1", "share of its thrust that is left to unit 2", start=1.0)

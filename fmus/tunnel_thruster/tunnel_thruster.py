@@ -17,18 +17,27 @@ class TunnelThruster(Fmu):
 
     thrust_cmd = Input("N", "commanded thrust, positive to starboard")
     u_r = Input("m/s", "ship's velocity forward through the water")
-    failed = Input("1", "without power: no motor torque", start=False)
-    stop = Input("1", "emergency stop: as failed, by command", start=False)
+    failed = Input("1", "without power: no motor torque", start=False, optional=True)
+    stop = Input("1", "emergency stop: as failed, by command", start=False, optional=True)
     full_thrust = Input(
         "1",
         "failure: the drive gives its largest thrust to starboard, whatever is commanded",
         start=False,
+        optional=True,
     )
-    rpm_frozen = Input("1", "failure: the drive keeps its last set point of thrust", start=False)
-    rpm_reversed = Input("1", "failure: the measured motor speed has the wrong sign", start=False)
-    rate_share = Input("1", "share that is left of the largest rate of thrust", start=1.0)
-    power_limit = Input("W", "power that the switchboard grants the motor", start=PLENTY)
-    rpm_in = Input("rpm", "motor speed of a replay")
+    rpm_frozen = Input(
+        "1", "failure: the drive keeps its last set point of thrust", start=False, optional=True
+    )
+    rpm_reversed = Input(
+        "1", "failure: the measured motor speed has the wrong sign", start=False, optional=True
+    )
+    rate_share = Input(
+        "1", "share that is left of the largest rate of thrust", start=1.0, optional=True
+    )
+    power_limit = Input(
+        "W", "power that the switchboard grants the motor", start=PLENTY, optional=True
+    )
+    rpm_in = Input("rpm", "motor speed of a replay", optional=True)
 
     thrust = Output("N", "delivered thrust, positive to starboard")
     rpm = Output("rpm", "motor speed, positive pushes to starboard")

@@ -33,6 +33,8 @@ class Variable:
         Bounds; those of parameters are enforced.
     tunable : bool
         A parameter that may change during the run.
+    optional : bool
+        An input that a system may leave unconnected, as one that sets off a failure.
     origin : str
     tolerance : float
         Of a parameter, see `shipcosim.models.core.parameters`.
@@ -52,6 +54,7 @@ class Variable:
         origin: str = "",
         tolerance: float = 0.0,
     ):
+        self.optional = False
         # A type in place of a value: the parameter has no default, and a mark stands for it.
         self.required = start in (float, str)
         if self.required:
@@ -122,12 +125,17 @@ class Signal(Variable):
         start: Value = 0.0,
         minimum: float | None = None,
         maximum: float | None = None,
+        optional: bool = False,
     ):
         super().__init__(start, unit, description, minimum=minimum, maximum=maximum)
+        self.optional = optional
 
 
 class Input(Signal):
-    """Input at every step: ``thrust_cmd = Input("N", "commanded thrust")``."""
+    """Input at every step: ``thrust_cmd = Input("N", "commanded thrust")``.
+
+    With ``optional=True`` a system may leave it unconnected: `shipcosim check` does not remark on it.
+    """
 
     causality = "input"
 

@@ -21,11 +21,13 @@ class NamedThrusters(LoadRequest):
         "W",
         "power that bus A has for thrusters; without any its units count as missing",
         start=PLENTY,
+        optional=True,
     )
     bus_b_power = Input(
         "W",
         "power that bus B has for thrusters; without any its units count as missing",
         start=PLENTY,
+        optional=True,
     )
     port_power = Input("W", "power that the port azimuth takes")
     starboard_power = Input("W", "power that the starboard azimuth takes")

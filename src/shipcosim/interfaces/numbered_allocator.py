@@ -27,12 +27,12 @@ class FullPowers(numbered_units(_fields)):
 class NumberedRequest(LoadRequest):
     """Inputs: the requested load, and which of up to six units can be used."""
 
-    available_1 = Input("1", "unit 1 can be used", start=True)
-    available_2 = Input("1", "unit 2 can be used", start=True)
-    available_3 = Input("1", "unit 3 can be used", start=True)
-    available_4 = Input("1", "unit 4 can be used", start=True)
-    available_5 = Input("1", "unit 5 can be used", start=True)
-    available_6 = Input("1", "unit 6 can be used", start=True)
+    available_1 = Input("1", "unit 1 can be used", start=True, optional=True)
+    available_2 = Input("1", "unit 2 can be used", start=True, optional=True)
+    available_3 = Input("1", "unit 3 can be used", start=True, optional=True)
+    available_4 = Input("1", "unit 4 can be used", start=True, optional=True)
+    available_5 = Input("1", "unit 5 can be used", start=True, optional=True)
+    available_6 = Input("1", "unit 6 can be used", start=True, optional=True)
 
     AVAILABLE = tuple(f"available_{number}" for number in range(1, UNITS + 1))
 

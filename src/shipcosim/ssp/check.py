@@ -72,12 +72,20 @@ def problems_of(system: System | None, findings: Findings) -> list[Problem]:
 
 
 def _unconnected_inputs(system: System) -> list[Problem]:
-    """A remark on the inputs that nothing feeds, one for all; components with the same ones share their names."""
+    """A remark on the inputs that nothing feeds, one for all; components with the same ones share their names.
+
+    Not on those that are meant to be open: the FMU marks them optional, or the system gives them a start value.
+    """
     fed = {connection.target for connection in system.connections}
     owners: dict[tuple[str, ...], list[str]] = {}
     for component in system.components.values():
-        inputs = component.fmu.named("input")
-        free = tuple(name for name in inputs if (component.name, name) not in fed)
+        free = tuple(
+            name
+            for name in component.fmu.named("input")
+            if (component.name, name) not in fed
+            and name not in component.start
+            and not component.variables[name].optional
+        )
         if free:
             owners.setdefault(free, []).append(component.name)
     if not owners:

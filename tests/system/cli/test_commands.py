@@ -348,6 +348,16 @@ def test_check_of_sound_files_finds_nothing(call, project):
     assert done.code == 0 and done.out.count("nothing wrong") == 4
 
 
+def test_check_of_every_shipped_system_has_few_lines_before_its_verdict(call, gunnerus):
+    found = {}
+    for structure in sorted((gunnerus / "ssp").glob("*/SystemStructure.ssd")):
+        *remarks, verdict = call("check", structure.parent).out.splitlines()
+        assert "nothing wrong" in verdict or "no error" in verdict, structure
+        found[structure.parent.name] = len(remarks)
+    assert found["gunnerus_dp"] == 0 and len(found) > 8
+    assert max(found.values()) <= 3, found
+
+
 def test_check_of_an_fmu_lists_its_variables_with_unit_and_start(call, project):
     call("build")
     lines = call("check", "build/fmus/lag.fmu").out.splitlines()

@@ -167,9 +167,9 @@ def _scalar_variable(reference: int, variable: Variable) -> xml.Element:
     if variable.causality == "parameter":
         element.set("initial", "exact")
     xml.SubElement(element, variable.type, value)
-    # Tolerance and "required" are ours: they go into an annotation.
+    # Tolerance, "required" and "optional" are ours: they go into an annotation.
     about = {"tolerance": repr(float(variable.tolerance))} if variable.tolerance else {}
-    about |= {"required": "true"} if variable.required else {}
+    about |= {mark: "true" for mark in ("required", "optional") if getattr(variable, mark)}
     if about:
         tool = xml.SubElement(xml.SubElement(element, "Annotations"), "Tool", name="shipcosim")
         xml.SubElement(tool, "Quantity", about)

@@ -47,15 +47,13 @@ class AlgebraicLoop:
     breaking: list[str]
 
 
-def find_loops(system: System, at_start: bool = False) -> list[AlgebraicLoop]:
-    """Loops of a checked system.
+def find_loops(system: System) -> list[AlgebraicLoop]:
+    """Loops of a checked system in the run; the master says where a start does not settle.
 
     Parameters
     ----------
     system : System
         Flat.
-    at_start : bool
-        Those of the initialisation instead of those of the run.
 
     Returns
     -------
@@ -71,7 +69,7 @@ def find_loops(system: System, at_start: bool = False) -> list[AlgebraicLoop]:
     fmus = {name: system.components[name].fmu for name in circling}
     # Each FMU file is read once, however many components use it.
     read = {
-        fmu.path: feedthrough(fmu, at_start)
+        fmu.path: feedthrough(fmu)
         for fmu in {fmu.path: fmu for fmu in fmus.values()}.values()
     }
     stated = {name: read[fmu.path] for name, fmu in fmus.items()}
@@ -84,28 +82,19 @@ def find_loops(system: System, at_start: bool = False) -> list[AlgebraicLoop]:
 
 
 def loop_problems(system: System) -> Iterator[Problem]:
-    """A remark on each loop of the run, and on each that exists only at the start."""
-    running = find_loops(system)
-    for loop in running:
-        does = "In a run with fixed steps each link delays by one step, and the start is iterated, which may not settle."
-        yield _problem(system, loop, "An algebraic loop", does)
-    # A loop at the start is reported only if it is no part of a loop of the run.
-    seen = [set(loop.components) for loop in running]
-    for loop in find_loops(system, at_start=True):
-        if not any(set(loop.components) <= components for components in seen):
-            does = "The start is iterated, which may not settle; the run is free of it."
-            yield _problem(system, loop, "An algebraic loop at the start", does)
-
-
-def _problem(system: System, loop: AlgebraicLoop, kind: str, does: str) -> Problem:
-    shown = ", ".join(f"{'.'.join(source)} -> {'.'.join(target)}" for source, target in loop.links)
-    found = f"{kind}, outputs that follow inputs at once: {shown}."
-    if loop.others:
-        found += f" {loop.others} more connections belong to it."
-    found += f" {does}"
-    if loop.silent:
-        found += f" These FMUs do not declare it, so it is assumed: {', '.join(loop.silent)}."
-    return Problem(f"{system.file}: {', '.join(loop.components)}", found, _remedy(loop), "remark")
+    """A remark on each loop."""
+    for loop in find_loops(system):
+        shown = ", ".join(
+            f"{'.'.join(source)} -> {'.'.join(target)}" for source, target in loop.links
+        )
+        found = f"An algebraic loop, outputs that follow inputs at once: {shown}."
+        if loop.others:
+            found += f" {loop.others} more connections belong to it."
+        found += " In a run with fixed steps each link delays by one step, and the start is iterated, which may not settle."
+        if loop.silent:
+            found += f" These FMUs do not declare it, so it is assumed: {', '.join(loop.silent)}."
+        where = f"{system.file}: {', '.join(loop.components)}"
+        yield Problem(where, found, _remedy(loop), "remark")
 
 
 def _remedy(loop: AlgebraicLoop) -> str:

@@ -57,9 +57,15 @@ class Settings:
         for wire in tree.wires:
             self.outgoing[wire.source].append(wire)
         self.named = self._names()
+        # Components that could not be read: an error says so, and their values say nothing new.
+        self.unread = tuple(
+            f"{'.'.join(path)}." for path, (_, fmu) in tree.components.items() if fmu is None
+        )
         self.unused: dict[
             str, list[str]
         ] = {}  # of components that run another FMU: parameters which it does not have
+        # Values for elements that do not exist, by file and element: one remark for all of them.
+        self.astray: dict[tuple[str, str], list[str]] = defaultdict(list)
 
     def _names(self) -> dict[str, list[Key]]:
         """Ports by full name; where element names have dots a name may mean several ports."""
@@ -87,6 +93,10 @@ class Settings:
         for name, unused in self.unused.items():
             found = f"{self.tree.swapped[name].name} takes its place and has no {', '.join(dict.fromkeys(unused))}."
             self.findings.remark(f"{WHERE}, {name}", found, "These values are not used.")
+        for (_, element), places in self.astray.items():
+            what = "the value is" if len(places) == 1 else f"its {len(places)} values are"
+            found = f"There is no element '{element}' in this system; {what} not used."
+            self.findings.remark(places[0], found)
 
     def _deliver(
         self, value: Value, flow: Flow, step: Wire | Setting, key: Key, place: str
@@ -186,6 +196,8 @@ class Settings:
         """Report an unknown name: an error if it looks like a slip, else a remark."""
         place = setting.value.place
         name = setting.name
+        if ".".join((*setting.path, name)).startswith(self.unread):
+            return
         # The standard lets a set hold more than is used. A misspelt name must not pass silently,
         # though.
         element, known = self._nearest(setting)
@@ -217,9 +229,7 @@ class Settings:
                 place, f"There is no element '{first}'.", suggestion(first, elements)
             )
         else:
-            self.findings.remark(
-                place, f"There is no element '{first}' in this system; the value is not used."
-            )
+            self.astray[place.partition(", line")[0], first].append(place)
 
     def _nearest(self, setting: Setting) -> tuple[str | None, list[str]]:
         """Element that a name means, by the longest existing path, and the names inside it."""

@@ -46,6 +46,8 @@ class Variable:
         FMI 1.0: it is the negative of the variable with the same value reference.
     required : bool
         A parameter whose start value stands for none, as an FMU of ours says it: the FMU refuses to start with it.
+    optional : bool
+        An input that may stay unconnected, as an FMU of ours says it.
     whole, place : Variable or None, int
         Of an array's element: the array, and which of its values this one is.
     """
@@ -66,6 +68,7 @@ class Variable:
     sizes: tuple[int | str, ...] = ()
     negated: bool = False
     required: bool = False
+    optional: bool = False
     whole: "Variable | None" = None
     place: int = 0
 

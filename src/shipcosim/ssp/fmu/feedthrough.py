@@ -3,7 +3,7 @@
 Reference: FMI 1.0 co-simulation, section 3.3 (DirectDependency); FMI 2.0.4, section 2.2.8; FMI 3.0.1, section 2.4.8.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import lxml.etree as etree
 
@@ -13,16 +13,13 @@ from shipcosim.ssp.xml.archive import read_entry
 from shipcosim.ssp.xml.document import LARGEST_FILE, Findings, local, parse, parts_of
 
 
-def feedthrough(fmu: FmuDescription, at_start: bool = False) -> dict[str, frozenset[str]]:
-    """Inputs that outputs depend on at once.
+def feedthrough(fmu: FmuDescription) -> dict[str, frozenset[str]]:
+    """Inputs that outputs depend on at once in a run.
 
     Parameters
     ----------
     fmu : FmuDescription
         Whose file is read again.
-    at_start : bool
-        During the initialisation, where outputs can follow inputs that they follow a step later in a run. An FMU that
-        says nothing of it is taken by what it says of the run.
 
     Returns
     -------
@@ -46,35 +43,18 @@ def feedthrough(fmu: FmuDescription, at_start: bool = False) -> dict[str, frozen
     if root.get("fmiVersion", "").startswith("3"):
         key = "valueReference"
         names = {part.get("valueReference"): part.get("name") for part in variables}
-        listed = {
-            tag: [part for part in structure if local(part) == tag]
-            for tag in ("Output", "InitialUnknown")
-        }
+        listed = [part for part in structure if local(part) == "Output"]
     else:
         key = "index"
         names = {str(number): part.get("name") for number, part in enumerate(variables, start=1)}
-        groups = {local(group): [part for part in group if local(part)] for group in structure}
-        listed = {
-            "Output": groups.get("Outputs", []),
-            "InitialUnknown": groups.get("InitialUnknowns", []),
-        }
-    # Initialisation has dependencies of its own; outputs not listed there depend on nothing.
-    if not (at_start and listed["InitialUnknown"]):
-        return _stated(listed["Output"], key, names)
-    unknown = {names.get(part.get(key)) for part in listed["InitialUnknown"]}
-    known = {name: frozenset() for name in fmu.named("output") if name not in unknown}
-    return known | _stated(listed["InitialUnknown"], key, names)
-
-
-def _stated(
-    outputs: Iterable[etree._Element], key: str, names: Mapping
-) -> dict[str, frozenset[str]]:
-    """Outputs with an attribute `dependencies`, which may be empty."""
+        outputs = [group for group in structure if local(group) == "Outputs"]
+        listed = [part for group in outputs for part in group if local(part)]
+    # An output with an attribute `dependencies`, which may be empty, states what it follows.
     return {
         names[part.get(key)]: frozenset(
             names[one] for one in part.get("dependencies").split() if one in names
         )
-        for part in outputs
+        for part in listed
         if part.get("dependencies") is not None and part.get(key) in names
     }
 

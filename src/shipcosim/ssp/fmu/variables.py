@@ -131,8 +131,14 @@ def _variable(
         dimensions=dimensions,
         sizes=tuple(_size_as_written(part, sizes) for part in written),
         negated=is_first and is_negated(element),
-        required=any(part.get("required") == "true" for part in element.iter("Quantity")),
+        required=_is_marked(element, "required"),
+        optional=_is_marked(element, "optional"),
     )
+
+
+def _is_marked(element: etree._Element, mark: str) -> bool:
+    """True if the annotation that our own FMUs have at their variables says so."""
+    return any(part.get(mark) == "true" for part in element.iter("Quantity"))
 
 
 def _traits(element: etree._Element, kind: str) -> dict[str, Any]:

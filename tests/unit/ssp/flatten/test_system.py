@@ -2,6 +2,7 @@
 
 import math
 import pickle
+import zipfile
 
 import pytest
 
@@ -238,6 +239,44 @@ def test_all_unconnected_inputs_are_one_remark_with_their_places(shop):
     assert remark.found == "Unconnected inputs keep their start values. a, b: u, w; c: v."
 
 
+BOUND = '<ssd:ParameterBindings><ssd:ParameterBinding source="resources/numbers.ssv"/></ssd:ParameterBindings>'
+
+
+def test_inputs_that_are_meant_to_be_open_are_not_remarked_on(shop, real):
+    path = shop.fmu("two", "input u Real m", "input w Real m", "input failed Boolean")
+    mark = '<Annotations><Tool name="shipcosim"><Quantity optional="true"/></Tool></Annotations>'
+    with zipfile.ZipFile(path) as archive:
+        text = archive.read("modelDescription.xml").decode()
+    head, tail = text.split('name="failed"')
+    text = f'{head}name="failed"{tail.replace("</ScalarVariable>", f"{mark}</ScalarVariable>", 1)}'
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("modelDescription.xml", text)
+    shop.ssv(real("a.w", 1.0))
+    elements = "".join(shop.component(name, "two") for name in "ab")
+    shop.ssd(elements, head=BOUND)
+    (remark,) = [one for one in check_system(shop.folder) if "inputs" in one.found]
+    assert remark.found == "Unconnected inputs keep their start values. a: u; b: u, w."
+
+
+@pytest.mark.parametrize("n_values", (1, 2, 40))
+def test_values_for_an_element_that_does_not_exist_are_one_remark(shop, real, n_values):
+    shop.fmu("one", "parameter k Real")
+    shop.ssv("".join(real(f"crane.k{number}", 1.0) for number in range(n_values)))
+    shop.ssd(shop.component("a", "one"), head=BOUND)
+    (remark,) = [one for one in check_system(shop.folder) if "element" in one.found]
+    assert remark.severity == "remark" and "crane.k0" in remark.where
+    assert "There is no element 'crane'" in remark.found
+    assert n_values == 1 or f"its {n_values} values are not used" in remark.found
+
+
+def test_values_for_a_component_without_its_fmu_say_nothing_beside_its_error(shop, real):
+    shop.ssv("".join(real(f"a.{name}", 1.0) for name in "klm"))
+    shop.ssd(shop.component("a", "lost"), head=BOUND)
+    problems = check_system(shop.folder)
+    assert [one.severity for one in problems] == ["error"]
+    assert "lost.fmu' does not exist" in problems[0].found
+
+
 def test_a_connector_that_is_only_in_the_fmu_is_a_remark(shop):
     shop.fmu("one", "output y Real m")
     shop.fmu("two", "input u Real m")
@@ -442,9 +481,8 @@ def test_a_packed_system_within_a_system_takes_the_bindings_of_its_component(sho
     pack(shop.folder, (), tmp_path / "inner.ssp")
     (tmp_path / "inner.ssp").rename(shop.folder / "resources/inner.ssp")
     shop.ssv(real("b.p", "4"))
-    binding = '<ssd:ParameterBindings><ssd:ParameterBinding source="resources/numbers.ssv"/></ssd:ParameterBindings>'
     source = 'type="application/x-ssp-package" source="resources/inner.ssp"'
-    shop.ssd(f'<ssd:Component name="part" {source}>{binding}</ssd:Component>')
+    shop.ssd(f'<ssd:Component name="part" {source}>{BOUND}</ssd:Component>')
     system = shop.read()
     assert system.components["part.b"].start == {"p": 4.0}
     path = system.components["part.b"].fmu.path
@@ -464,8 +502,7 @@ def test_the_form_of_an_fmu_that_is_asked_for_must_be_there(shop):
 def test_a_path_relative_to_the_working_folder_is_shown_as_given(shop, monkeypatch):
     pair(shop)
     shop.ssv('<ssv:Parameter name="oops"/>')
-    binding = '<ssd:ParameterBindings><ssd:ParameterBinding source="resources/numbers.ssv"/></ssd:ParameterBindings>'
-    text = shop.path.read_text().replace("<ssd:Elements>", binding + "<ssd:Elements>")
+    text = shop.path.read_text().replace("<ssd:Elements>", BOUND + "<ssd:Elements>")
     shop.path.write_text(text)
     monkeypatch.chdir(shop.folder.parent)
     with pytest.raises(ShipcosimError) as caught:
