@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 def print_replay(replay: LogReplay, folder: Path) -> None:
     """The errors, on stdout."""
     from shipcosim.diagnose.validation.tracks import errors_of
-    from shipcosim.report.diagnosis.replay_page import replay_outcome
     from shipcosim.report.diagnosis.track_figures import error_rows
+    from shipcosim.report.replay.page import replay_outcome
 
     console = make_console(soft_wrap=True)
     errors = error_rows(errors_of(replay.tracks))

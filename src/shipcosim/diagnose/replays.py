@@ -25,14 +25,17 @@ class LogReplay:
     ----------
     tracks : Tracks
     faults : tuple of Finding
-        Of the log, put right or cut out before.
+        Of the log, corrected or cut out before.
     remarks : tuple of str
         What the log lacks, and what was handled in it.
+    system : System
+        The plain one.
     """
 
     tracks: Tracks
     faults: tuple[Finding, ...]
     remarks: tuple[str, ...]
+    system: System
 
 
 def replay_log(
@@ -69,7 +72,7 @@ def replay_log(
     seconds = fitting_horizon(record, known.ship) if horizon is None else horizon
     replayed = {name: Replayed(system, _signals(system)) for name, system in systems.items()}
     tracks = tracks_by_systems(record, known.ship, replayed, seconds, progress)
-    return LogReplay(tracks, known.faults, (*record.remarks, *handled(known.log)))
+    return LogReplay(tracks, known.faults, (*record.remarks, *handled(known.log)), first)
 
 
 def _signals(system: System) -> dict[str, str] | None:

@@ -110,7 +110,7 @@ class Replay(SavedResult, LogReplay):
 
     def page(self) -> HtmlPage:
         """The page of the replay, as `shipcosim replay` writes it."""
-        from shipcosim.report.diagnosis.replay_page import render
+        from shipcosim.report.replay.page import render
 
         facts = dict(zip(self.tracks.predicted, self.systems, strict=False))
         facts |= {"Predictions": f"{self.tracks.horizon:.0f} s"}

@@ -48,13 +48,13 @@ def _over_time(
 ) -> Figure:
     # Averages, since the force of a single row is mostly noise.
     traces = []
-    (middle, edges) = _stretches(force["time"].values)
+    (middle, edges) = stretches(force["time"].values)
     # Before in full, after with the cause as dots.
     for name, label, colour in lines:
         if name in force:
-            traces.append(line(label, middle, _averaged(force[name], edges), colour))
+            traces.append(line(label, middle, averaged(force[name], edges), colour))
             if left is not None:
-                after = _averaged(left[name], edges)
+                after = averaged(left[name], edges)
                 traces.append(
                     line(f"{label}, cause in", middle, after, colour, dash="dot", width=1.2)
                 )
@@ -62,14 +62,14 @@ def _over_time(
     return Figure(title, unit, tuple(traces), {"xaxis": TIME, "yaxis": {"zeroline": True}})
 
 
-def _stretches(time: NDArray, most: int = MOST_POINTS) -> tuple[NDArray, NDArray]:
+def stretches(time: NDArray, most: int = MOST_POINTS) -> tuple[NDArray, NDArray]:
     """Middle times of averaged stretches, and their edges in rows."""
     # At most so many points, each the mean of its stretch.
     edges = np.unique(np.linspace(0, time.size, min(most, time.size) + 1).round().astype(int))
     return np.array([time[a:b].mean() for a, b in zip(edges[:-1], edges[1:], strict=True)]), edges
 
 
-def _averaged(series: DataArray, edges: NDArray) -> NDArray:
+def averaged(series: DataArray, edges: NDArray) -> NDArray:
     """Means over stretches of rows. [kN]"""
     values = 1e-3 * series.values
     pairs = zip(edges[:-1], edges[1:], strict=True)

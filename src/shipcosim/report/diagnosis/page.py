@@ -9,13 +9,13 @@ from shipcosim.report.diagnosis.extension_section import ExtensionSection, exten
 from shipcosim.report.diagnosis.gain_section import GainSection, gain_section
 from shipcosim.report.diagnosis.key_figures import key_figures
 from shipcosim.report.diagnosis.log_section import LogSection, log_section
+from shipcosim.report.diagnosis.scene import ScenePage, make_scene
 from shipcosim.report.diagnosis.track_figures import over_time_figures, track_figure
 from shipcosim.report.diagnosis.words import discrepancy_rows, next_steps, outcome
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import (
     Fact,
     Figure,
-    FigurePage,
     Link,
     Table,
     known_facts,
@@ -24,7 +24,7 @@ from shipcosim.ssp import System
 
 
 @dataclass(frozen=True)
-class DiagnosisPage(FigurePage):
+class DiagnosisPage(ScenePage):
     """What the page of a diagnosis shows: figures that matter, what to do next, and five sections.
 
     Attributes
@@ -95,6 +95,7 @@ def _page(diagnosis: Diagnosis) -> DiagnosisPage:
         cause=cause,
         extension=extension,
         gain=gain,
+        scene=make_scene(diagnosis.tracks, diagnosis.force, diagnosis.system),
         figures=figures,
     )
 

@@ -12,9 +12,9 @@ from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
 from shipcosim.diagnose.validation.tracks import errors_of
 from shipcosim.report.calibration import words as calibration
 from shipcosim.report.capability.page import page_of as capability_page
-from shipcosim.report.diagnosis.replay_page import replay_outcome
 from shipcosim.report.diagnosis.track_figures import error_rows
 from shipcosim.report.notebook.card import Block, Card
+from shipcosim.report.replay.page import replay_outcome
 from shipcosim.report.sea_trials import words as sea_trials
 from shipcosim.report.theme.views import Fact, Outcome, Table
 

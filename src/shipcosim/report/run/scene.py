@@ -84,6 +84,8 @@ class Run:
         Tracks that predictors foretold, of the first vessel.
     recipes : dict of str to Recipe
         How the columns follow from signals, for a run that goes on; the page of a finished run has none.
+    colour : str
+        As the style sheet names it; empty: by the run's place among the others.
     """
 
     label: str
@@ -96,6 +98,7 @@ class Run:
     read_as: list[str]
     predicted: list[JsonObject]
     recipes: dict[str, Recipe] = field(default_factory=dict)
+    colour: str = ""
 
 
 @dataclass

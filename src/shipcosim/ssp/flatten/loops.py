@@ -68,10 +68,7 @@ def find_loops(system: System) -> list[AlgebraicLoop]:
     links = [link for link in links if link[0][0] in circling and link[1][0] in circling]
     fmus = {name: system.components[name].fmu for name in circling}
     # Each FMU file is read once, however many components use it.
-    read = {
-        fmu.path: feedthrough(fmu)
-        for fmu in {fmu.path: fmu for fmu in fmus.values()}.values()
-    }
+    read = {fmu.path: feedthrough(fmu) for fmu in {fmu.path: fmu for fmu in fmus.values()}.values()}
     stated = {name: read[fmu.path] for name, fmu in fmus.items()}
     # Graph of variables: connections between components, feedthrough inside them. Each strongly
     # connected part is a loop.

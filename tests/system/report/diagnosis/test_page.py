@@ -142,7 +142,7 @@ def test_texts_from_files_stay_texts(diagnosis):
 
 
 def test_data_of_the_page_is_strict_json(diagnosis, data_of):
-    assert len(data_of(render(diagnosis))) > 20
+    assert len(data_of(render(diagnosis))["figures"]) > 20
 
 
 @pytest.fixture(scope="module")
@@ -172,6 +172,36 @@ def test_page_draws_every_figure_without_error_network_or_sideways_overflow(show
     )
     assert max(rights) <= width
     assert page.collisions() == []
+
+
+@pytest.mark.parametrize("share", (0.1, 0.5, 0.9))
+def test_measured_ship_and_her_simulations_sail_where_the_log_and_the_tracks_have_them(
+    shown, diagnosis, share
+):
+    page, tracks = shown(1280, "light"), diagnosis.tracks
+    time = tracks.measured["time"].values
+    row = int(share * time.size)
+    page.ask("scene.time = arguments[0]; scene.paint()", float(time[row]))
+    rows = page.ask(
+        "return [...document.getElementById('scene-figures').rows].map(r => [...r.cells].map(c => c.textContent))"
+    )
+    head, north = rows[0], next(cells for cells in rows if cells[0] == "North [m]")
+    assert head[1:] == ["measured", *tracks.predicted]
+    assert north[1] == f"{float(tracks.measured['north'][row]):.2f}".replace("-", "−")
+    # What each simulation has at this time: of the prediction that holds it, or nothing after the last one.
+    for text, one in zip(north[2:], tracks.predicted.values(), strict=True):
+        starts = one["start_time"].values
+        segment = np.searchsorted(starts, time[row], side="right") - 1
+        after = time[row] - starts[segment]
+        if after > one["time"].values[-1]:
+            assert text == "–"
+        else:
+            at = np.interp(after, one["time"].values, one["north"].values[segment])
+            assert float(text.replace("−", "-")) == pytest.approx(at, abs=0.02)
+    # The arrow of the missing force has the size of the figure below.
+    assert page.ask("return scene.drawn.filter(d => d.what === 'bar').map(d => d.unit)") == [
+        "missing"
+    ]
 
 
 def test_page_is_small(file):

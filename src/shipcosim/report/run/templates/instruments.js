@@ -91,14 +91,16 @@
   }
 
   function compared(states) {
-    const [a, b] = states.map(scene.of), rows = [["", ...runs.map((run) => run.label), "difference"]];
-    const line = (name, read, digits) => { const v = [a, b].map((s) => (s ? read(s) : NaN)); if (v.some(Number.isFinite)) rows.push([name, plain(v[0], digits), plain(v[1], digits), signed(v[1] - v[0], digits)]); };
+    const found = states.map(scene.of), [a, b] = found, pair = found.length === 2;  // of three ships no difference, but how far each is from the first
+    const rows = [["", ...runs.map((run) => run.label), ...(pair ? ["difference"] : [])]];
+    const line = (name, read, digits) => { const v = found.map((s) => (s ? read(s) : NaN)); if (v.some(Number.isFinite)) rows.push([name, ...v.map((one) => plain(one, digits)), ...(pair ? [signed(v[1] - v[0], digits)] : [])]); };
     line("North [m]", (s) => s.north, 2);
     line("East [m]", (s) => s.east, 2);
-    rows.push(["Heading", a ? three(a.heading) : "–", b ? three(b.heading) : "–", a && b ? `${signed(wrapped(b.heading - a.heading), 1)}°` : "–"]);
+    rows.push(["Heading", ...found.map((s) => (s ? three(s.heading) : "–")), ...(pair ? [a && b ? `${signed(wrapped(b.heading - a.heading), 1)}°` : "–"] : [])]);
     line("Off [m]", (s) => s.off?.distance ?? NaN, 2);
     line("Speed [m/s]", (s) => Math.hypot(s.u, s.v), 2);
-    if (a && b) rows.push(["Apart", `${plain(Math.hypot(a.north - b.north, a.east - b.east))} m`]);
+    const apart = (s) => (a && s ? `${plain(Math.hypot(a.north - s.north, a.east - s.east))} m` : "–");
+    if (pair ? a && b : a) rows.push(["Apart", ...(pair ? [apart(b)] : found.map((s) => (s === a ? "" : apart(s))))]);
     return rows;
   }
 
@@ -125,7 +127,7 @@
     const { context: c, width } = bars(), drawn = [], all = names();
     if (!all.length) return drawn;
     const left = Math.min(90, 0.28 * width), right = width - 104, middle = (left + right) / 2, half = (right - left) / 2;
-    c.textBaseline = "middle"; c.fillStyle = colour("soft"); c.textAlign = "left"; c.fillText("Thrusters", 0, 10);
+    c.textBaseline = "middle"; c.fillStyle = colour("soft"); c.textAlign = "left"; c.fillText(report.data.bars ?? "Thrusters", 0, 10);
     const tall = two ? 12 : 14;
     all.forEach((name, k) => {
       const y = 24 + k * BAR + BAR / 2;
@@ -142,7 +144,7 @@
         c.beginPath(); c.moveTo(middle, top - 2); c.lineTo(middle, top + tall + 2); stroke(c, "soft", 1);
         if (Number.isFinite(command)) { c.beginPath(); c.moveTo(at(command), top + tall / 2); c.lineTo(at(command) - 4, top - 4); c.lineTo(at(command) + 4, top - 4); c.closePath(); c.fillStyle = colour("ink"); c.fill(); }
         c.fillStyle = colour(how === "runs" ? "ink" : how === "limit" ? "caution-text" : "alarm"); c.textAlign = "right";
-        const angle = Number.isFinite(azimuth) && !two ? ` ${whole(azimuth)}` : "";
+        const angle = Number.isFinite(azimuth) && !two ? ` ${plain(wrapped(azimuth), 0)}°` : "";  // from the bow, as in the diagram
         c.fillText(how === "failed" ? "failed" : `${plain(thrust, 1)} kN${angle}`, width, two ? top + tall / 2 : y);
         drawn.push({ what: "bar", run: run.label, unit: unit.name, thrust, command, share: thrust / (thrust < 0 ? -limits[0] : limits[1]), from: middle, to: at(thrust), state: how });
       });

@@ -14,7 +14,7 @@ const scene = (() => {
       const made = report.series(one.made), read = (what) => one[what].map((packed) => report.series(packed, made.length));
       return { ...one, made, north: read("north"), east: read("east"), heading: read("heading"), radius: read("radius") };
     });
-    return { ...run, time, columns, predicted, colour: COLOURS[k] };
+    return { ...run, time, columns, predicted, colour: run.colour || COLOURS[k] };
   });
   const start = Math.min(...runs.map((run) => run.time[0]));
   let end = Math.max(...runs.map((run) => run.time[run.time.length - 1]));

@@ -4,14 +4,15 @@ from dataclasses import dataclass
 
 from shipcosim.diagnose.replays import LogReplay
 from shipcosim.diagnose.validation.tracks import errors_of
+from shipcosim.report.diagnosis.scene import ScenePage, make_scene
 from shipcosim.report.diagnosis.track_figures import error_rows, over_time_figures, track_figure
 from shipcosim.report.theme.numbers import metres
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import FigurePage, Outcome, Table, facts_of
+from shipcosim.report.theme.views import Outcome, Table, facts_of
 
 
 @dataclass(frozen=True)
-class ReplayPage(FigurePage):
+class ReplayPage(ScenePage):
     """What the page of a replay shows.
 
     Attributes
@@ -38,11 +39,12 @@ def render(replay: LogReplay, title: str, facts: dict[str, str]) -> str:
         title=f"Replay of {title}",
         facts=facts_of(facts),
         outcome=replay_outcome(replay),
+        scene=make_scene(tracks, None, replay.system),
         figures=figures,
         errors=error_rows(errors_of(tracks)),
         remarks=(*faults, *replay.remarks),
     )
-    return render_template("diagnosis/templates/replay.html.jinja", page)
+    return render_template("replay/templates/replay.html.jinja", page)
 
 
 def replay_outcome(replay: LogReplay) -> Outcome:
