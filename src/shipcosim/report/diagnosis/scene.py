@@ -86,8 +86,11 @@ def _size(system: System | None) -> dict[str, float]:
     """Length and breadth of the ship, as start values of the scene's vessel. [m]"""
     for component in system.components.values() if system else ():
         known = {name: component.start.get(name) for name in ("length", "breadth")}
-        if all(known.values()):
-            return {f"vessel.{name}": float(value) for name, value in known.items()}
+        size = {
+            f"vessel.{name}": value for name, value in known.items() if isinstance(value, float)
+        }
+        if len(size) == len(known):
+            return size
     return {}
 
 
