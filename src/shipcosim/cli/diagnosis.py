@@ -1,4 +1,4 @@
-"""The command `diagnose`: what was found in a log, on the terminal."""
+"""The command `diagnose`: what was found in a log, or in several, on the terminal."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
     from shipcosim.report.diagnosis.words import outcome
 
     console = make_console(soft_wrap=True)
-    verdict = outcome(diagnosis, diagnosis.causes)
+    verdict = outcome(diagnosis)
     console.print(Text(verdict.word, style=style_of(diagnosis.verdict)), Text(verdict.sentence))
-    say_sections(console, _sections(diagnosis), folder)
+    _say_sections(console, _sections(diagnosis), folder)
 
 
-def say_sections(console: Console, sections: Iterable[tuple[str, Any]], folder: Path) -> None:
+def _say_sections(console: Console, sections: Iterable[tuple[str, Any]], folder: Path) -> None:
     """Sections that have content, a text, a table or its rows, below their headings, and where the page is."""
     from rich.text import Text
 
@@ -54,6 +54,8 @@ def _sections(diagnosis):
     from rich.text import Text
 
     from shipcosim.cli.console import shown_path
+    from shipcosim.diagnose.reference.joint_result import JointDiagnosis
+    from shipcosim.report.diagnosis.by_log import error_table, log_table
     from shipcosim.report.diagnosis.gain_section import craft_table
     from shipcosim.report.diagnosis.key_figures import key_figures
     from shipcosim.report.diagnosis.testability import VISIBLE, visible_rows
@@ -77,14 +79,18 @@ def _sections(diagnosis):
     extended = (
         str(shown_path(extension.ssp)) if extension is not None and extension.values else None
     )
-    steps = "\n".join(f"- {step}" for step in next_steps(diagnosis, extended, diagnosis.causes))
+    steps = "\n".join(f"- {step}" for step in next_steps(diagnosis, extended))
+    several = isinstance(diagnosis, JointDiagnosis)
+    logs = "These logs" if several else "This log"
     return [
         ("Wrong, largest first", list(discrepancy_rows(diagnosis))),
         ("Found", list(finding_rows(diagnosis.findings))),
         ("Learned of the craft", craft_table(diagnosis.craft)),
-        ("This log cannot tell apart", alike),
+        (f"{logs} cannot tell apart", alike),
         ("Errors", list(key_figures(diagnosis))),
-        ("This log could not have shown", Text(silent) if silent else None),
+        ("Errors by log", error_table(diagnosis) if several else None),
+        ("Each log by itself", [row[:4] for row in log_table(diagnosis).rows]),
+        (f"{logs} could not have shown", Text(silent) if silent else None),
         (VISIBLE, None if is_found else list(visible_rows(diagnosis.smallest_visible))),
         ("Columns", Text("\n".join(columns)) if columns else None),
         ("Remarks", Text("\n".join(diagnosis.notes), style="yellow") if diagnosis.notes else None),

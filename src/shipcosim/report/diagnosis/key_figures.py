@@ -5,7 +5,7 @@ from shipcosim.report.theme.numbers import metres, percent, plain
 from shipcosim.report.theme.views import KeyFigure
 
 _GAIN = {
-    "before_m": "position error of the simulation after {:.4g} s, on rows kept from the fit",
+    "before_m": "position error of the simulation after {:.4g} s, {}",
     "bias_observer_m": "the same with a bias observer, as DP systems have",
     "after_m": "the same with the cause in the model",
     "noise_floor_m": "what a perfect model would still miss",
@@ -36,10 +36,15 @@ def _errors(diagnosis: Diagnosis) -> list[KeyFigure]:
     base = diagnosis.baseline
     # With a gain: each error, then the share of the explainable error with its interval.
     if gain:
+        judged = (
+            "over all logs, each by what the others say"
+            if "logs" in gain
+            else "on rows kept from the fit"
+        )
         # The gain of a learned craft has no causes in it.
         meanings = _GAIN | ({} if diagnosis.is_named else {"after_m": _LEARNED})
         found = [
-            KeyFigure(metres(gain[name]), meaning.format(gain["horizon_s"]))
+            KeyFigure(metres(gain[name]), meaning.format(gain["horizon_s"], judged))
             for name, meaning in meanings.items()
             if gain[name] is not None
         ]
