@@ -16,7 +16,8 @@ def print_calibration(ship: CalibratedShip, folder: Path) -> None:
     from rich.text import Text
 
     from shipcosim.cli.console import say_page
-    from shipcosim.report.calibration.words import error_rows, moved_rows, sentence
+    from shipcosim.report.calibration.words import errors_by_log, moved_rows, sentence
+    from shipcosim.report.diagnosis.by_log import error_table
 
     console = make_console(soft_wrap=True)
     refused = bool(ship.refusals)
@@ -25,13 +26,14 @@ def print_calibration(ship: CalibratedShip, folder: Path) -> None:
         end=" ",
     )
     console.print(Text(sentence(ship)))
+    errors = error_table(errors_by_log(ship), "calibrated")
     for heading, lines in (
         ("Why", ship.refusals),
         ("Remarks", ship.remarks),
         ("Moved most", ["  ".join(row) for row in moved_rows(ship)[:8]]),
         (
-            "Position error that remains: as it is, calibrated without this log, with it",
-            ["  ".join(row) for row in error_rows(ship)],
+            "Errors that remain in each log",
+            ["  ".join(row) for row in (errors.head, *errors.rows)] if errors.rows else [],
         ),
     ):
         if lines:

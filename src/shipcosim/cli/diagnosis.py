@@ -88,7 +88,7 @@ def _sections(diagnosis):
         ("Learned of the craft", craft_table(diagnosis.craft)),
         (f"{logs} cannot tell apart", alike),
         ("Errors", list(key_figures(diagnosis))),
-        ("Errors by log", error_table(diagnosis) if several else None),
+        ("Errors by log", error_table(diagnosis.errors) if several else None),
         ("Each log by itself", [row[:4] for row in log_table(diagnosis).rows]),
         (f"{logs} could not have shown", Text(silent) if silent else None),
         (VISIBLE, None if is_found else list(visible_rows(diagnosis.smallest_visible))),

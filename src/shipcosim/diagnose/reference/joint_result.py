@@ -6,8 +6,8 @@ from typing import Any
 from shipcosim.diagnose.craft.learned import LearnedCraft
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.reference.common_findings import RatioOfLogs
-from shipcosim.diagnose.reference.held_out import LogErrors
 from shipcosim.diagnose.reference.joint_verdict import JointVerdict
+from shipcosim.diagnose.reference.log_errors import LogErrors
 from shipcosim.diagnose.result import Diagnosis
 
 

@@ -1,9 +1,11 @@
-"""What each of several logs shows in one diagnosis of all: rows and figures by log."""
+"""What each of several logs shows in a diagnosis or calibration by all: rows and figures by log."""
 
+import math
+from collections.abc import Mapping
 from dataclasses import replace
 
-from shipcosim.diagnose.reference.held_out import LogErrors
 from shipcosim.diagnose.reference.joint_result import JointDiagnosis
+from shipcosim.diagnose.reference.log_errors import LogErrors
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.track_figures import track_figure
 from shipcosim.report.diagnosis.words import listed, title, told
@@ -16,35 +18,57 @@ TRACKS = 3
 """Logs whose tracks are all shown; of more the longest."""
 LOOKS = {
     "before": ("as the system is", palette.VERMILLION),
-    "after": ("with the causes", palette.BLUE),
+    "after": ("{}", palette.BLUE),
+    "floor": ("with this log fitted too", palette.FAINT),
 }
+CHANNELS = {"Position": "m", "Heading": "°"}
+WITH_CAUSES = "with the causes"
 
 
-def error_table(found: JointDiagnosis) -> Table:
-    """Errors by log after each horizon: position and heading, before and after, and which logs sized the causes."""
-    head = ("Log", "After", "Position", "with the causes", "Heading", "with the causes", "")
+def error_table(errors: Mapping[str, LogErrors], after: str = WITH_CAUSES) -> Table:
+    """Errors by log after each horizon, in position and heading, and what the ship after has her numbers from.
+
+    Parameters
+    ----------
+    errors : dict of str to LogErrors
+    after : str
+        How the ship after differs.
+    """
+    looks = _looks(errors, after)
+    head = [f"{channel}, {name}" for channel in CHANNELS for name, _ in looks.values()]
     rows = []
-    for name, one in found.errors.items():
-        after = " / ".join(f"{horizon:.2g}" for horizon in one.horizon)
+    for log, one in errors.items():
+        horizons = " / ".join(f"{horizon:.2g}" for horizon in one.horizon)
         cells = [
-            _by_horizon(of.get(label), unit)
-            for of, unit in ((one.position, " m"), (one.heading, "°"))
-            for label in LOOKS
+            _by_horizon(sizes.get(label), unit)
+            for sizes, unit in zip((one.position, one.heading), CHANNELS.values(), strict=True)
+            for label in looks
         ]
-        rows.append((name, f"{after} s", *cells, _sized_by(one)))
-    return Table(rows, head, (0, 1, 2, 3, 4, 5))
+        rows.append(
+            (log, f"{horizons} s", *cells, _fitted_on(one) if "after" in one.position else "")
+        )
+    return Table(rows, ("Log", "After", *head, "Numbers by"), tuple(range(2 + len(head))))
+
+
+def _looks(errors: Mapping[str, LogErrors], after: str) -> dict[str, tuple[str, str]]:
+    """Name and colour of the ships that any log was predicted by."""
+    found = {label for one in errors.values() for label in one.position}
+    return {
+        label: (name.format(after), colour)
+        for label, (name, colour) in LOOKS.items()
+        if label in found
+    }
 
 
 def _by_horizon(values: tuple[float, ...] | None, unit: str) -> str:
-    return "–" if values is None else " / ".join(plain(value, 2) for value in values) + unit
+    text = "–" if values is None else " / ".join(plain(value, 2) for value in values) + f" {unit}"
+    return text.replace(" °", "°")
 
 
-def _sized_by(one: LogErrors) -> str:
-    """Logs that gave the sizes of the causes in the extended system."""
-    if not one.fitted_on:
-        return "–"
+def _fitted_on(one: LogErrors) -> str:
+    """Logs that the ship after has her numbers from."""
     many = len(one.fitted_on) > 2
-    text = f"sizes by {'all other logs' if many else ', '.join(one.fitted_on)}"
+    text = "all other logs" if many else ", ".join(one.fitted_on) or "its first part"
     own = listed([title(cause).lower() for cause in one.own]) if one.own else ""
     return f"{text}; {own} by this log itself" if own else text
 
@@ -80,28 +104,21 @@ def error_after(found: Diagnosis) -> str:
     return f"{metres(base['position_error_m'][-1])} after {base['horizon_s'][-1]:.4g} s"
 
 
-def error_figures(errors: dict[str, LogErrors]) -> Figures:
-    """Errors after the longest horizon by log, before and after."""
-    if not errors:
-        return ()
-    position = {name: one.position for name, one in errors.items()}
-    heading = {name: one.heading for name, one in errors.items()}
-    after = f"after {next(iter(errors.values())).horizon[-1]:g} s, by log"
-    return (
-        _bars(f"Position error {after}", "m", position),
-        _bars(f"Heading error {after}", "deg", heading),
-    )
-
-
-def _bars(heading: str, unit: str, sizes: dict[str, dict[str, tuple[float, ...]]]) -> Figure:
-    """Bars by log, before and after; none where a log has no after."""
-    traces = []
-    for label, (name, colour) in LOOKS.items():
-        if any(label in one for one in sizes.values()):
-            last = [one.get(label, (float("nan"),))[-1] for one in sizes.values()]
-            traces.append(bars(name, list(sizes), last, colour, unit))
+def error_figures(errors: Mapping[str, LogErrors], after: str = WITH_CAUSES) -> Figures:
+    """Errors after the longest horizon by log, in position and heading; arguments as for `error_table`."""
+    figures = []
     layout = {"barmode": "group", "xaxis": {"type": "category"}}
-    return Figure(heading, unit, tuple(traces), layout)
+    names = [f"{log}, {one.horizon[-1]:.2g} s" for log, one in errors.items()]
+    for channel, unit in CHANNELS.items() if errors else ():
+        traces = []
+        for label, (name, colour) in _looks(errors, after).items():
+            by_label = [
+                one.position if channel == "Position" else one.heading for one in errors.values()
+            ]
+            last = [sizes.get(label, (math.nan,))[-1] for sizes in by_label]
+            traces.append(bars(name, names, last, colour, unit))
+        figures.append(Figure(f"{channel} error by log", unit, tuple(traces), layout))
+    return tuple(figures)
 
 
 def track_figures(errors: dict[str, LogErrors]) -> Figures:

@@ -59,7 +59,7 @@ def error_section(diagnosis: Diagnosis) -> ErrorSection:
     """Section 2 of the page for the template."""
     if isinstance(diagnosis, JointDiagnosis):
         figures = by_log.error_figures(diagnosis.errors)
-        table = by_log.error_table(diagnosis)
+        table = by_log.error_table(diagnosis.errors)
         return ErrorSection(by_log.error_after(diagnosis), figures, table, False, ())
     # Errors of the model as it was; the noise floor only where it is known.
     errors = diagnosis.predictions

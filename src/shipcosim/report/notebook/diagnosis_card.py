@@ -55,7 +55,7 @@ def diagnosis_card(found: Diagnosis) -> Card:
                 "Errors",
                 Table(tuple((figure.value, figure.meaning) for figure in key_figures(found))),
             ),
-            Block("Errors by log", error_table(found) if several else Table(())),
+            Block("Errors by log", error_table(found.errors) if several else Table(())),
             Block("Each log by itself", log_table(found)),
             Block("Remarks", lines=found.notes),
             Block("What to do next", lines=tuple(steps)),
