@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from shipcosim.cli.tables import print_table
 from shipcosim.cli.terminal import make_console
 
 if TYPE_CHECKING:
@@ -31,14 +32,14 @@ def print_calibration(ship: CalibratedShip, folder: Path) -> None:
         ("Why", ship.refusals),
         ("Remarks", ship.remarks),
         ("Moved most", ["  ".join(row) for row in moved_rows(ship)[:8]]),
-        (
-            "Errors that remain in each log",
-            ["  ".join(row) for row in (errors.head, *errors.rows)] if errors.rows else [],
-        ),
     ):
         if lines:
             console.print()
             console.print(Text(heading, style="bold"))
             console.print(Text("\n".join(lines)))
+    if errors.rows:
+        console.print()
+        console.print(Text("Errors by log", style="bold"))
+        print_table(console, errors.rows, errors.head)
     console.print()
     say_page(console, folder / "report.html")

@@ -8,9 +8,9 @@ from shipcosim.report.diagnosis.by_log import track_figures
 from shipcosim.report.diagnosis.cause_section import CauseSection, cause_section
 from shipcosim.report.diagnosis.extension_section import ExtensionSection, extension_section
 from shipcosim.report.diagnosis.gain_section import GainSection, gain_section
-from shipcosim.report.diagnosis.key_figures import key_figures
 from shipcosim.report.diagnosis.log_section import LogSection, log_section
 from shipcosim.report.diagnosis.prediction_errors import ErrorSection, error_section
+from shipcosim.report.diagnosis.summary import key_figures
 from shipcosim.report.diagnosis.track_figures import over_time_figures, track_figure
 from shipcosim.report.diagnosis.words import discrepancy_rows, facts_of, next_steps, outcome
 from shipcosim.report.theme.pages import render as render_template

@@ -13,7 +13,6 @@ BY_FORM = (
     "loads of another form than the model's would do the same, and hers have another form; a log of the ship when she "
     "was well, as a reference, tells"
 )
-VISIBLE = "Smallest fault that would have shown, in 9 of 10 cases"
 UNITS = {
     "speed": "m/s",
     "surge": "m/s",

@@ -15,9 +15,9 @@ from shipcosim.report.capability.page import page_of as capability_page
 from shipcosim.report.diagnosis.by_log import error_table
 from shipcosim.report.diagnosis.replay_page import replay_outcome
 from shipcosim.report.diagnosis.track_figures import error_rows
-from shipcosim.report.notebook.card import Block, Card
+from shipcosim.report.notebook.card import Card
 from shipcosim.report.sea_trials import words as sea_trials
-from shipcosim.report.theme.views import Fact, Outcome, Table
+from shipcosim.report.theme.views import Block, Fact, Outcome, Table
 
 MOST_ROWS = 12
 

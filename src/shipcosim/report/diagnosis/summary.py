@@ -1,8 +1,13 @@
-"""Key figures of a diagnosis: certainty, and errors before and after."""
+"""A diagnosis in short: its key figures, and what terminal and notebook show of it."""
 
+from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 from shipcosim.diagnose.result import Diagnosis
+from shipcosim.report.diagnosis.by_log import error_table, log_table
+from shipcosim.report.diagnosis.gain_section import craft_table
+from shipcosim.report.diagnosis.testability import visible_rows
+from shipcosim.report.diagnosis.words import discrepancy_rows, finding_rows, title, title_of
 from shipcosim.report.theme.numbers import metres, percent, plain
-from shipcosim.report.theme.views import KeyFigure
+from shipcosim.report.theme.views import Block, KeyFigure, Table
 
 _GAIN = {
     "before_m": "position error of the simulation after {:.4g} s, {}",
@@ -63,3 +68,33 @@ def _errors(diagnosis: Diagnosis) -> list[KeyFigure]:
             KeyFigure(f"{heading}°", f"heading error {after}"),
         ]
     return []
+
+
+def summary(diagnosis: Diagnosis) -> tuple[Block, ...]:
+    """What a diagnosis found, in tables and lines; of several logs also by log."""
+    several = isinstance(diagnosis, JointDiagnosis)
+    logs = "These logs" if several else "This log"
+    alike = [(title_of(c), percent(c.probability)) for c in diagnosis.indistinguishable]
+    found = Table(list(finding_rows(diagnosis.findings)), ("", "probability", "", "size"))
+    unseen = () if diagnosis.is_assumed else diagnosis.not_testable
+    silent = (", ".join(map(title, unseen)),) if unseen else ()
+    visible = Table(visible_rows(diagnosis.smallest_visible))
+    columns = diagnosis.log.measured.attrs.get("column_remarks", ()) if diagnosis.log else ()
+    return (
+        Block("Wrong, largest first", Table(discrepancy_rows(diagnosis))),
+        Block("Found", found),
+        Block("Learned of the craft", craft_table(diagnosis.craft)),
+        Block(f"{logs} cannot tell apart", Table(alike)),
+        Block("Errors", Table(key_figures(diagnosis))),
+        Block("Errors by log", error_table(diagnosis.errors) if several else Table(())),
+        Block("Each log by itself", log_table(diagnosis)),
+        Block(f"{logs} could not have shown", lines=silent, folded=True),
+        # What would have shown matters most where nothing in the ship was found.
+        Block(
+            "Smallest fault that would have shown, in 9 of 10 cases",
+            visible,
+            folded=bool(diagnosis.physics),
+        ),
+        Block("Columns", lines=tuple(columns), folded=True),
+        Block("Remarks", lines=diagnosis.notes),
+    )
