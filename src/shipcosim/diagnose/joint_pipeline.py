@@ -294,7 +294,7 @@ def _together(
         craft = learned_from(list(stages.values()), ship)
     basis = JointBasis(verdict, ratios, has_ratio)
     faults = {name: tuple(faults) for name, faults in relabelled.items()}
-    return _stated(replace(found, together=basis, relabelled=faults, craft=craft))
+    return _stated(replace(found, together=basis, relabelled=faults, craft=craft), basis)
 
 
 def _relabelled(
@@ -326,11 +326,8 @@ def _about_common(
     return with_learnt_form(corrected(problem_of(read)))
 
 
-def _stated(found: JointDiagnosis) -> JointDiagnosis:
+def _stated(found: JointDiagnosis, basis: JointBasis) -> JointDiagnosis:
     """What is said of the logs together."""
-    basis = found.together
-    if basis is None:
-        return found
     judgement = basis.verdict.judgement
     ratios = basis.ratios
     # Ratios that contradict each other, one of them far off, keep any common cause from being

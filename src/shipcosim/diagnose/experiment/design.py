@@ -231,7 +231,11 @@ def separations(
         NaN where the ship does not get through. [nats]
     """
     # Each fit's ship sails every manoeuvre in turn as the truth.
-    models = [_fitted_ship(fit) for fit in fits]
+    # She has the fit's causes, and all known numbers at their most likely.
+    models = [
+        _in_true_wind(fit.model.with_values(moved(fit.columns, fit.left, fit.model.get)))
+        for fit in fits
+    ]
     motions, records, through = _simulated(problem, models, manoeuvres)
     noise = sized(problem.noise, step_for(problem.model) / problem.record.step)
     known = _shared_columns(fits)
@@ -260,26 +264,18 @@ def _in_true_wind(model: ShipModel) -> ShipModel:
     return replace(model, wind_is_true=True)
 
 
-def _fitted_ship(fit: Fit) -> ShipModel:
-    """The ship of a fit: its causes, and all known numbers at their most likely."""
-    # Shift all numbers of the fit by its posterior mean.
-    return _in_true_wind(fit.model.with_values(moved(fit.columns, fit.left, fit.model.get)))
-
-
 def _shared_columns(fits):
     """Columns of known numbers of all fits, each once."""
     found = {}
     for fit in fits:
         for column in fit.columns:
             found.setdefault(_key(column), column)
-    own = {_key(c) for fit in fits for c in _own(fit)}
+    own = set()
+    for fit in fits:
+        turned = paths_of(fit.hypotheses)
+        turned |= {path for one in fit.hypotheses for path in one.definition.companions}
+        own |= {_key(column) for column in fit.columns if column.gives_way(turned)}
     return [column for key, column in found.items() if key not in own]
-
-
-def _own(fit):
-    turned = paths_of(fit.hypotheses)
-    turned |= {path for s in fit.hypotheses for path in s.definition.companions}
-    return [column for column in fit.columns if column.gives_way(turned)]
 
 
 def _key(column):

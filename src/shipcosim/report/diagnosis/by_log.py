@@ -70,7 +70,9 @@ def _fitted_on(one: LogErrors) -> str:
     many = len(one.fitted_on) > 2
     text = "all other logs" if many else ", ".join(one.fitted_on) or "its first part"
     own = listed([title(cause).lower() for cause in one.own]) if one.own else ""
-    return f"{text}; {own} by this log itself" if own else text
+    if not own:
+        return text
+    return f"{text}; {own} by this log itself" if one.fitted_on else f"{own} by this log itself"
 
 
 def log_table(found: Diagnosis) -> Table:

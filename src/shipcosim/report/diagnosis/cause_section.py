@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from shipcosim.diagnose.explanation.summary import Evidence
-from shipcosim.diagnose.finding import Candidate, Finding
+from shipcosim.diagnose.finding import Candidate
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.cause_figures import (
     course_figures,
@@ -141,14 +141,10 @@ def _estimates(diagnosis: Diagnosis) -> Table:
     for finding in physics:
         alone = [(f"{log} alone", one, "") for log, one in by_log(finding)]
         for name, one, sure in ((title_of(finding), finding, percent(finding.probability)), *alone):
-            rows += [(name, *row, sure) for row in _amounts(one)]
+            for parameter, value, std, unit in estimate_rows(one):
+                rows.append((name, parameter, value, f"± {std}", unit, sure))
     head = ("Cause", "Parameter", "Estimate", "Std", "Unit", "Probability")
     return Table(rows, head, tight=(1, 2, 3, 4, 5))
-
-
-def _amounts(finding: Finding) -> list[tuple[str, str, str, str]]:
-    """Each parameter with its estimate, standard deviation and unit."""
-    return [(name, value, f"± {std}", unit) for name, value, std, unit in estimate_rows(finding)]
 
 
 def _gains(evidence: Evidence) -> Table:

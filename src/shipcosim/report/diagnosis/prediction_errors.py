@@ -11,7 +11,7 @@ from shipcosim.report.diagnosis import by_log
 from shipcosim.report.diagnosis.force_figures import force_figures
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import TIME, bars, line
-from shipcosim.report.theme.numbers import plain
+from shipcosim.report.theme.numbers import percent, plain
 from shipcosim.report.theme.views import Figure, Table
 
 MODELS = {
@@ -149,7 +149,7 @@ def removed(entry: Mapping[str, Any] | None) -> str:
         if entry["ci95"]
         else ""
     )
-    return f"{100 * entry['share_of_explainable']:.0f} %{sure}"
+    return percent(entry["share_of_explainable"]) + sure
 
 
 def gain_figures(errors: PredictionErrors, models: Sequence[str]) -> list[Figure]:

@@ -430,7 +430,7 @@ def finding_rows(findings: Iterable[Finding]) -> Iterator[tuple[str, ...]]:
     """Rows of texts: cause, certainty, and each parameter's size; for a fault, its place."""
     for finding in findings:
         name = title_of(finding)
-        sure = f"{100 * finding.probability:.0f} %"
+        sure = percent(finding.probability)
         # Cause and certainty only in the first row of a finding.
         rows = size_rows(finding) if finding.kind == "physics" else []
         for parameter, size in rows:
