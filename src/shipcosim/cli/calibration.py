@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from shipcosim.cli.tables import print_table
 from shipcosim.cli.terminal import make_console
 
 if TYPE_CHECKING:
@@ -16,7 +17,8 @@ def print_calibration(ship: CalibratedShip, folder: Path) -> None:
     from rich.text import Text
 
     from shipcosim.cli.console import say_page
-    from shipcosim.report.calibration.words import error_rows, moved_rows, sentence
+    from shipcosim.report.calibration.words import errors_by_log, moved_rows, sentence
+    from shipcosim.report.diagnosis.by_log import error_table
 
     console = make_console(soft_wrap=True)
     refused = bool(ship.refusals)
@@ -25,18 +27,19 @@ def print_calibration(ship: CalibratedShip, folder: Path) -> None:
         end=" ",
     )
     console.print(Text(sentence(ship)))
+    errors = error_table(errors_by_log(ship), "calibrated")
     for heading, lines in (
         ("Why", ship.refusals),
         ("Remarks", ship.remarks),
         ("Moved most", ["  ".join(row) for row in moved_rows(ship)[:8]]),
-        (
-            "Position error that remains: as it is, calibrated without this log, with it",
-            ["  ".join(row) for row in error_rows(ship)],
-        ),
     ):
         if lines:
             console.print()
             console.print(Text(heading, style="bold"))
             console.print(Text("\n".join(lines)))
+    if errors.rows:
+        console.print()
+        console.print(Text("Errors by log", style="bold"))
+        print_table(console, errors.rows, errors.head)
     console.print()
     say_page(console, folder / "report.html")

@@ -32,10 +32,11 @@ from shipcosim.diagnose.reference.calibration import (
 )
 from shipcosim.diagnose.reference.joint_fit import JointFit
 from shipcosim.diagnose.reference.learned_reference import learned_errors, learned_reference
+from shipcosim.diagnose.reference.log_errors import LogErrors
 from shipcosim.diagnose.reference.parameter_set import FILE as SET
 from shipcosim.diagnose.reference.parameter_set import write_parameter_set
 from shipcosim.diagnose.reference.reference import FILE, KnownNumber, Reference, ReferenceLog
-from shipcosim.diagnose.reference.remaining_errors import RemainingErrors, remaining_errors
+from shipcosim.diagnose.reference.remaining_errors import remaining_errors
 from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_of_day
 from shipcosim.diagnose.reference.thresholds import AT_EDGE, BEYOND, NOT_WELL
 from shipcosim.errors import Problem, ShipcosimError, error_at
@@ -61,7 +62,7 @@ class CalibratedLog:
         Of the log, repaired before.
     weather : dict of str to float
         Current and forces of its day that were fitted beside the ship: numbers in SI, by ``place.name``.
-    errors : RemainingErrors or None
+    errors : LogErrors or None
         Of the calibrated ship; None where no stretch of the log is whole.
     unmodelled : dict of str to float
         Gain of unmodelled errors that are left, by kind. [nats]
@@ -70,7 +71,7 @@ class CalibratedLog:
     name: str
     faults: tuple[Finding, ...]
     weather: dict[str, float]
-    errors: RemainingErrors | None
+    errors: LogErrors | None
     unmodelled: dict[str, float]
 
 
@@ -330,8 +331,8 @@ def _reasons_not_to_trust(
     errors = [log.errors for log in logs if log.errors]
     if not errors:
         return found
-    before = root_mean_square(np.array([one.before[-1] for one in errors]))
-    after = root_mean_square(np.array([one.after[-1] for one in errors]))
+    before = root_mean_square(np.array([one.position["before"][-1] for one in errors]))
+    after = root_mean_square(np.array([one.position["after"][-1] for one in errors]))
     if after > before:
         found.append(
             f"On rows that it was not fitted on, the calibrated ship misses the log by {after:.2g} m, the ship as the "

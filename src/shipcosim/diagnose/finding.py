@@ -70,6 +70,12 @@ class Finding:
         of them, and nothing was put right.
     at_reference : dict of str to Estimate
         What the parameters were when a reference was made; empty without one, and of what it does not hold.
+    logs : tuple of str
+        Of several logs, the names of those that show it; empty for a single log.
+    put_right : tuple of str
+        Names of those that do not show it, and are corrected all the same.
+    by_log : dict of str to dict
+        By name of the log: the parameters by that log alone.
     """
 
     cause: str
@@ -84,6 +90,9 @@ class Finding:
     note: str = ""
     alternatives: tuple[str, ...] = ()
     at_reference: dict[str, ParameterEstimate] = field(default_factory=dict)
+    logs: tuple[str, ...] = ()
+    put_right: tuple[str, ...] = ()
+    by_log: dict[str, dict[str, ParameterEstimate]] = field(default_factory=dict)
 
     @property
     def label(self) -> str:
@@ -116,6 +125,12 @@ class Finding:
             entry["note"] = self.note
         if self.alternatives:
             entry["alternatives"] = list(self.alternatives)
+        if self.logs:
+            entry["logs"] = list(self.logs)
+        if self.put_right:
+            entry["put_right_in"] = list(self.put_right)
+        if self.by_log:
+            entry["by_log"] = {name: estimates_as_json(own) for name, own in self.by_log.items()}
         return entry
 
 
@@ -174,6 +189,8 @@ class Discrepancy:
     unit : str
     share : float
         Of the error that it explains.
+    logs : tuple of str
+        Of several logs, the names of those that show it; empty for a single log.
     """
 
     what: str
@@ -183,3 +200,11 @@ class Discrepancy:
     std: float
     unit: str
     share: float
+    logs: tuple[str, ...] = ()
+
+    def as_json(self) -> dict:
+        """The discrepancy as an entry of diagnosis.json; what does not apply is left out."""
+        entry = asdict(self)
+        if not self.logs:
+            del entry["logs"]
+        return entry

@@ -4,7 +4,7 @@ From the logs to their common verdict, `find_common_causes`:
 
     problems_of        Identification  each log as an identification problem
     causes_in          Diagnosis       each log by itself
-    common_faults      Shared          faults of the data that the logs have in common
+    common_faults      Finding         faults of the data that the logs have in common
     ratio_of_logs      RatioOfLogs     one ratio of thrust to inertia, unless the logs contradict each other
     about_common       Identification  each log with what is common put right, where it was not by itself
     judged_jointly     JointVerdict    causes by the evidence of all logs
@@ -25,13 +25,14 @@ from shipcosim.diagnose.compared_log import compared, learned_from
 from shipcosim.diagnose.comparison.gains import CommonRatio
 from shipcosim.diagnose.comparison.thresholds import GROSS, PLAIN
 from shipcosim.diagnose.craft.learned import ratio_findings
-from shipcosim.diagnose.experiment.design import ExperimentDesign, design_experiment
+from shipcosim.diagnose.experiment.design import ExperimentDesign, design_experiment, manoeuvre_of
 from shipcosim.diagnose.experiment.testability import not_testable, visible_sizes
 from shipcosim.diagnose.explanation.form import of_scale, with_learnt_form
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.extension.extended_system import extended_by
 from shipcosim.diagnose.finding import Finding, ParameterEstimate, label_of
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
+from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.log.runs import LogSource
 from shipcosim.diagnose.log_faults.corrections import corrected
 from shipcosim.diagnose.pipeline import (
@@ -44,7 +45,6 @@ from shipcosim.diagnose.pipeline import (
 )
 from shipcosim.diagnose.reference.change_since_reference import with_sizes_at_reference
 from shipcosim.diagnose.reference.common_findings import (
-    Shared,
     common_discrepancies,
     common_faults,
     is_of_thrusters,
@@ -53,13 +53,15 @@ from shipcosim.diagnose.reference.common_findings import (
     with_right_labels,
 )
 from shipcosim.diagnose.reference.held_out import (
+    SizesOfLogs,
     errors_by_log,
     sizes_by_log,
     sizes_without,
     weather_of,
 )
 from shipcosim.diagnose.reference.joint_fit import JointFit
-from shipcosim.diagnose.reference.joint_result import JointBasis, JointDiagnosis, SizesOfLogs
+from shipcosim.diagnose.reference.joint_gain import joint_baseline, joint_gain
+from shipcosim.diagnose.reference.joint_result import JointBasis, JointDiagnosis
 from shipcosim.diagnose.reference.joint_verdict import joint_excitation, judged_jointly
 from shipcosim.diagnose.reference.reference import Reference
 from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log
@@ -116,15 +118,15 @@ def diagnose_jointly(
     found = find_common_causes(logs, given.given, channels, causes, say, reference)
     say("extending the system")
     # Causes of the ship go into the system, those of one log's weather do not.
-    of_ship = [shared.what for shared in found.findings if shared.what.component not in found.logs]
+    of_ship = [one for one in found.findings if one.component not in found.logs]
     about = {"source": ", ".join(found.logs), "sha256": ""}
     extended = extended_by(given, of_ship, about, found.causes, out, found.craft)
     errors = {}
     # Each log is predicted with what the other logs say, so that it does not judge its own fit.
-    if found.basis:
+    if found.together:
         errors = errors_by_log(
-            found.basis.verdict.fit,
-            found.basis.verdict.logs,
+            found.together.verdict.fit,
+            found.together.verdict.logs,
             given,
             lambda name: _findings_without(found, name),
             found.crafts_without,
@@ -139,8 +141,11 @@ def diagnose_jointly(
     return replace(
         found,
         errors=errors,
+        baseline=joint_baseline(errors),
+        gain=joint_gain(errors),
         system=given.given,
         extension=extended.extension,
+        extended=extended.system,
         changes=extended.changes,
         remarks=remarks,
         folder=folder,
@@ -149,7 +154,7 @@ def diagnose_jointly(
 
 def _findings_without(found: JointDiagnosis, name: str) -> tuple[list[Finding], list[Finding]]:
     """Causes in the ship with their sizes by the other logs, and those of a log's own weather."""
-    basis = found.basis
+    basis = found.together
     if basis is None or len(basis.verdict.logs.problems) < 2:
         return [], []
     crude = []
@@ -157,7 +162,7 @@ def _findings_without(found: JointDiagnosis, name: str) -> tuple[list[Finding], 
     # Size of the common ratio without this log, if the ratio was named.
     if basis.has_ratio and (ratio := basis.ratios.without(name)):
         crude = list(ratio_findings(ratio.ratio, ratio.std, found.causes))
-    said = {shared.what.label for shared in found.findings}
+    said = {one.label for one in found.findings}
     named = [one for one in fit.hypotheses if one.label in said]
     if not named:
         return crude, []
@@ -230,14 +235,9 @@ def find_common_causes(
         found = _together(found, usable, ship, say)
     if reference is None:
         return found
-    since = with_sizes_at_reference(
-        (one.what for one in found.findings), ship, reference, found.causes
-    )
     return replace(
         found,
-        findings=tuple(
-            replace(one, what=what) for one, what in zip(found.findings, since, strict=True)
-        ),
+        findings=with_sizes_at_reference(found.findings, ship, reference, found.causes),
     )
 
 
@@ -294,18 +294,18 @@ def _together(
         craft = learned_from(list(stages.values()), ship)
     basis = JointBasis(verdict, ratios, has_ratio)
     faults = {name: tuple(faults) for name, faults in relabelled.items()}
-    return _stated(replace(found, basis=basis, relabelled=faults, craft=craft))
+    return _stated(replace(found, together=basis, relabelled=faults, craft=craft), basis)
 
 
 def _relabelled(
-    faults: Sequence[Shared[Finding]], usable: Mapping[str, Identification]
+    faults: Sequence[Finding], usable: Mapping[str, Identification]
 ) -> dict[str, list[Finding]]:
     """Faults of the thrusters' labels that other logs show, by the logs that are put right after them."""
     found: dict[str, list[Finding]] = {}
-    for fault in (one for one in faults if is_of_thrusters(one.what)):
+    for fault in (one for one in faults if is_of_thrusters(one)):
         for name in (name for name in usable if name not in fault.logs):
-            if leans_to(usable[name].comparison.labels, fault.what):
-                found.setdefault(name, []).append(fault.what)
+            if leans_to(usable[name].comparison.labels, fault):
+                found.setdefault(name, []).append(fault)
     return found
 
 
@@ -326,11 +326,8 @@ def _about_common(
     return with_learnt_form(corrected(problem_of(read)))
 
 
-def _stated(found: JointDiagnosis) -> JointDiagnosis:
+def _stated(found: JointDiagnosis, basis: JointBasis) -> JointDiagnosis:
     """What is said of the logs together."""
-    basis = found.basis
-    if basis is None:
-        return found
     judgement = basis.verdict.judgement
     ratios = basis.ratios
     # Ratios that contradict each other, one of them far off, keep any common cause from being
@@ -341,14 +338,16 @@ def _stated(found: JointDiagnosis) -> JointDiagnosis:
     causes = () if is_split else judgement.findings
     logs = basis.verdict.logs
     labels = {one.label: one for one in logs.hypotheses}
+    sizes = _sizes(basis, crude, causes)
+    design = None if is_split else _prescription(basis)
     # Findings of the data, the common ratio, and causes by all logs.
     findings = (
         *(_with_relabelled(one, found.relabelled) for one in found.findings),
-        *(Shared(one, tuple(ratios.each)) for one in crude),
-        *(Shared(one, _telling(logs, labels[one.label])) for one in causes),
+        *(replace(one, logs=tuple(ratios.each)) for one in crude),
+        *(replace(one, logs=_telling(logs, labels[one.label])) for one in causes),
     )
     seen = {one.label for one in (*judgement.candidates, *causes)} | {one.cause for one in crude}
-    named = {one.what.label for one in findings}
+    named = {one.label for one in findings}
     excitation = joint_excitation(basis.verdict)
     verdict = "unknown" if is_split else judgement.verdict
     of_data = found.findings or any(
@@ -357,8 +356,7 @@ def _stated(found: JointDiagnosis) -> JointDiagnosis:
     return replace(
         found,
         verdict="named" if (crude or of_data) and verdict == "consistent" else verdict,
-        findings=findings,
-        sizes=_sizes(basis, crude, causes),
+        findings=tuple(replace(one, by_log=sizes.get(one.label, {})) for one in findings),
         candidates=judgement.candidates,
         indistinguishable=() if is_split else judgement.indistinguishable,
         not_testable=tuple(name for name in not_testable(excitation) if name not in seen),
@@ -367,7 +365,8 @@ def _stated(found: JointDiagnosis) -> JointDiagnosis:
             for one in visible_sizes(excitation)
             if label_of(one.cause, one.component) not in named
         ),
-        prescription=None if is_split else _prescription(basis),
+        prescription=design,
+        manoeuvre=manoeuvre_of(design, _longest(basis)[1]),
         remarks=(*found.remarks, *remarks_on(found)),
     )
 
@@ -391,11 +390,9 @@ def _sizes(basis: JointBasis, crude: Sequence[Finding], causes: Sequence[Finding
     return sizes | sizes_by_log(basis.verdict.logs, named, fit.values)
 
 
-def _with_relabelled(
-    one: Shared[Finding], relabelled: Mapping[str, Sequence[Finding]]
-) -> Shared[Finding]:
+def _with_relabelled(one: Finding, relabelled: Mapping[str, Sequence[Finding]]) -> Finding:
     return replace(
-        one, put_right=tuple(name for name, faults in relabelled.items() if one.what in faults)
+        one, put_right=tuple(name for name, faults in relabelled.items() if one in faults)
     )
 
 
@@ -407,21 +404,25 @@ def _telling(logs: SeveralLogs, hypothesis: Hypothesis) -> tuple[str, ...]:
 def _prescription(basis: JointBasis) -> ExperimentDesign | None:
     """A manoeuvre that tells apart what all logs together cannot, planned about the longest of them."""
     judgement = basis.verdict.judgement
-    problems = basis.verdict.logs.problems
-    name = max(problems, key=lambda name: problems[name].record.time.size)
-    if (
-        not judgement.rivals or problems[name].model.third_party
-    ):  # with those no manoeuvre can be prescribed
+    name, problem = _longest(basis)
+    # With third-party FMUs no manoeuvre can be prescribed.
+    if not judgement.rivals or problem.model.third_party:
         return None
     of_ship = [fit for fit in judgement.rivals if not all(map(is_in_one_log, fit.hypotheses))]
     parts = [cast(JointFit, fit).parts[name] for fit in of_ship]
     best = basis.verdict.fit
-    return design_experiment(problems[name], best.parts[name], parts) if parts else None
+    return design_experiment(problem, best.parts[name], parts) if parts else None
+
+
+def _longest(basis: JointBasis) -> tuple[str, IdentificationProblem]:
+    """The log with most rows: its name and problem."""
+    problems = basis.verdict.logs.problems
+    return max(problems.items(), key=lambda one: one[1].record.time.size)
 
 
 def remarks_on(found: JointDiagnosis) -> list[str]:
     """What to know of logs that differ from the others, or say nothing of the ship."""
-    basis = found.basis
+    basis = found.together
     remarks = [f"{name} says nothing of the ship. {why}" for name, why in found.left_out.items()]
     for name, faults in found.relabelled.items():
         what = "; ".join(fault.sentence for fault in faults)

@@ -50,7 +50,7 @@ class LogSummary:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What there is to say of a log: the content of diagnosis.json, and all that the page shows.
+    """What there is to say of a log, or of several: the content of diagnosis.json, and all that the page shows.
 
     Attributes
     ----------
@@ -141,6 +141,11 @@ class Diagnosis:
     folder: object = field(default=None, repr=False, compare=False)
 
     @property
+    def name(self) -> str:
+        """Of the log's file."""
+        return self.log.name if self.log else "a log"
+
+    @property
     def is_named(self) -> bool:
         """Whether causes of the physics are named, and nothing else is the matter."""
         return self.verdict == "named" and bool(self.physics)
@@ -166,7 +171,7 @@ class Diagnosis:
             "not_testable": list(self.not_testable),
             "smallest_visible": [asdict(one) for one in self.smallest_visible],
             "prescription": asdict(self.prescription) if self.prescription else None,
-            "discrepancies": [asdict(discrepancy) for discrepancy in self.discrepancies],
+            "discrepancies": [discrepancy.as_json() for discrepancy in self.discrepancies],
             "form": asdict(self.form) if self.form else None,
             "craft": self.craft.as_json() if self.craft else None,
             "baseline": self.baseline,

@@ -91,8 +91,8 @@ class CheckedFiles(Result):
         return pandas.DataFrame(rows, columns=["file", "severity", "where", "found", "remedy"])
 
     def _card(self) -> Card:
-        from shipcosim.report.notebook.card import Block, Card
-        from shipcosim.report.theme.views import Outcome, Table
+        from shipcosim.report.notebook.card import Card
+        from shipcosim.report.theme.views import Block, Outcome, Table
 
         errors = sum(problem.severity == "error" for problem in self.problems)
         remarks = len(self.problems) - errors

@@ -69,7 +69,7 @@ def indices_of(plan: Plan, runs: pandas.DataFrame) -> tuple[pandas.DataFrame, li
             # Report how many blocks are lost, and why: failed runs or runs not done yet.
             if not known.all():
                 # A sentence on blocks that are not used.
-                done = _done(plan, part).reshape(blocks.shape)
+                done = np.isin(np.arange(plan.shape[-1]), part["sample"]).reshape(blocks.shape)
                 open_ = int((~done.all(axis=1)).sum())
                 bad = int((~known).sum()) - open_
                 why = [f"{bad} since a run of it failed or has no value"] if bad else []
@@ -95,12 +95,6 @@ def _parts(runs: Any, factors: Sequence[str]) -> Iterator[tuple[dict[str, Any], 
     grouped = runs.groupby(list(factors), sort=False, dropna=False) if factors else [((), runs)]
     for key, part in grouped:
         yield dict(zip(factors, key, strict=True)), part
-
-
-def _done(plan: Plan, part: Any) -> np.ndarray:
-    done = np.zeros(plan.shape[-1], bool)
-    done[part["sample"].to_numpy(int)] = True
-    return done
 
 
 def _rows(

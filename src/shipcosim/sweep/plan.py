@@ -189,8 +189,9 @@ class Plan:
     @cached_property
     def _common_input(self) -> dict[str, Any]:
         """The part that the inputs of all runs share."""
+        scenario = self.scenario
         return {
-            "system": self._named_system,
+            "system": _portable(scenario, scenario.system, "system", scenario.system_path),
             "parameters": self._named_parameters,
             "components": self._portable_components({}),
             "set": {},
@@ -271,10 +272,6 @@ class Plan:
         row = self.scenario.output_interval or self.scenario.step_size
         tracks = self.study.tracks
         return max(1, round(tracks.interval / row)) if tracks is not None and tracks.interval else 1
-
-    @property
-    def _named_system(self) -> str:
-        return _portable(self.scenario, self.scenario.system, "system", self.scenario.system_path)
 
     @property
     def _named_parameters(self) -> list[str]:

@@ -188,13 +188,9 @@ def _merged(base: dict[str, Any], own: dict[str, Any]) -> dict[str, Any]:
     both = {
         n: _merged(base[n], own[n])
         for n in base.keys() & own.keys()
-        if _are_tables(base[n], own[n])
+        if isinstance(base[n], dict) and isinstance(own[n], dict)
     }
     return {**base, **own, **both}
-
-
-def _are_tables(*values: Any) -> bool:
-    return all(isinstance(value, dict) for value in values)
 
 
 def _drawn_twice(study: Study) -> Iterator[Problem]:

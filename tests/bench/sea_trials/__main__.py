@@ -19,10 +19,11 @@ from diagnose import ferry, twin
 from diagnose.sea_trials import trials
 
 from shipcosim.diagnose.checked_log import ReadLog, checked
+from shipcosim.diagnose.experiment.design import prescribed
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.sea_trials.evidence import ranked, trial_evidence
 from shipcosim.diagnose.sea_trials.manoeuvres import as_trials, catalogue
-from shipcosim.diagnose.sea_trials.separation import designed, separations
+from shipcosim.diagnose.sea_trials.separation import separations
 from shipcosim.diagnose.sea_trials.study import best_of, causes_of_trials, rivals_of
 from shipcosim.diagnose.sea_trials.windows import as_ordered, sea_trials_of
 from shipcosim.diagnose.ship.inputs import record_of
@@ -69,7 +70,7 @@ def answered(log, model, right, truth):
     said = f"{len(found)} trials: {' | '.join(one.label for one in sets)}"
     if len(sets) == 1:
         return verdict(sets, right), "-", said
-    designs = designed(separations(evidence, sets), sets)
+    designs = prescribed(separations(evidence, sets), sets)
     chosen = [
         one for one in catalogue(read.ship) if one.name in {design.manoeuvre for design in designs}
     ]

@@ -129,8 +129,8 @@ def test_calibration_to_logs_of_a_real_craft_makes_a_reference_that_predicts_eac
     tables = [log("blueboat", f"run_{run}.csv.gz") for run in (224, 230, 235)]
     system = read_system(tables[0][2], fmus=[fmus])
     made = calibrate([table for table, *_ in tables], system, tables[0][1], out=tmp_path)
-    errors = [one.errors for one in made.logs]
-    squares = [(one.before[-1] ** 2, one.after[-1] ** 2) for one in errors]
+    errors = [one.errors.position for one in made.logs]
+    squares = [(one["before"][-1] ** 2, one["after"][-1] ** 2) for one in errors]
     before, after = np.sqrt(np.mean(squares, axis=0))
     assert not made.refusals and (tmp_path / "reference.json").is_file()
     assert after < 0.6 * before

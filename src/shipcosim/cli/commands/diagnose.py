@@ -65,7 +65,6 @@ def diagnose(
     from shipcosim.calls.arguments import default_folder
     from shipcosim.calls.logs import diagnose as diagnose_logs
     from shipcosim.cli.diagnosis import print_diagnosis
-    from shipcosim.cli.joint_diagnosis import print_joint
     from shipcosim.cli.progress import shown_progress
     from shipcosim.diagnose.joint_pipeline import steps_of
     from shipcosim.diagnose.pipeline import STEPS
@@ -75,8 +74,10 @@ def diagnose(
     asked |= {"out": folder, "force": force, "learn": learn, "length": length}
     if len(data) > 1:
         with shown_progress(steps_of(data)) as progress:
-            joint = diagnose_logs(data, system, progress=progress, **asked)
-        return Conclusion(f"{len(data)} logs", joint, lambda: print_joint(joint, folder), folder)
-    with shown_progress(STEPS) as progress:
-        diagnosis = diagnose_logs(data[0], system, progress=progress, **asked)
-    return Conclusion(data[0].name, diagnosis, lambda: print_diagnosis(diagnosis, folder), folder)
+            diagnosis = diagnose_logs(data, system, progress=progress, **asked)
+        name = f"{len(data)} logs"
+    else:
+        with shown_progress(STEPS) as progress:
+            diagnosis = diagnose_logs(data[0], system, progress=progress, **asked)
+        name = data[0].name
+    return Conclusion(name, diagnosis, lambda: print_diagnosis(diagnosis, folder), folder)

@@ -1,9 +1,14 @@
-"""Experiment design: every manoeuvre of the library is simulated in array form, and scored by what it separates."""
+"""Experiment design: every manoeuvre of the library is simulated in array form, and scored by what it separates.
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+The score of a manoeuvre is one for DP and for sea trials: the log-evidence by which the right one of two sets of causes
+is expected to lead, half of the squared Mahalanobis distance between what they predict. `prescribed` chooses by it. The
+manoeuvres are two libraries: tracks under DP here, orders to a ship under way in `sea_trials.manoeuvres`.
+"""
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field, fields, replace
 from itertools import combinations
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -36,7 +41,8 @@ CLEAR = 10.0
 A difference expected to be d varies with a standard deviation of sqrt(2 d): at 10 nats the right cause ends more than
 3 nats ahead, the distance at which causes are told apart, in 94 of 100 logs, and more than 3 behind in 1 of 500.
 """
-_MOST = 4  # rivals that are compared
+MOST_SETS = 4
+"""Sets of causes that are compared. [1]"""
 _ABOUT = 1.5  # times the shortest: about as short
 _ASTRAY = 0.5  # lengths that a ship may be off her track
 _ROOM = 3.0  # lengths that a ship may get away from where she started
@@ -51,6 +57,99 @@ class ExperimentDesign:
     separates: tuple[tuple[str, str], ...]
 
 
+class TellingFeature(NamedTuple):
+    """The feature of a manoeuvre that tells two sets apart best.
+
+    Attributes
+    ----------
+    name : str
+        With the side that it is sailed to.
+    difference : float
+        By the second set less by the first, in `unit`.
+    spread : float
+        Standard deviation with which it is predicted and repeats, in `unit`.
+    unit : str
+        ``"%"`` or ``"deg"``.
+    """
+
+    name: str
+    difference: float
+    spread: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Separation:
+    """What a manoeuvre would tell of sets of causes.
+
+    Attributes
+    ----------
+    manoeuvre : str
+    minutes : float
+        Of a sea trial to both sides, with their approaches.
+    nats : dict of (int, int) to float
+        By places of two sets: log-evidence by which the right one is expected to lead; NaN where the ship does not get
+        through. [nats]
+    read : bool
+        Whether manoeuvres of this kind are sought in logs.
+    telling : dict of (int, int) to TellingFeature
+        Of a sea trial.
+    """
+
+    manoeuvre: str
+    minutes: float
+    nats: dict[tuple[int, int], float]
+    read: bool = True
+    telling: dict[tuple[int, int], TellingFeature] = field(default_factory=dict)
+
+    @property
+    def least(self) -> float:
+        """Of the closest pair. [nats]"""
+        return min(self.nats.values())
+
+    def clear(self, wanted: Collection[tuple[int, int]]) -> dict[tuple[int, int], float]:
+        """Those of some pairs that it tells apart clearly, with their nats."""
+        return {pair: nats for pair, nats in self.nats.items() if pair in wanted and nats >= CLEAR}
+
+
+def prescribed(found: Sequence[Separation], sets: Sequence[Any]) -> tuple[ExperimentDesign, ...]:
+    """The manoeuvres to be sailed next, as few as will do: each tells as many pairs apart as any that the ones before
+    it do not, clearly.
+
+    Among those of equal use one that is sought in logs comes first. Then one of the shortest is taken: among
+    manoeuvres about as short the one with most nats per minute for its closest pair.
+
+    Parameters
+    ----------
+    found : sequence of Separation
+    sets : sequence
+        Sets of causes, with their `hypotheses`, as they were compared.
+
+    Returns
+    -------
+    tuple of ExperimentDesign
+        Empty where no manoeuvre separates any pair.
+    """
+    left = set(found[0].nats) if found else set()
+    chosen = []
+    while left:
+        # Greedy cover: those that separate most of the pairs that remain.
+        most = max(len(one.clear(left)) for one in found)
+        if not most:
+            break
+        able = [one for one in found if len(one.clear(left)) == most]
+        able = [one for one in able if one.read] or able
+        # Of the shortest the one with most evidence per minute.
+        longest = _ABOUT * min(one.minutes for one in able)
+        short = [one for one in able if one.minutes <= longest]
+        best = max(short, key=lambda one: min(one.clear(left).values()) / one.minutes)
+        told = best.clear(left)
+        separates = tuple(differing(sets[a], sets[b]) for a, b in told)
+        chosen.append(ExperimentDesign(best.manoeuvre, best.minutes, separates))
+        left = left - told.keys()
+    return tuple(chosen)
+
+
 def design_experiment(
     problem: IdentificationProblem,
     fit: Fit,
@@ -58,9 +157,6 @@ def design_experiment(
     manoeuvres: Sequence[Manoeuvre] | None = None,
 ) -> ExperimentDesign | None:
     """A manoeuvre that is expected to tell a fit and its rivals apart.
-
-    Of those that separate all pairs, one of the shortest; among manoeuvres about as short the one with most nats per
-    minute for its closest pair.
 
     Parameters
     ----------
@@ -76,32 +172,23 @@ def design_experiment(
     Returns
     -------
     ExperimentDesign or None
-        It names the pairs that it separates. Where no manoeuvre separates all pairs, the one that separates most; None
-        where none separates any.
+        The first of those that `prescribed` chooses, with the pairs that it separates; None where none separates any.
     """
-    fits = [fit, *rivals][:_MOST]
+    fits = [fit, *rivals][:MOST_SETS]
     manoeuvres = list(
         manoeuvres or library(problem.model, cannot_turn(problem.record, problem.model))
     )
     with threadpool_limits(1):
         apart = separations(problem, fits, manoeuvres)
-    # Expected log-evidence for each manoeuvre and pair; then how many pairs it separates.
-    pairs = list(combinations(range(len(fits)), 2))
-    told = np.array(
-        [[apart[min(a, b), max(a, b)][i] for a, b in pairs] for i in range(len(manoeuvres))]
-    )
-    count = (told >= CLEAR).sum(1)
-    least = np.nan_to_num(told, nan=-np.inf).min(1, initial=np.inf)
-    if not count.max(initial=0):
-        return None
-    # Among manoeuvres that separate most pairs, take a short one with most evidence per minute.
-    minutes = np.array([one.minutes for one in manoeuvres])
-    able = np.flatnonzero(count == count.max())
-    short = able[minutes[able] <= _ABOUT * minutes[able].min()]
-    best = max(short, key=lambda i: least[i] / minutes[i])
-    names = [differing(fits[a], fits[b]) for a, b in pairs]
-    separates = tuple(name for name, value in zip(names, told[best], strict=True) if value >= CLEAR)
-    return ExperimentDesign(manoeuvres[best].name, round(float(minutes[best]), 1), separates)
+    found = [
+        Separation(
+            one.name,
+            round(float(one.minutes), 1),
+            {pair: float(nats[i]) for pair, nats in apart.items()},
+        )
+        for i, one in enumerate(manoeuvres)
+    ]
+    return next(iter(prescribed(found, fits)), None)
 
 
 def differing(one: Any, other: Any) -> tuple[str, str]:
@@ -144,7 +231,11 @@ def separations(
         NaN where the ship does not get through. [nats]
     """
     # Each fit's ship sails every manoeuvre in turn as the truth.
-    models = [_fitted_ship(fit) for fit in fits]
+    # She has the fit's causes, and all known numbers at their most likely.
+    models = [
+        _in_true_wind(fit.model.with_values(moved(fit.columns, fit.left, fit.model.get)))
+        for fit in fits
+    ]
     motions, records, through = _simulated(problem, models, manoeuvres)
     noise = sized(problem.noise, step_for(problem.model) / problem.record.step)
     known = _shared_columns(fits)
@@ -173,26 +264,18 @@ def _in_true_wind(model: ShipModel) -> ShipModel:
     return replace(model, wind_is_true=True)
 
 
-def _fitted_ship(fit: Fit) -> ShipModel:
-    """The ship of a fit: its causes, and all known numbers at their most likely."""
-    # Shift all numbers of the fit by its posterior mean.
-    return _in_true_wind(fit.model.with_values(moved(fit.columns, fit.left, fit.model.get)))
-
-
 def _shared_columns(fits):
     """Columns of known numbers of all fits, each once."""
     found = {}
     for fit in fits:
         for column in fit.columns:
             found.setdefault(_key(column), column)
-    own = {_key(c) for fit in fits for c in _own(fit)}
+    own = set()
+    for fit in fits:
+        turned = paths_of(fit.hypotheses)
+        turned |= {path for one in fit.hypotheses for path in one.definition.companions}
+        own |= {_key(column) for column in fit.columns if column.gives_way(turned)}
     return [column for key, column in found.items() if key not in own]
-
-
-def _own(fit):
-    turned = paths_of(fit.hypotheses)
-    turned |= {path for s in fit.hypotheses for path in s.definition.companions}
-    return [column for column in fit.columns if column.gives_way(turned)]
 
 
 def _key(column):

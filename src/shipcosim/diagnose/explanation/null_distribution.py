@@ -89,7 +89,9 @@ def healthy_products(
 
     def products_of(first):
         # Each healthy log is linearised about its own smoothed motion.
-        record = _some(records, slice(first, first + batch))
+        some = slice(first, first + batch)
+        units = part_of(records.units, some)
+        record = replace(records, measured=records.measured[some], units=units)
         here = prepared(replace(problem, record=record, motion=first_motion(record)), rounds=1)
         return inner_products(here.linear, problem.noise, record).products
 
@@ -100,12 +102,6 @@ def on_track(products: np.ndarray) -> np.ndarray:
     """Which of simulated ships keep to the track, (m,) bool array: the others' innovations are far larger."""
     squares = products[:, 0, 0]
     return squares < LOST_TRACK * np.median(squares)
-
-
-def _some(records, which):
-    """Some of several logs."""
-    units = part_of(records.units, which)
-    return replace(records, measured=records.measured[which], units=units)
 
 
 def healthy_records(

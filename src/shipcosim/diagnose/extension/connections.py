@@ -1,7 +1,7 @@
 """Connections of the extended system that carry a cause: with a factor or an offset, to a neighbour, or as named."""
 
 from collections.abc import Iterable
-from math import hypot
+from math import dist
 from typing import Any
 
 from shipcosim.diagnose.extension.draft import AXES, Estimated, ExtensionDraft, converted
@@ -122,7 +122,7 @@ def connect_neighbours(
         inputs = {f"{unit}.{name}" for name in rule.neighbour_inputs}
         fed = {source.rpartition(".")[0] for source, target in wired if target in inputs}
         others = sorted(
-            (o for o in units if o != unit), key=lambda o: (o not in fed, _distance(place[o], here))
+            (o for o in units if o != unit), key=lambda o: (o not in fed, dist(place[o], here))
         )
         if not others:
             draft.remark(finding, f"'{unit}' has no neighbour")
@@ -136,10 +136,6 @@ def connect_neighbours(
                 draft.put(
                     finding, f"{unit}.{name}", Estimated(there), "m", note=f"where {others[0]} is"
                 )
-
-
-def _distance(a: tuple[float, float], b: tuple[float, float]) -> float:
-    return hypot(a[0] - b[0], a[1] - b[1])
 
 
 def rewire(draft: ExtensionDraft, name: str) -> None:

@@ -3,7 +3,6 @@
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Generic, TypeVar
 
 import numpy as np
 import xarray
@@ -18,28 +17,9 @@ from shipcosim.diagnose.numerics import survival
 from shipcosim.diagnose.reference.thresholds import APART, SAME_RATIO
 
 _NUMBER = re.compile(r"\d+(?:\.\d+)?")
-_What = TypeVar("_What", Finding, Discrepancy)
 
 
-@dataclass(frozen=True)
-class Shared(Generic[_What]):
-    """A finding or a discrepancy of several logs.
-
-    Attributes
-    ----------
-    what : Finding or Discrepancy
-    logs : tuple of str
-        Names of those that show it.
-    put_right : tuple of str
-        Names of those that do not tell, and are put right all the same.
-    """
-
-    what: _What
-    logs: tuple[str, ...]
-    put_right: tuple[str, ...] = ()
-
-
-def common_faults(faults: Mapping[str, Sequence[Finding]]) -> list[Shared[Finding]]:
+def common_faults(faults: Mapping[str, Sequence[Finding]]) -> list[Finding]:
     """Faults of the data that are the same, throughout, in half of the logs and two at least.
 
     Parameters
@@ -56,16 +36,19 @@ def common_faults(faults: Mapping[str, Sequence[Finding]]) -> list[Shared[Findin
                 key = fault.cause, fault.component, fault.channels, _NUMBER.sub("#", fault.note)
                 by_key.setdefault(key, {})[name] = fault
     return [
-        Shared(_as_one(list(same.values())), tuple(same))
-        for same in by_key.values()
-        if len(same) > 1 and 2 * len(same) >= len(faults)
+        _as_one(same) for same in by_key.values() if len(same) > 1 and 2 * len(same) >= len(faults)
     ]
 
 
-def _as_one(same: Sequence[Finding]) -> Finding:
-    """Findings of several logs as one: parameters together, and as sure as the surest."""
-    sure = max(one.probability for one in same)
-    return replace(same[0], probability=sure, parameters=together([one.parameters for one in same]))
+def _as_one(same: Mapping[str, Finding]) -> Finding:
+    """Findings by name of the log as one: parameters together, and as sure as the surest."""
+    findings = list(same.values())
+    return replace(
+        findings[0],
+        probability=max(one.probability for one in findings),
+        parameters=together([one.parameters for one in findings]),
+        logs=tuple(same),
+    )
 
 
 def together(parameters: Sequence[Mapping[str, ParameterEstimate]]) -> dict[str, ParameterEstimate]:
@@ -202,7 +185,7 @@ def ratio_of_logs(each: Mapping[str, CommonRatio]) -> RatioOfLogs:
     return RatioOfLogs(dict(each), common)
 
 
-def common_discrepancies(each: Mapping[str, Sequence[Discrepancy]]) -> list[Shared[Discrepancy]]:
+def common_discrepancies(each: Mapping[str, Sequence[Discrepancy]]) -> list[Discrepancy]:
     """Discrepancies of half of the logs and two at least: signs first, then by the share of the error they explain.
 
     Parameters
@@ -212,7 +195,7 @@ def common_discrepancies(each: Mapping[str, Sequence[Discrepancy]]) -> list[Shar
 
     Returns
     -------
-    list of Shared
+    list of Discrepancy
         In words with the range of their sizes; the share is the mean over all logs.
     """
     # Group discrepancies that agree in place, axis, unit and wording.
@@ -222,11 +205,11 @@ def common_discrepancies(each: Mapping[str, Sequence[Discrepancy]]) -> list[Shar
             key = one.component, one.axis, one.unit, _NUMBER.sub("#", one.what)
             by_key.setdefault(key, {})[name] = one
     found = [
-        Shared(_ranging(list(same.values()), len(each)), tuple(same))
+        replace(_ranging(list(same.values()), len(each)), logs=tuple(same))
         for same in by_key.values()
         if len(same) > 1 and 2 * len(same) >= len(each)
     ]
-    return sorted(found, key=lambda one: (one.what.estimate > 0.0, -one.what.share))
+    return sorted(found, key=lambda one: (one.estimate > 0.0, -one.share))
 
 
 def _ranging(same: Sequence[Discrepancy], logs: int) -> Discrepancy:

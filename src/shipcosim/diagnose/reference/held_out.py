@@ -1,7 +1,7 @@
 """What common causes gain in each log: the system extended by what the other logs say, co-simulated over this one."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, paths_of
 from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, fitted
 from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly
+from shipcosim.diagnose.reference.log_errors import LogErrors, errors_on
 from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log, values_in
 from shipcosim.diagnose.reference.thresholds import MOST_PIECES
 from shipcosim.diagnose.ship.model import ShipModel
@@ -21,7 +22,6 @@ from shipcosim.diagnose.validation.gain import calibrated
 from shipcosim.diagnose.validation.replays import findings_of
 from shipcosim.diagnose.validation.tracks import (
     Tracks,
-    errors_of,
     fitting_horizon,
     misses_at_end,
     tracks_by_models,
@@ -33,51 +33,6 @@ from shipcosim.temporary import temporary_folder
 
 SizesOfLogs = dict[str, dict[str, dict[str, ParameterEstimate]]]
 """Sizes by log, cause and parameter."""
-
-
-@dataclass(frozen=True)
-class LogErrors:
-    """Errors of the simulation of one log, before and, where there is an extended system, after.
-
-    Attributes
-    ----------
-    horizon : tuple of float
-        Lengths of the predictions, that fit the craft's own time scales; the same for all logs. [s]
-    position, heading : dict of str to tuple of float
-        Root mean square errors after each, ``"before"`` and ``"after"``. [m], [deg]
-    fitted_on : tuple of str
-        Logs that say how large the causes are; empty where there is no extended system.
-    own : tuple of str
-        Causes of this log's own weather, which were fitted in it.
-    tracks : Tracks
-    remark : str
-        What did not work.
-    misses : (3, s) array or None
-        Position error of each prediction at the longest horizon: before, after, and of the ship whose every number is
-        fitted to this log too. None where there is no extended system. [m]
-    """
-
-    horizon: tuple[float, ...]
-    position: dict[str, tuple[float, ...]]
-    heading: dict[str, tuple[float, ...]]
-    fitted_on: tuple[str, ...]
-    own: tuple[str, ...]
-    tracks: Tracks
-    remark: str = ""
-    misses: np.ndarray | None = field(default=None, repr=False, compare=False)
-
-    def as_json(self) -> dict:
-        """The entry ``errors`` of a log in diagnosis.json."""
-        after = "after" in self.position
-        return {
-            "horizon_s": list(self.horizon),
-            "before_m": list(self.position["before"]),
-            "after_m": list(self.position["after"]) if after else None,
-            "before_deg": list(self.heading["before"]),
-            "after_deg": list(self.heading["after"]) if after else None,
-            "fitted_on": list(self.fitted_on),
-            "own_weather": list(self.own),
-        }
 
 
 def sizes_without(
@@ -216,18 +171,11 @@ def _log_errors(
             )
         except ShipcosimError:
             return None
-    # Root mean square errors by simulation and horizon.
-    errors = errors_of(tracks)
-    shown = {str(one): errors.sel(simulation=one) for one in errors["simulation"].values}
-    return LogErrors(
-        tuple(map(float, errors["after"].values)),
-        {one: tuple(map(float, np.atleast_1d(of["position"].values))) for one, of in shown.items()},
-        {one: tuple(map(float, np.atleast_1d(of["heading"].values))) for one, of in shown.items()},
-        log.others,
-        tuple(finding.cause for finding in log.own),
-        tracks,
-        remark,
-        _misses(log, tracks) if "after" in shown else None,
+    return replace(
+        errors_on(tracks, log.others),
+        own=tuple(finding.cause for finding in log.own),
+        remark=remark,
+        misses=_misses(log, tracks) if "after" in tracks.predicted else None,
     )
 
 

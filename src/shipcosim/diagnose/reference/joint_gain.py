@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.diagnose.reference.held_out import LogErrors
+from shipcosim.diagnose.reference.log_errors import LogErrors
 from shipcosim.diagnose.validation.gain import gain_entry, resampled_sums, roots, share_explained
 
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from shipcosim.diagnose.craft.learned import LearnedCraft
+from shipcosim.diagnose.reference.log_errors import LogErrors, errors_by_models
 from shipcosim.diagnose.reference.reference import (
     SCHEMA,
     KnownNumber,
@@ -12,7 +13,6 @@ from shipcosim.diagnose.reference.reference import (
     ReferenceLog,
     fingerprint,
 )
-from shipcosim.diagnose.reference.remaining_errors import RemainingErrors, errors_by_models
 from shipcosim.diagnose.reference.thresholds import USUAL_FORM
 from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.model import ShipModel
@@ -65,7 +65,7 @@ def learned_reference(
 
 def learned_errors(
     record: Record, ship: ShipModel, others: LearnedCraft, craft: LearnedCraft, names: Sequence[str]
-) -> RemainingErrors | None:
+) -> LogErrors | None:
     """Errors of a log by the system, by the craft as the other logs teach her, and as all do.
 
     Parameters
@@ -79,7 +79,7 @@ def learned_errors(
 
     Returns
     -------
-    RemainingErrors or None
+    LogErrors or None
         None where no stretch of the log is whole.
     """
     # Predictions by the system, by the craft without this log, and by the craft with all logs.

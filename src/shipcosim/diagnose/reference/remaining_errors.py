@@ -1,42 +1,15 @@
 """What a calibrated ship still gets wrong, in each log: by numbers that this log did not give."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-
 from shipcosim.diagnose.reference.calibration import Calibration, numbers_of
 from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly
+from shipcosim.diagnose.reference.log_errors import LogErrors, errors_by_models
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
-from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.validation.gain import calibrated
 from shipcosim.diagnose.validation.split import first_rows, trained
-from shipcosim.diagnose.validation.tracks import errors_of, fitting_horizon, tracks_by_models
-from shipcosim.errors import ShipcosimError
 
 
-@dataclass(frozen=True)
-class RemainingErrors:
-    """Position errors of open-loop predictions of one log, noise of the log and all.
-
-    Attributes
-    ----------
-    horizon : tuple of float
-        Lengths of the predictions, that fit the craft's own time scales. [s]
-    before, after, floor : tuple of float
-        Root mean squares after each: by the system, by the calibrated ship, and by her fitted to this log too. [m]
-    fitted_on : tuple of str
-        Logs that the calibrated ship has her numbers from; empty where it is the first part of this one, and the rest
-        of it is judged.
-    """
-
-    horizon: tuple[float, ...]
-    before: tuple[float, ...]
-    after: tuple[float, ...]
-    floor: tuple[float, ...]
-    fitted_on: tuple[str, ...]
-
-
-def remaining_errors(found: Calibration) -> dict[str, RemainingErrors | None]:
+def remaining_errors(found: Calibration) -> dict[str, LogErrors | None]:
     """The error that remains in each log of a calibration.
 
     Each log is judged by the numbers that the other logs give; a single one by those of its first part. The weather is
@@ -48,7 +21,7 @@ def remaining_errors(found: Calibration) -> dict[str, RemainingErrors | None]:
 
     Returns
     -------
-    dict of str to RemainingErrors or None
+    dict of str to LogErrors or None
         By name of the log; None where no stretch of it is whole.
     """
     problems = found.logs.problems
@@ -57,7 +30,7 @@ def remaining_errors(found: Calibration) -> dict[str, RemainingErrors | None]:
     return {name: _by_others(found, name) for name in problems}
 
 
-def _by_others(found: Calibration, name: str) -> RemainingErrors | None:
+def _by_others(found: Calibration, name: str) -> LogErrors | None:
     # Fit the ship's numbers to the other logs, with their weather.
     others = {other: problem for other, problem in found.logs.problems.items() if other != name}
     weather = [one for one in found.fit.hypotheses if one.component in others]
@@ -73,7 +46,7 @@ def _by_others(found: Calibration, name: str) -> RemainingErrors | None:
     )
 
 
-def _of_last_rows(found: Calibration, name: str) -> RemainingErrors | None:
+def _of_last_rows(found: Calibration, name: str) -> LogErrors | None:
     problem = found.logs.problems[name]
     # Fit to the first part of the only log, and predict the rest.
     rows = first_rows(problem.record)
@@ -97,27 +70,10 @@ def _with_numbers(found: Calibration, name: str, fit: JointFit) -> ShipModel:
     return model.with_values(of_ship | of_day)
 
 
-def _errors(found, name, record, after, others) -> RemainingErrors | None:
+def _errors(found, name, record, after, others) -> LogErrors | None:
     """Errors on a record by the system, by `after`, and by the ship as all logs have her."""
     # Open-loop predictions by the system, the calibrated ship, and the ship fitted to all logs.
     model = found.logs.problems[name].model
     part = found.fit.parts[name]
     models = {"before": model, "after": after, "floor": calibrated(part)}
     return errors_by_models(record, models, others)
-
-
-def errors_by_models(
-    record: Record, models: Mapping[str, ShipModel], fitted_on: Sequence[str]
-) -> RemainingErrors | None:
-    """Errors of the predictions of a log by the ships ``"before"``, ``"after"`` and ``"floor"``.
-
-    None where no stretch of the log is whole.
-    """
-    try:
-        horizon = fitting_horizon(record, models["before"])
-        errors = errors_of(tracks_by_models(record, models, horizon))
-    except ShipcosimError:
-        return None
-    times = tuple(map(float, errors["after"].values))
-    of = {one: tuple(map(float, errors["position"].sel(simulation=one).values)) for one in models}
-    return RemainingErrors(times, of["before"], of["after"], of["floor"], tuple(fitted_on))

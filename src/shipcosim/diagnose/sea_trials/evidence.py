@@ -200,7 +200,11 @@ def slopes_of(
     trials: Sequence[SeaTrial], model: ShipModel, sets: Sequence[SetOfCauses], *, orders: bool
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     """Features of trials by fitted sets, (f,) array, and their slopes by parameter, (p, f), over a typical size."""
-    changes = [_changes(one.hypotheses, one.values + step) for one in sets for step in _steps(one)]
+    # The set itself, then each of its parameters moved.
+    changes = []
+    for one in sets:
+        moves = _PART * np.eye(len(one.values))
+        changes += [changes_of(one), *(_changes(one.hypotheses, one.values + by) for by in moves)]
     features = iter(predicted(trials, model, changes, orders=orders))
     found = []
     for one in sets:
@@ -214,10 +218,6 @@ def slopes_of(
             )
         )
     return found
-
-
-def _steps(one):
-    return np.vstack((np.zeros(len(one.values)), _PART * np.eye(len(one.values))))
 
 
 def blocks(matrices: Sequence[np.ndarray]) -> np.ndarray:

@@ -1,13 +1,12 @@
 """Which manoeuvre tells sets of causes apart that the trials cannot: computed, for every manoeuvre of the catalogue."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import combinations
-from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.diagnose.experiment.design import CLEAR, ExperimentDesign, differing
+from shipcosim.diagnose.experiment.design import MOST_SETS, Separation, TellingFeature
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.evidence import (
     SetOfCauses,
@@ -30,57 +29,6 @@ from shipcosim.diagnose.sea_trials.windows import SeaTrial
 from shipcosim.diagnose.ship.model import ShipModel
 
 _PART = 0.3  # of a standard deviation, by which known numbers are moved
-MOST_SETS = 4
-"""Sets that are compared. [1]"""
-
-
-class TellingFeature(NamedTuple):
-    """The feature of a manoeuvre that tells two sets apart best.
-
-    Attributes
-    ----------
-    name : str
-        With the side that it is sailed to.
-    difference : float
-        By the second set less by the first, in `unit`.
-    spread : float
-        Standard deviation with which it is predicted and repeats, in `unit`.
-    unit : str
-        ``"%"`` or ``"deg"``.
-    """
-
-    name: str
-    difference: float
-    spread: float
-    unit: str
-
-
-@dataclass(frozen=True)
-class Separation:
-    """What a manoeuvre would tell of sets of causes.
-
-    Attributes
-    ----------
-    manoeuvre : str
-    minutes : float
-        To both sides, with their approaches.
-    read : bool
-        Whether manoeuvres of this kind are sought in logs.
-    nats : dict of (int, int) to float
-        By places of two sets: log-evidence by which the right one is expected to lead. [nats]
-    telling : dict of (int, int) to TellingFeature
-    """
-
-    manoeuvre: str
-    minutes: float
-    read: bool
-    nats: dict[tuple[int, int], float]
-    telling: dict[tuple[int, int], TellingFeature]
-
-    @property
-    def least(self) -> float:
-        """Of the closest pair. [nats]"""
-        return min(self.nats.values())
 
 
 def separations(found: TrialEvidence, sets: Sequence[SetOfCauses]) -> list[Separation]:
@@ -148,8 +96,8 @@ def separations(found: TrialEvidence, sets: Sequence[SetOfCauses]) -> list[Separ
             Separation(
                 one.name,
                 round(minutes, 1),
-                one.kind in SOUGHT,
                 {key: nats for key, (nats, _) in pairs.items()},
+                one.kind in SOUGHT,
                 {key: telling for key, (_, telling) in pairs.items()},
             )
         )
@@ -220,41 +168,3 @@ def _apart(one, other, part, names):
         f"{name} {to}", float(factor * difference), float(factor * sigma[best]), unit
     )
     return nats, told
-
-
-def designed(
-    found: Sequence[Separation], sets: Sequence[SetOfCauses]
-) -> tuple[ExperimentDesign, ...]:
-    """The manoeuvres to be sailed next, as few as will do: each tells as many pairs apart as any that the ones before
-    it do not, clearly.
-
-    Among those of equal use one that is sought in logs comes first, then the one with most nats per minute.
-
-    Parameters
-    ----------
-    found : sequence of Separation
-    sets : sequence of SetOfCauses
-        As given to `separations`.
-
-    Returns
-    -------
-    tuple of ExperimentDesign
-        Empty where no manoeuvre separates any pair.
-    """
-    # Greedy cover: take the manoeuvre that separates most of the remaining pairs.
-    left = set(found[0].nats) if found else set()
-    chosen = []
-
-    def worth(one):
-        clear = [nats for pair, nats in one.nats.items() if pair in left and nats >= CLEAR]
-        return len(clear), one.read, min(clear, default=0.0) / one.minutes
-
-    while left:
-        best = max(found, key=worth)
-        told = [pair for pair, nats in best.nats.items() if pair in left and nats >= CLEAR]
-        if not told:
-            break
-        left -= set(told)
-        separates = tuple(differing(sets[a], sets[b]) for a, b in told)
-        chosen.append(ExperimentDesign(best.manoeuvre, best.minutes, separates))
-    return tuple(chosen)

@@ -8,7 +8,13 @@ from typing import Any
 import numpy as np
 
 from shipcosim.diagnose.checked_log import ReadLog, checked
-from shipcosim.diagnose.experiment.design import ExperimentDesign, differing
+from shipcosim.diagnose.experiment.design import (
+    MOST_SETS,
+    ExperimentDesign,
+    Separation,
+    differing,
+    prescribed,
+)
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of, read_catalogue
 from shipcosim.diagnose.hypotheses.cause import Cause
@@ -26,12 +32,7 @@ from shipcosim.diagnose.sea_trials.evidence import (
 )
 from shipcosim.diagnose.sea_trials.features import ANGLES, FEATURES, features_of
 from shipcosim.diagnose.sea_trials.sailing import sailed
-from shipcosim.diagnose.sea_trials.separation import (
-    MOST_SETS,
-    Separation,
-    designed,
-    separations,
-)
+from shipcosim.diagnose.sea_trials.separation import separations
 from shipcosim.diagnose.sea_trials.windows import SeaTrial, as_ordered, sea_trials_of
 from shipcosim.diagnose.ship.inputs import record_of, source_of
 from shipcosim.diagnose.ship.model import ShipModel
@@ -116,7 +117,7 @@ class SeaTrialStudy:
     @property
     def prescriptions(self) -> tuple[ExperimentDesign, ...]:
         """Manoeuvres that are expected to tell the best set from its rivals."""
-        return designed(self.separations, self.compared)
+        return prescribed(self.separations, self.compared)
 
     @property
     def pairs(self) -> list[tuple[str, str]]:

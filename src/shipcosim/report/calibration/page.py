@@ -4,15 +4,16 @@ from dataclasses import dataclass
 
 from shipcosim.diagnose.calibration_pipeline import CalibratedShip
 from shipcosim.report.calibration.words import (
-    error_rows,
+    errors_by_log,
     log_rows,
     moved,
     moved_rows,
-    sentence,
+    outcome,
     untold,
 )
+from shipcosim.report.diagnosis.by_log import error_figures, error_table
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.figures import bars, rounded
+from shipcosim.report.theme.figures import rounded
 from shipcosim.report.theme.numbers import metres
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import (
@@ -21,7 +22,6 @@ from shipcosim.report.theme.views import (
     Figures,
     KeyFigure,
     Link,
-    Outcome,
     Table,
     facts_of,
 )
@@ -61,20 +61,15 @@ def render(ship: CalibratedShip) -> str:
 
 def _page(ship: CalibratedShip) -> CalibrationPage:
     what = (_moved_figure(ship),)
-    errors = _error_figures(ship)
+    errors = error_figures(errors_by_log(ship), "calibrated")
     reference = ship.reference
-    refused = bool(ship.refusals)
     facts = {"System": reference.system, "Logs": ", ".join(log.name for log in ship.logs)}
     scale = reference.tolerance_scale
     facts["Tolerances"] = "as stated" if scale == 1.0 else f"{scale:g} times as stated"
     return CalibrationPage(
         title=f"Calibration of {reference.system}",
         facts=facts_of(facts),
-        outcome=Outcome(
-            "unknown" if refused else "consistent",
-            "refused" if refused else "calibrated",
-            sentence(ship),
-        ),
+        outcome=outcome(ship),
         links=tuple(Link(anchor, title) for anchor, title in SECTIONS.items()),
         refusals=ship.refusals,
         remarks=ship.remarks,
@@ -85,11 +80,7 @@ def _page(ship: CalibratedShip) -> CalibrationPage:
         numbers=Table(
             moved_rows(ship), ("Number", "System", "By the logs", "Tolerances"), (1, 2, 3)
         ),
-        error_table=Table(
-            error_rows(ship),
-            ("Log", "After", "As it is", "Calibrated", "This log fitted too", ""),
-            (1, 2, 3, 4),
-        ),
+        error_table=error_table(errors_by_log(ship), "calibrated"),
         logs=Table(
             log_rows(ship),
             ("Log", "Faults, repaired", "Weather fitted", "Unmodelled errors left"),
@@ -99,7 +90,7 @@ def _page(ship: CalibratedShip) -> CalibrationPage:
 
 
 def _key_figures(ship: CalibratedShip) -> tuple[KeyFigure, ...]:
-    errors = [log.errors for log in ship.logs if log.errors]
+    errors = errors_by_log(ship).values()
     most = max(ship.reference.numbers, key=lambda number: abs(moved(number)))
     found = [
         KeyFigure(
@@ -108,15 +99,16 @@ def _key_figures(ship: CalibratedShip) -> tuple[KeyFigure, ...]:
         )
     ]
     if errors:
-        worst = max(errors, key=lambda one: one.after[-1])
+        worst = max(errors, key=lambda one: one.position["after"][-1])
         by = "by the other logs" if worst.fitted_on else "by the first part of the log"
         after = f"position error after {worst.horizon[-1]:.2g} s"
         found += [
-            KeyFigure(metres(worst.before[-1]), f"{after}, as the system is"),
+            KeyFigure(metres(worst.position["before"][-1]), f"{after}, as the system is"),
             KeyFigure(
-                metres(worst.after[-1]), f"the same, calibrated {by}: the error that remains"
+                metres(worst.position["after"][-1]),
+                f"the same, calibrated {by}: the error that remains",
             ),
-            KeyFigure(metres(worst.floor[-1]), "the same, with this log fitted too"),
+            KeyFigure(metres(worst.position["floor"][-1]), "the same, with this log fitted too"),
         ]
     return tuple(found)
 
@@ -149,29 +141,3 @@ def _moved_figure(ship: CalibratedShip) -> Figure:
     note = "Dot and line: estimate and standard deviation on another day. Shaded: the tolerance that the system states."
     height = 90 + _ROW * len(names)
     return Figure("What moved", "tolerances", (dots,), layout, note, height)
-
-
-def _error_figures(ship: CalibratedShip) -> Figures:
-    """Errors of each log over the horizons."""
-    found = []
-    for log in ship.logs:
-        if one := log.errors:
-            horizons = [f"{horizon:.2g} s" for horizon in one.horizon]
-            looks = {
-                "as the system is": (one.before, palette.VERMILLION),
-                "calibrated": (one.after, palette.BLUE),
-                "with this log fitted too": (one.floor, palette.FAINT),
-            }
-            traces = tuple(
-                bars(name, horizons, sizes, colour, "m") for name, (sizes, colour) in looks.items()
-            )
-            by = (
-                f"Calibrated by {', '.join(one.fitted_on)}"
-                if one.fitted_on
-                else "Calibrated by its first two thirds"
-            )
-            note = f"{by}; root mean square over open-loop predictions, noise of the log and all."
-            found.append(
-                Figure(f"Position error, {log.name}", "m", traces, {"barmode": "group"}, note)
-            )
-    return tuple(found)

@@ -3,8 +3,17 @@
 from __future__ import annotations
 
 from shipcosim.diagnose.calibration_pipeline import CalibratedLog, CalibratedShip
+from shipcosim.diagnose.reference.log_errors import LogErrors
 from shipcosim.diagnose.reference.reference import KnownNumber
 from shipcosim.report.theme.numbers import metres, plain
+from shipcosim.report.theme.views import Outcome
+
+
+def outcome(ship: CalibratedShip) -> Outcome:
+    """Whether a reference is made, and what the calibration comes to."""
+    if ship.refusals:
+        return Outcome("unknown", "REFUSED", sentence(ship))
+    return Outcome("consistent", "CALIBRATED", sentence(ship))
 
 
 def sentence(ship: CalibratedShip) -> str:
@@ -13,14 +22,15 @@ def sentence(ship: CalibratedShip) -> str:
     logs = "1 log" if count == 1 else f"{count} logs"
     if ship.refusals:
         return f"No reference is made from {logs}: {ship.refusals[0]}"
-    errors = [log.errors for log in ship.logs if log.errors]
+    errors = errors_by_log(ship).values()
     text = f"{len(ship.reference.numbers)} numbers of the ship are fitted to {logs}."
     if errors:
-        worst = max(errors, key=lambda one: one.after[-1])
+        worst = max(errors, key=lambda one: one.position["after"][-1])
         judged = f"by the other log{'s' * (count > 2)}" if worst.fitted_on else "by its first part"
+        before, after = (metres(worst.position[label][-1]) for label in ("before", "after"))
         text += (
-            f" After {worst.horizon[-1]:.2g} s the simulation was {metres(worst.before[-1])} off the log, and is "
-            f"{metres(worst.after[-1])} off it calibrated {judged}{', in the worst log' if len(errors) > 1 else ''}."
+            f" After {worst.horizon[-1]:.2g} s the simulation was {before} off the log, and is {after} off it calibrated "
+            f"{judged}{', in the worst log' if len(errors) > 1 else ''}."
         )
     return text
 
@@ -46,24 +56,9 @@ def _row(number: KnownNumber) -> tuple[str, ...]:
     )
 
 
-def error_rows(ship: CalibratedShip) -> list[tuple[str, ...]]:
-    """Errors by log and horizon: name, horizon, before, calibrated, with this log fitted too, and what judged it."""
-    return [
-        (
-            log.name,
-            f"{horizon:.2g} s",
-            *map(metres, (one.before[k], one.after[k], one.floor[k])),
-            (
-                f"calibrated by {', '.join(one.fitted_on)}"
-                if one.fitted_on
-                else "calibrated by its first part"
-            ),
-        )
-        for log in ship.logs
-        for one in [log.errors]
-        if one
-        for k, horizon in enumerate(one.horizon)
-    ]
+def errors_by_log(ship: CalibratedShip) -> dict[str, LogErrors]:
+    """Errors of the logs of which a stretch is whole."""
+    return {log.name: log.errors for log in ship.logs if log.errors}
 
 
 def log_rows(ship: CalibratedShip) -> list[tuple[str, ...]]:

@@ -1,7 +1,7 @@
 """Section 3 of the page: which cause?"""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from shipcosim.diagnose.explanation.summary import Evidence
 from shipcosim.diagnose.finding import Candidate
@@ -16,7 +16,7 @@ from shipcosim.report.diagnosis.cause_figures import (
 from shipcosim.report.diagnosis.form_section import FormSection, form_section
 from shipcosim.report.diagnosis.manoeuvre_steps import manoeuvre_steps
 from shipcosim.report.diagnosis.testability import not_testable_rows, visible_rows
-from shipcosim.report.diagnosis.words import course_of, estimate_rows, size_rows, title_of
+from shipcosim.report.diagnosis.words import by_log, course_of, estimate_rows, size_rows, title_of
 from shipcosim.report.theme.numbers import percent, plain
 from shipcosim.report.theme.views import Figure, Table
 
@@ -60,13 +60,7 @@ class CauseSection:
     """
 
     found: str
-    course: str
-    sizes: tuple[Figure, ...]
     estimates: Table
-    gains: Table
-    figures: tuple[Figure, ...]
-    unmodelled: tuple[Figure, ...]
-    whiteness: tuple[Figure, ...]
     alike: Table
     others: Table
     is_unknown: bool
@@ -74,9 +68,15 @@ class CauseSection:
     not_testable: Table
     visible: Table
     form: FormSection | None
+    course: str = ""
+    sizes: tuple[Figure, ...] = ()
+    gains: Table = Table(())
+    figures: tuple[Figure, ...] = ()
+    unmodelled: tuple[Figure, ...] = ()
+    whiteness: tuple[Figure, ...] = ()
 
 
-def cause_section(diagnosis: Diagnosis, evidence: Evidence) -> CauseSection:
+def cause_section(diagnosis: Diagnosis, evidence: Evidence | None) -> CauseSection:
     """Section 3 of the page for the template."""
     named = {(f.cause, f.component) for f in diagnosis.findings}
     alike = diagnosis.indistinguishable
@@ -88,16 +88,9 @@ def cause_section(diagnosis: Diagnosis, evidence: Evidence) -> CauseSection:
     hidden = diagnosis.form.hides if diagnosis.form else ()
     silent = () if diagnosis.is_assumed else diagnosis.not_testable
     weak = not_testable_rows(silent, diagnosis.causes, diagnosis.facts, hidden)
-    figures = [evidence_figure(evidence)] if evidence.sets else []
-    return CauseSection(
+    section = CauseSection(
         found=_found(diagnosis),
-        course="" if evidence.course is None else course_of(evidence.course.finding),
-        sizes=() if evidence.course is None else course_figures(evidence.course),
         estimates=_estimates(diagnosis),
-        gains=_gains(evidence),
-        figures=(*figures, *([estimate_figure(evidence)] if evidence.sizes else [])),
-        unmodelled=(unmodelled_figure(evidence.unmodelled),) if evidence.unmodelled else (),
-        whiteness=whiteness_figures(evidence),
         alike=_chances(alike),
         others=_chances(others),
         is_unknown=diagnosis.verdict == "unknown",
@@ -107,6 +100,18 @@ def cause_section(diagnosis: Diagnosis, evidence: Evidence) -> CauseSection:
             visible_rows(diagnosis.smallest_visible), head=("Cause", "Size, in 9 of 10 cases")
         ),
         form=form_section(diagnosis.form) if diagnosis.form else None,
+    )
+    if evidence is None:
+        return section
+    figures = [evidence_figure(evidence)] if evidence.sets else []
+    return replace(
+        section,
+        course="" if evidence.course is None else course_of(evidence.course.finding),
+        sizes=() if evidence.course is None else course_figures(evidence.course),
+        gains=_gains(evidence),
+        figures=(*figures, *([estimate_figure(evidence)] if evidence.sizes else [])),
+        unmodelled=(unmodelled_figure(evidence.unmodelled),) if evidence.unmodelled else (),
+        whiteness=whiteness_figures(evidence),
     )
 
 
@@ -132,11 +137,12 @@ def _estimates(diagnosis: Diagnosis) -> Table:
             head=("Cause", "Parameter", "At the reference → now", "Probability"),
             tight=(1, 2, 3),
         )
-    rows = [
-        (title_of(f), name, value, f"± {std}", unit, percent(f.probability))
-        for f in physics
-        for name, value, std, unit in estimate_rows(f)
-    ]
+    rows = []
+    for finding in physics:
+        alone = [(f"{log} alone", one, "") for log, one in by_log(finding)]
+        for name, one, sure in ((title_of(finding), finding, percent(finding.probability)), *alone):
+            for parameter, value, std, unit in estimate_rows(one):
+                rows.append((name, parameter, value, f"± {std}", unit, sure))
     head = ("Cause", "Parameter", "Estimate", "Std", "Unit", "Probability")
     return Table(rows, head, tight=(1, 2, 3, 4, 5))
 

@@ -1,11 +1,8 @@
 """Section 4 of the page: what was changed in the system?"""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
-from shipcosim.diagnose.extension.extend import Extension
-from shipcosim.diagnose.extension.extended_system import NumberChange
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.theme.numbers import plain
 from shipcosim.report.theme.views import Table
@@ -34,7 +31,7 @@ class ExtensionSection:
 
     found: str
     state: Literal["extended", "no cause", "failed", "log only"]
-    content: str = "The named causes"
+    content: str = ""
     system: str = ""
     parameters: str = ""
     values: Table = Table(())
@@ -44,34 +41,20 @@ class ExtensionSection:
 
 def extension_section(diagnosis: Diagnosis) -> ExtensionSection:
     """Section 4 of the page for the template."""
-    section = section_of(diagnosis.extension, diagnosis.changes, bool(diagnosis.physics))
-    if diagnosis.verdict == "form":
-        section = replace(section, content="Those numbers of the other form that the FMUs have")
-    return section
-
-
-def section_of(
-    extension: Extension | None, changes: Sequence[NumberChange], is_found: bool
-) -> ExtensionSection:
-    """Section on an extended system.
-
-    Parameters
-    ----------
-    extension : Extension or None
-    changes : sequence of NumberChange
-    is_found : bool
-        Whether a cause of the physics was found, that could have gone into the system.
-    """
-    # Nothing was extended: no cause was found, or the extension failed.
+    extension = diagnosis.extension
+    # Nothing was extended: no cause of the ship was found, or the extension failed.
     if extension is None:
-        return ExtensionSection("none", "failed" if is_found else "no cause")
+        of_ship = any(one.logs != (one.component,) for one in diagnosis.physics)
+        return ExtensionSection("none", "failed" if of_ship else "no cause")
     rows = tuple(
         (of.name, "–" if of.before is None else plain(of.before, 5), plain(of.after, 5), of.unit)
-        for of in changes
+        for of in diagnosis.changes
     )
+    of_form = "Those numbers of the other form that the FMUs have"
     return ExtensionSection(
         found="extended.ssp",
         state="extended" if extension.values else "log only",
+        content=of_form if diagnosis.verdict == "form" else "The named causes",
         system=extension.ssp.name,
         parameters=extension.ssv.name,
         values=Table(rows, head=("Number", "Was", "Is", "Unit"), tight=(1, 2, 3)),

@@ -46,6 +46,10 @@ class GainSection:
         Errors in array form: with the causes; with every known number of the ship moved within its tolerance too. [m]
     difference : str
         Largest difference between co-simulation and array form, if it is known. [m]
+    numbers : Table
+        Of a learned craft.
+    logs : str
+        Names of the logs that were predicted with the causes as the others sized them.
     """
 
     found: str
@@ -60,6 +64,7 @@ class GainSection:
     calibrated: str = ""
     difference: str = ""
     numbers: Table = Table(())
+    logs: str = ""
 
 
 def gain_section(diagnosis: Diagnosis) -> GainSection:
@@ -76,7 +81,8 @@ def gain_section(diagnosis: Diagnosis) -> GainSection:
     found = _found(gain, diagnosis.verdict)
     is_extended = "extended" in models
     if errors is None:
-        return GainSection(found, False, is_extended)
+        logs = gain["logs"] if gain and "logs" in gain else ()
+        return GainSection(found, False, is_extended, errors=_errors(gain), logs=", ".join(logs))
     # Conditions that the log has too little of to measure a gain.
     held_out = {one.condition for one in errors.held_out}
     return GainSection(
@@ -126,17 +132,18 @@ def _errors(gain: Mapping[str, Any] | None) -> Table:
     """Errors with each model, and the removed share of the explainable error."""
     if not gain:
         return Table(())
-    rows = [
-        ("Simulation as it was", metres(gain["before_m"])),
-        ("with a bias observer", metres(gain["bias_observer_m"])),
-        ("with the named causes", metres(gain["after_m"])),
-        ("Noise floor", metres(gain["noise_floor_m"])),
-    ]
+    errors = {
+        "Simulation as it was": gain["before_m"],
+        "with a bias observer": gain["bias_observer_m"],
+        "with the named causes": gain["after_m"],
+        "Noise floor": gain["noise_floor_m"],
+    }
+    rows = [(name, metres(error)) for name, error in errors.items() if error is not None]
     if gain["share_of_explainable"] is not None:
         rows.append(("Explainable error removed", removed(gain)))
-    return Table(
-        rows, head=("Position error after 60 s, rows kept from the fit", "Root mean square")
-    )
+    judged = "over all logs" if "logs" in gain else "rows kept from the fit"
+    head = (f"Position error after {gain['horizon_s']:g} s, {judged}", "Root mean square")
+    return Table(rows, head)
 
 
 def craft_table(craft: LearnedCraft | None) -> Table:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from xarray import DataArray, Dataset
+from xarray import Dataset
 
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.hypotheses.catalogue import read_faults
@@ -156,7 +156,7 @@ def _traces(raw: Dataset, used: Dataset, channel: str, colour: str, unit: str) -
     old, _ = thinned(raw[[channel]], MOST_ROWS["channel"])
     new, _ = thinned(used[[channel]], MOST_ROWS["channel"]) if channel in used else (None, 1)
     # The logged curve is wide and pale under the used one.
-    if new is None or not _same(raw[channel], used[channel]):
+    if new is None or not np.array_equal(raw[channel], used[channel], equal_nan=True):
         traces.append(
             _curve(
                 f"{label}, logged",
@@ -171,10 +171,6 @@ def _traces(raw: Dataset, used: Dataset, channel: str, colour: str, unit: str) -
     if new is not None:
         traces.append(_curve(label, new["time"].values, new[channel].values, colour, unit))
     return traces
-
-
-def _same(one: DataArray, other: DataArray) -> bool:
-    return one.size == other.size and np.array_equal(one.values, other.values, equal_nan=True)
 
 
 def _curve(

@@ -2,8 +2,10 @@
 
 from dataclasses import dataclass
 
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.hypotheses.catalogue import read_faults
-from shipcosim.diagnose.result import Diagnosis, LogSummary
+from shipcosim.diagnose.result import Diagnosis
+from shipcosim.report.diagnosis.by_log import log_table
 from shipcosim.report.diagnosis.log_figures import log_figures, track_figure
 from shipcosim.report.diagnosis.words import title, told, where
 from shipcosim.report.theme.views import Figure, Table
@@ -21,6 +23,8 @@ class LogSection:
     notes, handled : tuple of str
         What could not be known; what is ordinary in a log and was handled.
     figures : tuple of Figure
+    logs : Table
+        Of several logs, what each says by itself.
     """
 
     found: str
@@ -28,11 +32,13 @@ class LogSection:
     notes: tuple[str, ...]
     figures: tuple[Figure, ...]
     handled: tuple[str, ...]
+    logs: Table
 
 
-def log_section(diagnosis: Diagnosis, log: LogSummary) -> LogSection:
+def log_section(diagnosis: Diagnosis) -> LogSection:
     """Section 1 of the page for the template."""
     findings = diagnosis.findings
+    log = diagnosis.log
     faults = [f for f in findings if f.kind == "data"]
     # Each fault with its channels, place, and what was done about it.
     rows = [
@@ -41,15 +47,23 @@ def log_section(diagnosis: Diagnosis, log: LogSummary) -> LogSection:
             ", ".join(f.channels) or "all",
             where(f),
             f.sentence or told(f),
-            "nothing" if f.alternatives else read_faults()[f.cause].repair,
+            "nothing" if f.alternatives else _repair(f),
         )
         for f in faults
     ]
-    track = track_figure(log.repaired)
+    track = track_figure(log.repaired) if log else None
+    channels = log_figures(log.measured, log.repaired, findings) if log else ()
     return LogSection(
         found=f"{len(faults)} fault{'s' * (len(faults) != 1)}" if faults else "no fault found",
         faults=Table(rows, head=("Fault", "Channels", "Where", "What", "Done about it")),
         notes=diagnosis.notes,
-        figures=(*([track] if track else []), *log_figures(log.measured, log.repaired, findings)),
-        handled=log.handled,
+        figures=(*([track] if track else []), *channels),
+        handled=log.handled if log else (),
+        logs=log_table(diagnosis),
     )
+
+
+def _repair(fault: Finding) -> str:
+    """What was done about a fault, and in which logs besides those that show it."""
+    also = f"; in {', '.join(fault.put_right)} too" if fault.put_right else ""
+    return read_faults()[fault.cause].repair + also

@@ -1,13 +1,17 @@
-"""Figures and tables of prediction errors: by horizon, regime, condition and model."""
+"""Section 2 of the page, and figures and tables of prediction errors: by horizon, regime, condition and model."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
+from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.diagnose.validation.summary import ConditionErrors, PredictionErrors
+from shipcosim.report.diagnosis import by_log
+from shipcosim.report.diagnosis.force_figures import force_figures
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import TIME, bars, line
-from shipcosim.report.theme.numbers import plain
+from shipcosim.report.theme.numbers import percent, plain
 from shipcosim.report.theme.views import Figure, Table
 
 MODELS = {
@@ -25,6 +29,48 @@ CHANNELS = {
     "yaw_rate": ("Rate of turn", "°/s"),
 }
 HELD = {"other headings": "headings not fitted on", "free drift": "free drift, not fitted on"}
+
+
+@dataclass(frozen=True)
+class ErrorSection:
+    """Errors of predictions with the model as it was, and the force that it lacks.
+
+    Attributes
+    ----------
+    found : str
+        The result in a few words.
+    figures : tuple of Figure
+        Errors; empty if there was too little data for predictions.
+    errors : Table
+    has_floor : bool
+        Whether the noise floor is shown too.
+    forces : tuple of Figure
+        The missing force; empty if it is not known.
+    """
+
+    found: str
+    figures: tuple[Figure, ...]
+    errors: Table
+    has_floor: bool
+    forces: tuple[Figure, ...]
+
+
+def error_section(diagnosis: Diagnosis) -> ErrorSection:
+    """Section 2 of the page for the template."""
+    if isinstance(diagnosis, JointDiagnosis):
+        figures = by_log.error_figures(diagnosis.errors)
+        table = by_log.error_table(diagnosis.errors)
+        return ErrorSection(by_log.error_after(diagnosis), figures, table, False, ())
+    # Errors of the model as it was; the noise floor only where it is known.
+    errors = diagnosis.predictions
+    models = models_to_show(("plain", "floor"), diagnosis)
+    return ErrorSection(
+        found=by_log.error_after(diagnosis),
+        figures=() if errors is None else tuple(error_figures(errors.overall, models)),
+        errors=Table(()) if errors is None else error_table(errors, models),
+        has_floor="floor" in models,
+        forces=() if diagnosis.force is None else tuple(force_figures(diagnosis.force)),
+    )
 
 
 def models_to_show(models: Sequence[str], diagnosis: Diagnosis) -> list[str]:
@@ -103,7 +149,7 @@ def removed(entry: Mapping[str, Any] | None) -> str:
         if entry["ci95"]
         else ""
     )
-    return f"{100 * entry['share_of_explainable']:.0f} %{sure}"
+    return percent(entry["share_of_explainable"]) + sure
 
 
 def gain_figures(errors: PredictionErrors, models: Sequence[str]) -> list[Figure]:

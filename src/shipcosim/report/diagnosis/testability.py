@@ -13,7 +13,6 @@ BY_FORM = (
     "loads of another form than the model's would do the same, and hers have another form; a log of the ship when she "
     "was well, as a reference, tells"
 )
-VISIBLE = "Smallest fault that would have shown, in 9 of 10 cases"
 UNITS = {
     "speed": "m/s",
     "surge": "m/s",
@@ -97,7 +96,9 @@ def _scaled(unit: str, size: float) -> tuple[str, float]:
 
 
 def _texts(facts: Mapping[str, float | None]) -> dict[str, str | None]:
-    """Properties of a log with units; None for what it does not have."""
+    """Properties of a log with units; None for what it does not have. Nothing of several logs."""
+    if not facts:
+        return {}
     sizes = {name: facts.get(name) for name in UNITS}
     texts = {
         name: None if size is None else f"{plain(size, 2)} {UNITS[name]}"
@@ -108,7 +109,7 @@ def _texts(facts: Mapping[str, float | None]) -> dict[str, str | None]:
 
 def _reason(cause: Cause | None, facts: Mapping[str, str | None]) -> str:
     """What the log lacks to show a cause, with a semicolon; empty if its file does not say."""
-    if cause is None or not cause.why_not_testable:
+    if cause is None or not cause.why_not_testable or not facts:
         return ""
     # The log does not have the channel at all, or too little of it.
     missing = [name for name in placeholders(cause.why_not_testable) if facts[name] is None]

@@ -1,6 +1,7 @@
 """Results of a diagnosis in sentences for those who sail and maintain the ship."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from shipcosim.diagnose.craft.learned import LearnedCraft
 from shipcosim.diagnose.experiment.design import ExperimentDesign
@@ -8,16 +9,14 @@ from shipcosim.diagnose.explanation.summary import CauseGain, LoadForm, SizeEsti
 from shipcosim.diagnose.finding import Candidate, Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, read_faults
 from shipcosim.diagnose.hypotheses.cause import Cause
+from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.diagnose.validation.split import HORIZONS
 from shipcosim.report.diagnosis.clauses import filled
 from shipcosim.report.diagnosis.estimates import amount, plus_minus
 from shipcosim.report.theme.numbers import metres, percent, plain, span
-from shipcosim.report.theme.views import Outcome
+from shipcosim.report.theme.views import Fact, Outcome, known_facts
 
-ADD_A_CAUSE = (
-    "If you know a cause that is not in the catalogue, add it as one file (docs/add-a-cause.md)."
-)
 LIKELY = 0.25
 """Probability of a candidate beside an unknown error, half of what it were alone, from which on it is mentioned."""
 
@@ -55,6 +54,9 @@ def told(finding: Finding, causes: Mapping[str, Cause] | None = None) -> str:
     # Faults of the log have texts of their own.
     if finding.cause in read_faults():
         return _fault(finding)
+    if finding.logs == (finding.component,):
+        weather = told(replace(finding, component=None, logs=()), causes)
+        return f"{weather} (on the day of {finding.component})"
     cause = (read_catalogue() if causes is None else causes).get(finding.cause)
     # Since when, and what it was at the reference.
     since = f", {course_of(finding)}" if finding.onset is not None else ""
@@ -99,6 +101,8 @@ def _at_reference(finding: Finding) -> str:
 def _fault(finding: Finding) -> str:
     """Describe a fault of the log or the connections as a clause."""
     fault = read_faults()[finding.cause]
+    if finding.logs and finding.note:
+        return finding.note
     text = fault.statement.format(component=finding.component)
     # Duration and number of stretches, or the channels, as the fault's file asks.
     if fault.adds == "duration" and finding.segments:
@@ -110,90 +114,95 @@ def _fault(finding: Finding) -> str:
     return text
 
 
-def outcome(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None = None) -> Outcome:
-    """Verdict as a word and a sentence.
-
-    Parameters
-    ----------
-    diagnosis : Diagnosis
-    causes : dict of str to Cause, optional
-        As for `told`.
-
-    Returns
-    -------
-    Outcome
-    """
-    word, sentence = _verdict(diagnosis, causes)
-    return Outcome(diagnosis.verdict, word, sentence)
+def outcome(diagnosis: Diagnosis) -> Outcome:
+    """Verdict as a word and a sentence."""
+    errors = diagnosis.craft.errors if diagnosis.craft else None
+    word = "LEARNED" if diagnosis.is_assumed and errors else diagnosis.verdict.upper()
+    return Outcome(diagnosis.verdict, word, _sentence(diagnosis))
 
 
-def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[str, str]:
+def facts_of(diagnosis: Diagnosis) -> tuple[Fact, ...]:
+    """System, and length of the log; of several logs their names and what they have in all."""
+    if isinstance(diagnosis, JointDiagnosis):
+        bases = [one.basis for one in diagnosis.logs.values()]
+        logs = [basis.explained.identification.log for basis in bases if basis]
+        names = f"{', '.join(diagnosis.logs)}; "
+    else:
+        logs = [diagnosis.log.measured] if diagnosis.log else []
+        names = ""
+    times = [log["time"].values for log in logs]
+    minutes = sum(time[-1] - time[0] for time in times) / 60.0
+    length = f"{names}{minutes:.0f} min, {sum(map(len, times))} rows" if times else ""
+    system = diagnosis.system.name if diagnosis.system else ""
+    return known_facts((("System", system), ("Logs" if names else "Log", length)))
+
+
+def _sentence(diagnosis: Diagnosis) -> str:
+    """The verdict, with what it rests on."""
     # Faults of the log and causes in the physics are told apart.
     data = [told(f) for f in diagnosis.findings if f.kind == "data" and not f.alternatives]
-    physics = [told(f, causes) for f in diagnosis.physics]
-    log = f" The log itself is faulty: {listed(data)}." if data else ""
+    physics = [told(f, diagnosis.causes or None) for f in diagnosis.physics]
+    several = isinstance(diagnosis, JointDiagnosis)
+    faulty = "logs are faulty alike" if several else "log itself is faulty"
+    log = f" The {faulty}: {listed(data)}." if data else ""
     if diagnosis.is_assumed:
         return _learned(diagnosis, log)
     # An unknown cause comes first: it puts everything else in doubt.
     if diagnosis.verdict == "unknown":
-        return "UNKNOWN", _unknown(diagnosis, physics) + craft_sentence(diagnosis.craft) + log
+        return _unknown(diagnosis, physics) + craft_sentence(diagnosis.craft) + log
     # Next, channels that can be read in several ways.
     if misread := [f.sentence for f in diagnosis.findings if f.alternatives]:
         return (
-            "AMBIGUOUS",
-            f"The log is misread, and its own channels cannot tell where: {listed(misread)}.{log}",
+            f"The log is misread, and its own channels cannot tell where: {listed(misread)}.{log}"
         )
-    # Next, causes that this log cannot tell apart.
+    # Next, causes that cannot be told apart.
     if diagnosis.verdict == "ambiguous":
+        if several and not diagnosis.indistinguishable:
+            return "These logs say nothing of the ship: their channels may be misread. Each log's own line says how."
+        which = "these logs" if several else "this log"
         names = [title_of(c).lower() for c in diagnosis.indistinguishable]
         besides = f" Certain is: {listed(physics)}." if physics else ""
-        return (
-            "AMBIGUOUS",
-            f"Something is wrong, and this log cannot tell which: {listed(names, 'or')}.{besides}{log}",
-        )
+        return f"Something is wrong, and {which} cannot tell which: {listed(names, 'or')}.{besides}{log}"
     # Named causes, then faults of the log alone.
     if physics:
         many = f"{len(physics)} things are" if len(physics) > 1 else "one thing is"
         better = _better_predictor(diagnosis) + craft_sentence(diagnosis.craft)
-        return "NAMED", f"At least {many} not as modelled: {listed(physics)}.{better}{log}"
+        return f"At least {many} not as modelled: {listed(physics)}.{better}{log}"
     if data:
-        return (
-            "NAMED",
-            f"The log is faulty: {listed(data)}. Apart from that, simulation and log agree.",
-        )
+        faulty = "logs are faulty alike" if several else "log is faulty"
+        return f"The {faulty}: {listed(data)}. Apart from that, simulation and log agree."
+    if several and any(diagnosis.own_faults(name) for name in diagnosis.logs):
+        return "Apart from faults of single logs, simulation and logs agree."
     # No cause, and the log is explained by loads of another form alone; or perhaps so.
     if diagnosis.verdict == "form" and diagnosis.form:
-        return "FORM", _form(diagnosis, diagnosis.form)
+        return _form(diagnosis.form)
     if diagnosis.craft:
         learned = craft_sentence(diagnosis.craft)
-        return "FORM", f"No cause is found, but numbers of the ship are not the file's.{learned}"
+        return f"No cause is found, but numbers of the ship are not the file's.{learned}"
     if diagnosis.form:
-        return (
-            "CONSISTENT",
-            "Simulation and log agree, where the loads may have another form than the model's.",
-        )
+        return "Simulation and log agree, where the loads may have another form than the model's."
     text = "Simulation and log agree, within noise and the tolerances of the model"
     if healthy := diagnosis.healthy:
         text += (
             f": healthy ships are off by up to {metres(healthy.largest['position'])} and "
             f"{healthy.largest['heading']:.1f}° after {HORIZONS[-1]:g} s, and she is by less"
         )
-    return "CONSISTENT", f"{text}."
+    return f"{text}."
 
 
-def _learned(diagnosis: Diagnosis, log: str) -> tuple[str, str]:
+def _learned(diagnosis: Diagnosis, log: str) -> str:
     """What a log teaches of a craft of whom only the length was known."""
     errors = diagnosis.craft.errors if diagnosis.craft else None
     if errors is None:
-        return "UNKNOWN", f"{diagnosis.obstacles[0]}{log}"
-    return "LEARNED", (
+        return f"{diagnosis.obstacles[0]}{log}"
+    return (
         f"The log teaches the craft: after {errors.horizon:.3g} s, on parts that were held out, she is predicted "
         f"{metres(errors.after)} and {errors.after_deg:.2g}° off. If she kept her velocity, it would be "
         f"{metres(errors.steady)} and {errors.steady_deg:.2g}°.{log}"
     )
 
 
-def _form(diagnosis: Diagnosis, form: LoadForm) -> str:
+def _form(form: LoadForm) -> str:
     """What another form of the loads does, how much of the error it explains, and which causes may hide in it."""
     if form.differs:
         name, share = max(form.differs.items(), key=lambda pair: pair[1])
@@ -268,12 +277,13 @@ def craft_sentence(craft: LearnedCraft | None) -> str:
     )
 
 
-def discrepancy_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
-    """Discrepancies, largest first: in words, size, share of the error."""
+def discrepancy_rows(diagnosis: Diagnosis) -> list[tuple[str, ...]]:
+    """Discrepancies, largest first: in words, size, share of the error, and of several logs those that show it."""
     rows = []
     for one in diagnosis.discrepancies:
         size = plus_minus(ParameterEstimate(one.estimate, one.std, one.unit)) if one.std else ""
-        rows.append((one.what, size, f"{100.0 * one.share:.0f} %" if one.share else ""))
+        logs = (", ".join(one.logs),) if one.logs else ()
+        rows.append((one.what, size, percent(one.share) if one.share else "", *logs))
     return rows
 
 
@@ -288,9 +298,7 @@ def listed(texts: Sequence[str], last: str = "and") -> str:
     return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} {last} {texts[-1]}"
 
 
-def next_steps(
-    diagnosis: Diagnosis, extended: str | None = None, causes: Mapping[str, Cause] | None = None
-) -> list[str]:
+def next_steps(diagnosis: Diagnosis, extended: str | None = None) -> list[str]:
     """Next steps for the user.
 
     Parameters
@@ -298,8 +306,6 @@ def next_steps(
     diagnosis : Diagnosis
     extended : str, optional
         Path of the extended system, where something in it is other than it was.
-    causes : dict of str to Cause, optional
-        As for `told`.
 
     Returns
     -------
@@ -317,12 +323,19 @@ def next_steps(
         steps.append(
             f"Correct the logging where it is wrong ({where}); this diagnosis used a repaired copy."
         )
+    several = isinstance(diagnosis, JointDiagnosis)
+    own = [name for name in diagnosis.logs if diagnosis.own_faults(name)] if several else []
+    if own:
+        steps.append(f"Look at the faults of single logs: {', '.join(own)}.")
     # Steps that the causes' files recommend.
-    causes = read_catalogue() if causes is None else causes
-    steps += cause_steps(diagnosis.physics, causes)
+    causes = diagnosis.causes or read_catalogue()
+    wanted = [
+        (causes[f.cause].next_step, f.component) for f in diagnosis.physics if f.cause in causes
+    ]
+    steps += dict.fromkeys(step.format(component=component) for step, component in wanted if step)
     # A manoeuvre that separates causes, better logs, or a look at the missing force.
     if diagnosis.verdict == "ambiguous" and not misread:
-        steps.append(manoeuvre_step(diagnosis.prescription))
+        steps.append(_manoeuvre_step(diagnosis.prescription))
     if diagnosis.is_assumed:
         steps.append(
             "Write into craft.toml what is known of her, make her systems with shipcosim new ship NAME --from craft.toml, "
@@ -333,34 +346,40 @@ def next_steps(
             "Log as the remarks ask and diagnose again: from this log no cause can be named."
         )
     elif diagnosis.verdict == "unknown":
-        steps.append("Look on the page how the missing force goes with time, heading and wind.")
-        steps.append(ADD_A_CAUSE)
+        where = "Diagnose a log by itself and look on its page" if several else "Look on the page"
+        steps.append(f"{where} how the missing force goes with time, heading and wind.")
+        steps.append(
+            "If you know a cause that is not in the catalogue, add it as one file (docs/add-a-cause.md)."
+        )
     elif diagnosis.verdict == "form":
         steps.append(
             "If the ship was well, make these logs her reference: shipcosim calibrate. A later diagnosis then says what "
             "has changed since."
         )
     # What is possible now, and what this log cannot say.
-    if extended:
+    better, judged = predicted_better(diagnosis)
+    if extended and 2 * better < judged:
+        steps.append(
+            f"Do not use {extended} yet: with it {judged - better} of {judged} logs are predicted no better. What is "
+            "named is not all; mend first what stands beside it under what is wrong, largest first."
+        )
+    elif extended:
         steps.append(f"Simulate with it in the system: shipcosim simulate {extended}")
     if diagnosis.not_testable and not diagnosis.obstacles:
-        steps.append(f"This log {say_nothing(diagnosis.not_testable, 'says')}")
+        names = listed([title(name).lower() for name in diagnosis.not_testable], "or")
+        subject = "These logs say" if several else "This log says"
+        steps.append(f"{subject} nothing about {names}, present or not.")
     return steps or ["Nothing needs to be done."]
 
 
-def cause_steps(physics: Iterable[Finding], causes: Mapping[str, Cause]) -> list[str]:
-    """Steps that the causes' files recommend."""
-    wanted = [(causes[f.cause].next_step, f.component) for f in physics if f.cause in causes]
-    return [step.format(component=component) for step, component in wanted if step]
+def predicted_better(diagnosis: Diagnosis) -> tuple[int, int]:
+    """How many logs are predicted better with the causes that others sized, after the longest horizon; of how many."""
+    errors = diagnosis.errors.values() if isinstance(diagnosis, JointDiagnosis) else ()
+    judged = [one.position for one in errors if "after" in one.position]
+    return sum(one["after"][-1] < one["before"][-1] for one in judged), len(judged)
 
 
-def say_nothing(causes: Iterable[str], verb: str) -> str:
-    """End of a sentence on causes that could not have shown."""
-    names = listed([title(name).lower() for name in causes], "or")
-    return f"{verb} nothing about {names}, present or not."
-
-
-def manoeuvre_step(prescription: ExperimentDesign | None) -> str:
+def _manoeuvre_step(prescription: ExperimentDesign | None) -> str:
     """Manoeuvre to sail if causes cannot be told apart."""
     if prescription is None:
         return "Log more, with larger moves, turns and thrust ahead and astern: what is alike here differs there."
@@ -411,18 +430,30 @@ def finding_rows(findings: Iterable[Finding]) -> Iterator[tuple[str, ...]]:
     """Rows of texts: cause, certainty, and each parameter's size; for a fault, its place."""
     for finding in findings:
         name = title_of(finding)
-        sure = f"{100 * finding.probability:.0f} %"
+        sure = percent(finding.probability)
         # Cause and certainty only in the first row of a finding.
         rows = size_rows(finding) if finding.kind == "physics" else []
         for parameter, size in rows:
             yield name, sure, parameter, size
             name = sure = ""
+        for log, alone in by_log(finding):
+            yield from ((f"{log} alone", "", *row) for row in size_rows(alone))
         if not rows:
             yield name, sure, where(finding), finding.sentence or ", ".join(finding.channels)
 
 
+def by_log(finding: Finding) -> list[tuple[str, Finding]]:
+    """A cause that several logs have in common, with its sizes by each of them alone."""
+    return [
+        (log, replace(finding, parameters=own, at_reference={}))
+        for log, own in finding.by_log.items()
+    ]
+
+
 def where(finding: Finding) -> str:
-    """Stretches of the log in which a fault acts, as text."""
+    """Stretches of the log in which a fault acts, or the logs that show it, as text."""
+    if finding.logs:
+        return ", ".join(finding.logs)
     if not finding.segments:
         return "the whole log"
     return ", ".join(span(*segment) for segment in finding.segments)

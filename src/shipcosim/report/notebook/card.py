@@ -9,7 +9,7 @@ from functools import cached_property
 
 from shipcosim.report.notebook.figures import can_draw
 from shipcosim.report.theme.pages import render
-from shipcosim.report.theme.views import Page, Table
+from shipcosim.report.theme.views import Block, Page
 
 COLOURS = {
     "passed": "#007a5a",
@@ -21,19 +21,6 @@ COLOURS = {
 }
 WRONG = "#b34700"
 HINT = "The picture needs matplotlib: pip install 'shipcosim[notebook]'."
-
-
-@dataclass(frozen=True)
-class Block:
-    """A table or some lines under a heading; `folded`: shown when it is asked for."""
-
-    heading: str
-    table: Table = Table(())
-    lines: tuple[str, ...] = ()
-    folded: bool = False
-
-    def __bool__(self) -> bool:
-        return bool(self.table.rows or self.lines)
 
 
 @dataclass(frozen=True, kw_only=True)

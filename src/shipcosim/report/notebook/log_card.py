@@ -9,9 +9,9 @@ from xarray import Dataset
 
 from shipcosim.diagnose.finding import Finding
 from shipcosim.report.diagnosis.words import title_of, where
-from shipcosim.report.notebook.card import Block, Card
+from shipcosim.report.notebook.card import Card
 from shipcosim.report.theme.numbers import plain
-from shipcosim.report.theme.views import Fact, Outcome, Table
+from shipcosim.report.theme.views import Block, Fact, Outcome, Table
 
 
 def log_card(

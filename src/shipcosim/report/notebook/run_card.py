@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 from xarray import Dataset
 
-from shipcosim.report.notebook.card import Block, Card
+from shipcosim.report.notebook.card import Card
 from shipcosim.report.notebook.run_track import run_track
 from shipcosim.report.run.details import parsed
 from shipcosim.report.run.page import digest
-from shipcosim.report.theme.views import Fact, Table, known_facts
+from shipcosim.report.theme.views import Block, Fact, Table, known_facts
 from shipcosim.scenario import Scenario, Verdict
 from shipcosim.ssp import System
 

@@ -12,11 +12,12 @@ from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
 from shipcosim.diagnose.validation.tracks import errors_of
 from shipcosim.report.calibration import words as calibration
 from shipcosim.report.capability.page import page_of as capability_page
+from shipcosim.report.diagnosis.by_log import error_table
 from shipcosim.report.diagnosis.track_figures import error_rows
-from shipcosim.report.notebook.card import Block, Card
+from shipcosim.report.notebook.card import Card
 from shipcosim.report.replay.page import replay_outcome
 from shipcosim.report.sea_trials import words as sea_trials
-from shipcosim.report.theme.views import Fact, Outcome, Table
+from shipcosim.report.theme.views import Block, Fact, Outcome, Table
 
 MOST_ROWS = 12
 
@@ -95,25 +96,15 @@ def replay_card(found: LogReplay, name: str, draw: Callable[[], str]) -> Card:
 
 def calibration_card(found: CalibratedShip) -> Card:
     """Numbers that moved most, and the errors that remain."""
-    refused = bool(found.refusals)
     moved = tuple(calibration.moved_rows(found)[:MOST_ROWS])
-    word = Outcome(
-        "unknown" if refused else "consistent", "REFUSED" if refused else "CALIBRATED", ""
-    )
     return Card(
         title=f"Calibration of {found.reference.system}",
         facts=(Fact("Logs", ", ".join(log.name for log in found.logs)),),
-        outcome=Outcome(word.kind, word.word, calibration.sentence(found)),
+        outcome=calibration.outcome(found),
         blocks=(
             Block("Why", lines=found.refusals),
             Block("Moved most", Table(moved, ("", "before", "calibrated", "by tolerances"))),
-            Block(
-                "Position error that remains",
-                Table(
-                    calibration.error_rows(found),
-                    ("log", "after", "as it is", "calibrated", "at best", ""),
-                ),
-            ),
+            Block("Errors by log", error_table(calibration.errors_by_log(found), "calibrated")),
             Block("Remarks", lines=found.remarks),
         ),
     )

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from shipcosim.report.notebook.card import Block, Card
+from shipcosim.report.notebook.card import Card
 from shipcosim.report.notebook.figures import distribution_svg
 from shipcosim.report.study.page import page_of
 from shipcosim.report.study.statistics import distribution
 from shipcosim.report.study.tables import QUANTITY, StudyTables, columns_of
 from shipcosim.report.study.words import is_failed
-from shipcosim.report.theme.views import Table
+from shipcosim.report.theme.views import Block, Table
 
 MOST_ROWS = 12
 

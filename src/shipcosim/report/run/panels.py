@@ -118,15 +118,11 @@ def _section(section: Section, shown: Dataset) -> Section:
         if panel.bands or not all(is_constant(one) for one in values.values()):
             drawn.append(panel)
         elif panel.states:
-            constant.append(f"{panel.title}: {_set_of(values)}")
+            flags = [name for name, flags in values.items() if flags[0]]
+            constant.append(f"{panel.title}: {', '.join(flags) or 'none'}")
         else:
             constant.append(f"{panel.title} {_levels(values, panel.unit)}")
     return Section(section.title, tuple(drawn), tuple(constant))
-
-
-def _set_of(values: Mapping[str, NDArray]) -> str:
-    """Names of the flags that are set: 'port failed', or 'none'."""
-    return ", ".join(name for name, flags in values.items() if flags[0]) or "none"
 
 
 def _levels(values: Mapping[str, NDArray], unit: str) -> str:

@@ -279,10 +279,11 @@ def _vessel(pose: Pose, names: list[str], known: Mapping[str, Any]) -> Vessel:
         _first_number(known, owner, words)
         for words in (("length", "length_pp", "lpp"), ("breadth", "beam"))
     )
+    velocity = [join(owner, axis) for axis in "uvr"]
     return Vessel(
         name=owner or "ship",
         pose=pose,
-        velocity=tuple(_there(join(owner, axis), names) for axis in "uvr"),
+        velocity=tuple(name if name in names else None for name in velocity),
         aims=_aims(pose, names),
         size=None
         if length is None or breadth is None or min(length, breadth) <= 0.0
@@ -412,10 +413,6 @@ def _sectors(
             ):
                 return ((last, first + 2.0 * np.pi),)
     return ()
-
-
-def _there(name: str, names: list[str]) -> str | None:
-    return name if name in names else None
 
 
 def _first_number(known: Mapping[str, Any], component: str, words: Iterable[str]) -> float | None:

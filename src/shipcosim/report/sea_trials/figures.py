@@ -33,7 +33,8 @@ def track_figure(found: SeaTrialStudy, before: list[NDArray], after: list[NDArra
             drawn = line(
                 name, across, ahead, colour, width=width, legendgroup=name, showlegend=not is_drawn
             )
-            traces.append(drawn | {"hovertemplate": f"{_angle(trial)}: {name}", "named": False})
+            hint = f"{_steering(trial):.0f}° at {trial.logged[0]:.0f} s: {name}"
+            traces.append(drawn | {"hovertemplate": hint, "named": False})
     layout = {
         "xaxis": {"title": {"text": "to starboard"}},
         "yaxis": {"title": {"text": "ahead"}, "scaleanchor": "x"},
@@ -48,13 +49,13 @@ def _chosen(trials: tuple[SeaTrial, ...]) -> list[int]:
     found: dict[tuple[int, int], int] = {}
     for i, trial in enumerate(trials):
         if trial.kind == "turning circle":
-            angle = np.degrees(np.arcsin(min(trial.steering, 1.0)))
-            found.setdefault((trial.side, round(angle / _ALIKE)), i)
+            found.setdefault((trial.side, round(_steering(trial) / _ALIKE)), i)
     return list(found.values())
 
 
-def _angle(trial: SeaTrial) -> str:
-    return f"{np.degrees(np.arcsin(min(trial.steering, 1.0))):.0f}° at {trial.logged[0]:.0f} s"
+def _steering(trial: SeaTrial) -> float:
+    """Angle of the helm. [deg]"""
+    return float(np.degrees(np.arcsin(min(trial.steering, 1.0))))
 
 
 def _turned(motion: NDArray) -> tuple[NDArray, NDArray]:

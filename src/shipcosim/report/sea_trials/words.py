@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from shipcosim.diagnose.experiment.design import Separation
 from shipcosim.diagnose.sea_trials.evidence import SetOfCauses
 from shipcosim.diagnose.sea_trials.features import FEATURES
-from shipcosim.diagnose.sea_trials.separation import Separation
 from shipcosim.diagnose.sea_trials.study import SeaTrialStudy, estimates
 from shipcosim.report.theme.numbers import plain
 from shipcosim.report.theme.views import Outcome, Table

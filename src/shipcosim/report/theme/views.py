@@ -66,6 +66,19 @@ class Table:
 
 
 @dataclass(frozen=True)
+class Block:
+    """A table or some lines under a heading; `folded`: shown when it is asked for."""
+
+    heading: str
+    table: Table = Table(())
+    lines: tuple[str, ...] = ()
+    folded: bool = False
+
+    def __bool__(self) -> bool:
+        return bool(self.table.rows or self.lines)
+
+
+@dataclass(frozen=True)
 class Figure:
     """A plotly figure with its title, unit, and a sentence below.
 

@@ -3,10 +3,11 @@
 import pytest
 from diagnose.sea_trials.test_separation import SHAFTS, found, sets
 
+from shipcosim.diagnose.experiment.design import prescribed
 from shipcosim.diagnose.sea_trials.evidence import ranked, trial_evidence
 from shipcosim.diagnose.sea_trials.features import SOUGHT
 from shipcosim.diagnose.sea_trials.manoeuvres import as_trials, catalogue
-from shipcosim.diagnose.sea_trials.separation import designed, separations
+from shipcosim.diagnose.sea_trials.separation import separations
 from shipcosim.diagnose.sea_trials.study import best_of, rivals_of
 
 PLANTED = {"vessel.mmg_X_vv": -0.7, "instruments.order_lag": 2.5}
@@ -27,7 +28,7 @@ def test_what_was_sailed_already_separates_nothing(separated):
 
 def test_sailing_what_is_prescribed_tells_the_planted_drag_from_the_others(found, sets, separated):
     assert len(sets) > 1
-    designs = designed(separated, sets)
+    designs = prescribed(separated, sets)
     chosen = [
         one
         for one in catalogue(found.model)

@@ -50,16 +50,20 @@ def test_calibration_leaves_set_reference_and_page(made):
 
 
 def test_a_log_is_predicted_better_by_numbers_that_the_other_log_gives(made):
-    short, longer = (log.errors for log in made[0].logs)
-    assert (short.fitted_on, longer.fitted_on) == (("log-2",), ("log-1",))
-    assert longer.after[-1] < 0.8 * longer.before[-1] and short.after[-1] < short.before[-1]
-    assert longer.floor[-1] < 1.1 * longer.after[-1]
+    errors = [log.errors for log in made[0].logs]
+    assert [one.fitted_on for one in errors] == [("log-2",), ("log-1",)]
+    short, longer = (one.position for one in errors)
+    assert (
+        longer["after"][-1] < 0.8 * longer["before"][-1]
+        and short["after"][-1] < short["before"][-1]
+    )
+    assert longer["floor"][-1] < 1.1 * longer["after"][-1]
 
 
 def test_a_single_log_is_judged_on_its_last_part():
     (errors,) = remaining_errors(ships.calibration()).values()
     assert errors.fitted_on == () and len(errors.horizon) == 3
-    assert all(np.isfinite(sizes).all() for sizes in (errors.before, errors.after, errors.floor))
+    assert all(np.isfinite(sizes).all() for sizes in errors.position.values())
 
 
 def test_logs_that_cannot_show_a_ship_that_is_well_are_refused_with_why():
@@ -87,7 +91,8 @@ def test_a_ship_that_a_diagnosis_calls_ill_makes_no_reference(tmp_path):
 
 def test_a_reference_that_predicts_worse_than_the_system_is_refused(made):
     (log, _) = made[0].logs
-    worse = replace(log, errors=replace(log.errors, after=(1.0, 2.0, 9.0), before=(1.0, 2.0, 3.0)))
+    position = {"after": (1.0, 2.0, 9.0), "before": (1.0, 2.0, 3.0)}
+    worse = replace(log, errors=replace(log.errors, position=position))
     assert "by 9 m, the ship as the system has her by 3 m" in _reasons_not_to_trust([worse], {})[0]
     assert _reasons_not_to_trust([log], {"monday": []}) == []
 

@@ -76,7 +76,7 @@ def test_no_log_no_ratio():
 def test_a_fault_of_half_of_the_logs_is_common_and_one_of_a_single_log_is_not():
     gap = Finding("gap", kind="data", segments=((3.0, 9.0),))
     found = common_faults({"a": [SWAP, gap], "b": [SWAP], "c": [], "d": [gap]})
-    assert [(one.what.cause, one.logs) for one in found] == [("channel_swap", ("a", "b"))]
+    assert [(one.cause, one.logs) for one in found] == [("channel_swap", ("a", "b"))]
     assert common_faults({"a": [SWAP], "b": [], "c": []}) == []
 
 
@@ -91,7 +91,7 @@ def test_a_fault_is_the_same_whatever_its_size_in_each_log():
         for text, v in (("4.1 %", 1.041), ("3.9 %", 1.039))
     ]
     (found,) = common_faults({"a": clocks[:1], "b": clocks[1:]})
-    assert found.what.parameters["rate"].estimate == pytest.approx(1.04)
+    assert found.parameters["rate"].estimate == pytest.approx(1.04)
 
 
 def test_what_a_log_leaves_open_is_no_common_fault():
@@ -128,12 +128,12 @@ def test_discrepancies_alike_are_one_with_the_range_of_their_sizes_signs_first()
     wrong = Discrepancy("yaw moment: wrong sign", None, "yaw", -0.6, 0.05, "1", 0.4)
     alone = Discrepancy("thrust acts 2 s after its command", None, None, 2.0, 0.5, "s", 0.1)
     found = common_discrepancies({"a": [wrong, weak(0.47)], "b": [weak(0.53), alone], "c": [wrong]})
-    assert [one.what.what for one in found] == [
+    assert [one.what for one in found] == [
         "yaw moment: wrong sign",
         "thrust over inertia 0.47 to 0.53 of the model's",
     ]
-    assert found[1].logs == ("a", "b") and found[1].what.estimate == pytest.approx(0.5)
-    assert found[1].what.share == pytest.approx(1.6 / 3.0)
+    assert found[1].logs == ("a", "b") and found[1].estimate == pytest.approx(0.5)
+    assert found[1].share == pytest.approx(1.6 / 3.0)
 
 
 def test_what_one_of_two_logs_shows_is_not_common():

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from shipcosim.diagnose.reference.held_out import LogErrors
 from shipcosim.diagnose.reference.joint_gain import joint_baseline, joint_gain
+from shipcosim.diagnose.reference.log_errors import LogErrors
 
 
 def errors(before, after, floor, fitted_on=("other",)):
@@ -14,7 +14,7 @@ def errors(before, after, floor, fitted_on=("other",)):
         "after": (after / 6.0, after / 2.0, after),
     }
     misses = np.repeat([[before], [after], [floor]], 5, axis=1)
-    return LogErrors((10.0, 30.0, 60.0), position, position, fitted_on, (), None, misses=misses)
+    return LogErrors((10.0, 30.0, 60.0), position, position, fitted_on, None, misses=misses)
 
 
 def test_a_log_of_many_predictions_counts_as_much_as_another():

@@ -8,10 +8,10 @@ from diagnose import twin
 from diagnose.sea_trials import trials
 
 from shipcosim.diagnose.checked_log import ReadLog, checked
+from shipcosim.diagnose.experiment.design import Separation, prescribed
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.sea_trials.evidence import SetOfCauses, ranked, trial_evidence
 from shipcosim.diagnose.sea_trials.manoeuvres import as_trials, catalogue
-from shipcosim.diagnose.sea_trials.separation import Separation, designed
 from shipcosim.diagnose.sea_trials.study import best_of, causes_of_trials, rivals_of
 from shipcosim.diagnose.sea_trials.windows import as_ordered, sea_trials_of
 from shipcosim.diagnose.ship.inputs import record_of
@@ -61,7 +61,7 @@ def test_a_ship_sails_every_manoeuvre_of_the_catalogue_to_both_sides():
 def test_as_few_manoeuvres_are_prescribed_as_tell_all_pairs_apart():
     def separation(name, minutes, read, *nats):
         pairs = dict(zip(((0, 1), (0, 2), (1, 2)), nats, strict=True))
-        return Separation(name, minutes, read, pairs, {})
+        return Separation(name, minutes, pairs, read)
 
     sets = [
         SetOfCauses((SimpleNamespace(label=name),), np.zeros(1), np.zeros(1), 0.0) for name in "abc"
@@ -71,7 +71,7 @@ def test_as_few_manoeuvres_are_prescribed_as_tell_all_pairs_apart():
         separation("other", 8.0, True, 12.0, 3.0, 2.0),
     )
     quick = separation("quick, not read from logs", 4.0, False, 50.0, 0.0, 0.0)
-    (first, second) = designed([half, other, quick], sets)
+    (first, second) = prescribed([half, other, quick], sets)
     assert first.manoeuvre == "half" and first.separates == (("a", "c"), ("b", "c"))
     assert second.manoeuvre == "other" and second.separates == (("a", "b"),)
-    assert designed([separation("nothing", 5.0, True, 9.0, 9.0, 9.0)], sets) == ()
+    assert prescribed([separation("nothing", 5.0, True, 9.0, 9.0, 9.0)], sets) == ()

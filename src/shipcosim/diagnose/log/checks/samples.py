@@ -192,7 +192,8 @@ def _flat_runs(log, roles):
     least = max(FEWEST_GAP_ROWS, int(SHORTEST_GAP / np.median(np.diff(time))) - 2)
     # Only runs longer than chance makes them, and long enough in time, are lost data. They are
     # unusual only where noise is seen: a channel too coarse to show it is straight in calm water.
-    flat = list(_long_runs(straight | _same(values), least))
+    held = np.r_[(values[1:] == values[:-1]).all(axis=1), False]
+    flat = list(_long_runs(straight | held, least))
     others = np.ones(len(time), bool)
     for first, last in flat:
         others[first:last] = False
@@ -241,11 +242,6 @@ def _is_line(log, roles, first, last):
         if off > 0.5 * _straight(log[role], role) or np.mean(values[1:-1] != 0.0) < 0.5:
             return False
     return True
-
-
-def _same(values):
-    """Rows after which nothing changes."""
-    return np.r_[(values[1:] == values[:-1]).all(axis=1), False]
 
 
 def _bend(values, role):
