@@ -28,6 +28,7 @@ from shipcosim.dialects import (
     header_of,
     is_figure,
     name_in,
+    seconds_of_spans,
     separator_of,
 )
 from shipcosim.errors import Problem, ShipcosimError, error_at, reading
@@ -606,25 +607,22 @@ def _plain(values: np.ndarray | tuple[str, ...]) -> tuple[np.ndarray, bool]:
         ]
         return numbers, False
     except ValueError:
-        stamps = _stamps(cells, known)
-        texts = np.array(
-            [cell if is_known else None for cell, is_known in zip(cells, known, strict=True)],
-            object,
-        )
-        return (texts, False) if stamps is None else (_seconds_of(stamps), True)
+        texts = [cell if is_known else None for cell, is_known in zip(cells, known, strict=True)]
+        return _times(np.array(texts, object))
 
 
-def _stamps(cells: list[str], known: np.ndarray) -> np.ndarray | None:
-    """Cells as stamps of date and time by ISO 8601, NaT where not known; None where they are none."""
+def _times(texts: np.ndarray) -> tuple[np.ndarray, bool]:
+    """Spans of time, or stamps of date and time by ISO 8601, as seconds; and whether they are such. None is unknown."""
     import pandas
 
-    stamps = np.full(len(cells), "NaT", "datetime64[ns]")
+    cells = pandas.Series(texts, dtype="object").str.strip()
+    if (spans := seconds_of_spans(cells)) is not None:
+        return spans, True
     try:
-        read = pandas.to_datetime(np.array(cells, object)[known], format="ISO8601", utc=True)
+        stamps = pandas.to_datetime(cells, format="ISO8601", utc=True).dt.tz_localize(None)
     except (ValueError, TypeError, OverflowError):
-        return None
-    stamps[known] = read.tz_localize(None).to_numpy()
-    return stamps
+        return texts, False
+    return _seconds_of(stamps.to_numpy("datetime64[ns]")), True
 
 
 def _seconds_of(stamps: np.ndarray) -> np.ndarray:
