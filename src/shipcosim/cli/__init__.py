@@ -8,7 +8,7 @@ import io
 import sys
 
 from shipcosim.cli.app import app
-from shipcosim.cli.exit_guard import guard_exit, release_exit
+from shipcosim.cli.exit_guard import run_in_child
 
 
 def main() -> None:
@@ -16,16 +16,7 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a console that knows no '≥' shows '?'
-    guard_exit()
-    code = 1
-    try:
-        app(prog_name="shipcosim")
-        code = 0
-    except SystemExit as end:
-        code = end.code if isinstance(end.code, int) else int(end.code is not None)
-        raise
-    finally:
-        release_exit(code)
+    run_in_child(lambda: app(prog_name="shipcosim"))
 
 
 __all__ = ["app", "main"]
