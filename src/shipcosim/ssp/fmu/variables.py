@@ -7,6 +7,7 @@ import lxml.etree as etree
 
 from shipcosim.ssp.fmu.description import Variable
 from shipcosim.ssp.fmu.fmi1 import is_negated, items_of, traits_of
+from shipcosim.ssp.xml.definitions import by_name
 from shipcosim.ssp.xml.document import Document, Findings, local, parts_of
 from shipcosim.ssp.xml.values import KINDS, Value, read_value, typed_part
 
@@ -184,7 +185,7 @@ def _items(declared: etree._Element | None, is_first: bool) -> dict[str, int]:
     if is_first:
         return items_of(declaration)
     found = [] if declaration is None else [part for part in declaration if local(part) == "Item"]
-    return {item.get("name"): int(item.get("value")) for item in found}
+    return by_name("item", ((item.get("name"), int(item.get("value"))) for item in found))
 
 
 def _start(typed: etree._Element, kind: str, dimensions: tuple[int, ...]) -> Value | None:
