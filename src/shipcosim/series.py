@@ -216,7 +216,7 @@ def write_file(path: str | os.PathLike, content: bytes) -> None:
         If it cannot be written.
     """
     path = Path(path)
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    part = path.parent / f".{path.name}.{os.getpid()}.part"
     try:
         with part.open("wb") as file:
             file.write(content)

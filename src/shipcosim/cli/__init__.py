@@ -5,6 +5,7 @@ is imported inside the commands: help comes at once.
 """
 
 import io
+import re
 import sys
 
 from shipcosim.cli.app import app
@@ -16,7 +17,21 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a console that knows no '≥' shows '?'
+    _refuse_empty(sys.argv[1:])
     run_in_child(lambda: app(prog_name="shipcosim"))
+
+
+def _refuse_empty(arguments: list[str]) -> None:
+    """Exit with 2 where an argument or an option's value is empty: as a path it would be the working folder."""
+    for before, argument in zip(["", *arguments], arguments, strict=False):
+        if argument and not re.fullmatch(r"--[\w-]+=", argument):
+            continue
+        option = argument or before
+        place = f"after '{option}' " if option else ""
+        sys.stderr.write(
+            f"error: arguments:\nthe argument {place}is empty. Give it a value; is a variable of the shell not set?\n"
+        )
+        sys.exit(2)
 
 
 __all__ = ["app", "main"]
