@@ -47,6 +47,7 @@ _NOTHING = {
     "n/a",
     "na",
     "nan",
+    "none",
     "null",
 }  # in lower case: cells without a value
 LARGEST_TABLE = 8 << 30
@@ -592,22 +593,12 @@ def _plain(values: np.ndarray | tuple[str, ...]) -> tuple[np.ndarray, bool]:
         return values.astype(float), False
     except (ValueError, TypeError):
         pass
-    cells = ["" if value is None else str(value) for value in values]
-    known = np.array([cell.strip().lower() not in _NOTHING for cell in cells])
-    said = {cell.lower() for cell, is_known in zip(cells, known, strict=True) if is_known}
-    numbers = np.full(len(cells), np.nan)
-    if said <= {"true", "false"}:
-        numbers[known] = [
-            cell.lower() == "true" for cell, is_known in zip(cells, known, strict=True) if is_known
-        ]
-        return numbers, False
+    texts = [None if str(value).strip().lower() in _NOTHING else str(value) for value in values]
+    if {str(text).lower() for text in texts} <= {"true", "false", "none"}:
+        return np.array([np.nan if t is None else float(t.lower() == "true") for t in texts]), False
     try:
-        numbers[known] = [
-            float(cell) for cell, is_known in zip(cells, known, strict=True) if is_known
-        ]
-        return numbers, False
+        return np.array([np.nan if text is None else float(text) for text in texts]), False
     except ValueError:
-        texts = [cell if is_known else None for cell, is_known in zip(cells, known, strict=True)]
         return _times(np.array(texts, object))
 
 

@@ -23,15 +23,11 @@ def main() -> None:
 
 def _refuse_empty(arguments: list[str]) -> None:
     """Exit with 2 where an argument or an option's value is empty: as a path it would be the working folder."""
-    for before, argument in zip(["", *arguments], arguments, strict=False):
-        if argument and not re.fullmatch(r"--[\w-]+=", argument):
-            continue
-        option = argument or before
-        place = f"after '{option}' " if option else ""
-        sys.stderr.write(
-            f"error: arguments:\nthe argument {place}is empty. Give it a value; is a variable of the shell not set?\n"
-        )
-        sys.exit(2)
+    for place, argument in enumerate(arguments, start=1):
+        if re.fullmatch(r"(--[\w-]+=)?", argument):
+            found = f"error: argument {place} of the command:\nis empty."
+            sys.stderr.write(f"{found} Give it a value; is a variable of the shell not set?\n")
+            sys.exit(2)
 
 
 __all__ = ["app", "main"]

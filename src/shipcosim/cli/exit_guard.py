@@ -5,15 +5,14 @@ another process can tell, so the work of a command is done in a child.
 """
 
 import ctypes
+import mmap
 import os
 import signal
 import sys
 from collections.abc import Callable
 
 _DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux
-_PASSED_ON = {signal.SIGINT, signal.SIGTERM} | (
-    {signal.SIGHUP, signal.SIGQUIT} if os.name == "posix" else set()
-)
+_WATCHED = ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT", "SIGCHLD")
 _CRASHES = ("SIGSEGV", "SIGBUS", "SIGFPE", "SIGILL", "SIGABRT")
 
 
@@ -29,10 +28,10 @@ def run_in_child(work: Callable[[], None]) -> None:
     if sys.platform != "linux":
         work()
         return
-    reader, writer = os.pipe()
+    is_done = mmap.mmap(-1, 1)  # shared with the child
     parent = os.getpid()
     # Blocked before the child is there, so that none of its signals is missed.
-    watched = {*_PASSED_ON, signal.SIGCHLD}
+    watched = {getattr(signal, name) for name in _WATCHED}
     before = signal.pthread_sigmask(signal.SIG_BLOCK, watched)
     child = os.fork()
     if child == 0:
@@ -43,11 +42,10 @@ def run_in_child(work: Callable[[], None]) -> None:
         try:
             work()
         finally:
-            os.write(writer, b"done")
+            is_done[0] = 1
         return
-    os.close(writer)
     status = _wait_for(child, watched)
-    _exit_as(status, is_done=bool(_content(reader)))
+    _exit_as(status, bool(is_done[0]))
 
 
 def _wait_for(child: int, watched: set[signal.Signals]) -> int:
@@ -64,15 +62,6 @@ def _wait_for(child: int, watched: set[signal.Signals]) -> int:
             return status
 
 
-def _content(reader: int) -> bytes:
-    """What is in a pipe, which processes that are left may hold open."""
-    os.set_blocking(reader, False)
-    try:
-        return os.read(reader, 8)
-    except BlockingIOError:
-        return b""
-
-
 def _exit_as(status: int, is_done: bool) -> None:
     """End this process as the child has ended, or with 1 and a message where a library has ended it."""
     code = os.waitstatus_to_exitcode(status)
@@ -84,9 +73,4 @@ def _exit_as(status: int, is_done: bool) -> None:
             "--isolate runs each FMU in a process of its own and keeps the rows so far.\n"
         )
         sys.exit(1)
-    if name:
-        # Shells see that a signal has ended the command.
-        signal.signal(-code, signal.SIG_DFL)
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {-code})
-        os.kill(os.getpid(), -code)
-    sys.exit(code)
+    sys.exit(code if code >= 0 else 128 - code)  # as shells write the end by a signal
