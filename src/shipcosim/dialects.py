@@ -6,8 +6,12 @@ import csv
 import json
 import re
 from collections import Counter
+from typing import TYPE_CHECKING, Any
 
 from shipcosim.errors import error_at
+
+if TYPE_CHECKING:
+    import numpy as np
 
 _WORDS = (
     "n/a na #n/a #na nan nat null none nil - -- --- ? * ** *** missing invalid void "
@@ -19,7 +23,11 @@ NOTHING = frozenset(("", "no data", "no value", *_WORDS.split()))
 _NUMBER = r"[+-]?(?:\d[\d.,' ]*|[.,]\d+)(?:[eEdD][+-]?\d+)?"
 _STAMP = r"[+-]?\d[\d:./\-+TZ ,]*(?:[AaPp]\.?[Mm]\.?)?"
 WITH_UNIT = r"(?P<number>[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*(?P<unit>[A-Za-zµ°º%][A-Za-z0-9µ°º%/^.·-]{0,7})"
-_FIGURE = re.compile(rf"\s*(?:{_NUMBER}|{_STAMP}|{WITH_UNIT}|[+-]?(?:inf|nan))\s*", re.IGNORECASE)
+_CLOCK = r"[+-]?\d+:\d\d:\d\d(?:\.\d+)?"
+_SPAN = rf"{_CLOCK}|[+-]?\d+ days?(?:,? {_CLOCK})?|[+-]?P[\dDTHMS.-]*\d[DHMS]"
+_FIGURE = re.compile(
+    rf"\s*(?:{_NUMBER}|{_STAMP}|{_SPAN}|{WITH_UNIT}|[+-]?(?:inf|nan))\s*", re.IGNORECASE
+)
 _GROUPED = re.compile(r"[+-]?\d{1,3}(?:[,.]\d{3})+")
 _SEPARATORS = ("\t", ";", "|", ",", " ")
 _SAMPLE = 60  # lines by which a layout is judged
@@ -109,7 +117,7 @@ def is_nothing(cell: str) -> bool:
 
 
 def is_figure(cell: str) -> bool:
-    """Whether a cell is a number, a date or a time.
+    """Whether a cell is a number, a date, a time or a span of time.
 
     Examples
     --------
@@ -117,6 +125,28 @@ def is_figure(cell: str) -> bool:
     [True, True, True, True, False, True]
     """
     return _FIGURE.fullmatch(cell) is not None
+
+
+def seconds_of_spans(cells: Any) -> np.ndarray | None:
+    """Spans of time as pandas, Python and ISO 8601 write them, as seconds; None where a cell is none.
+
+    Parameters
+    ----------
+    cells : pandas.Series of str or missing
+
+    Examples
+    --------
+    >>> import pandas
+    >>> seconds_of_spans(pandas.Series(["0:00:01.5", "1 day, 0:00:02", "P1DT3S", None])).tolist()
+    [1.5, 86402.0, 86403.0, nan]
+    """
+    import pandas
+
+    if not cells.dropna().str.fullmatch(_SPAN).all():
+        return None
+    spans = pandas.to_timedelta(cells, errors="coerce")
+    is_read = spans.notna().eq(cells.notna()).all()
+    return spans.dt.total_seconds().to_numpy(float) if is_read else None
 
 
 def decimal_of(source: str, cells: list[str]) -> str | None:

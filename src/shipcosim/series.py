@@ -28,6 +28,7 @@ from shipcosim.dialects import (
     header_of,
     is_figure,
     name_in,
+    seconds_of_spans,
     separator_of,
 )
 from shipcosim.errors import Problem, ShipcosimError, error_at, reading
@@ -46,6 +47,7 @@ _NOTHING = {
     "n/a",
     "na",
     "nan",
+    "none",
     "null",
 }  # in lower case: cells without a value
 LARGEST_TABLE = 8 << 30
@@ -215,7 +217,7 @@ def write_file(path: str | os.PathLike, content: bytes) -> None:
         If it cannot be written.
     """
     path = Path(path)
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    part = path.parent / f".{path.name}.{os.getpid()}.part"
     try:
         with part.open("wb") as file:
             file.write(content)
@@ -591,40 +593,27 @@ def _plain(values: np.ndarray | tuple[str, ...]) -> tuple[np.ndarray, bool]:
         return values.astype(float), False
     except (ValueError, TypeError):
         pass
-    cells = ["" if value is None else str(value) for value in values]
-    known = np.array([cell.strip().lower() not in _NOTHING for cell in cells])
-    said = {cell.lower() for cell, is_known in zip(cells, known, strict=True) if is_known}
-    numbers = np.full(len(cells), np.nan)
-    if said <= {"true", "false"}:
-        numbers[known] = [
-            cell.lower() == "true" for cell, is_known in zip(cells, known, strict=True) if is_known
-        ]
-        return numbers, False
+    texts = [None if str(value).strip().lower() in _NOTHING else str(value) for value in values]
+    if {str(text).lower() for text in texts} <= {"true", "false", "none"}:
+        return np.array([np.nan if t is None else float(t.lower() == "true") for t in texts]), False
     try:
-        numbers[known] = [
-            float(cell) for cell, is_known in zip(cells, known, strict=True) if is_known
-        ]
-        return numbers, False
+        return np.array([np.nan if text is None else float(text) for text in texts]), False
     except ValueError:
-        stamps = _stamps(cells, known)
-        texts = np.array(
-            [cell if is_known else None for cell, is_known in zip(cells, known, strict=True)],
-            object,
-        )
-        return (texts, False) if stamps is None else (_seconds_of(stamps), True)
+        return _times(np.array(texts, object))
 
 
-def _stamps(cells: list[str], known: np.ndarray) -> np.ndarray | None:
-    """Cells as stamps of date and time by ISO 8601, NaT where not known; None where they are none."""
+def _times(texts: np.ndarray) -> tuple[np.ndarray, bool]:
+    """Spans of time, or stamps of date and time by ISO 8601, as seconds; and whether they are such. None is unknown."""
     import pandas
 
-    stamps = np.full(len(cells), "NaT", "datetime64[ns]")
+    cells = pandas.Series(texts, dtype="object").str.strip()
+    if (spans := seconds_of_spans(cells)) is not None:
+        return spans, True
     try:
-        read = pandas.to_datetime(np.array(cells, object)[known], format="ISO8601", utc=True)
+        stamps = pandas.to_datetime(cells, format="ISO8601", utc=True).dt.tz_localize(None)
     except (ValueError, TypeError, OverflowError):
-        return None
-    stamps[known] = read.tz_localize(None).to_numpy()
-    return stamps
+        return texts, False
+    return _seconds_of(stamps.to_numpy("datetime64[ns]")), True
 
 
 def _seconds_of(stamps: np.ndarray) -> np.ndarray:

@@ -110,6 +110,7 @@ SYMBOLS = {
         _unit("cd", cd=1),
         _unit("rad", rad=1),
         _unit("deg", math.pi / 180, rad=1),
+        _unit("gon", math.pi / 200, rad=1),
         _unit("rev", 2 * math.pi, rad=1),
         _unit("rpm", 2 * math.pi / 60, rad=1, s=-1),
         _unit("kn", 1852.0 / 3600.0, m=1, s=-1),

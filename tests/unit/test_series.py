@@ -118,6 +118,30 @@ def test_time_in_another_unit_is_converted_to_seconds(tmp_path):
 
 
 @pytest.mark.parametrize(
+    "texts",
+    [
+        ("0 days 00:00:01", "0 days 00:01:00.250000", "1 days 00:00:00"),
+        ("00:00:01.0", "00:01:00.25", "24:00:00.0"),
+        ('"0:00:01"', '"0:01:00.250000"', '"1 day, 0:00:00"'),
+        ("PT1S", "PT1M0.25S", "P1D"),
+    ],
+    ids=["pandas", "clock", "Python", "ISO 8601"],
+)
+@pytest.mark.parametrize("unit", ["", " [s]", " [ms]"])
+def test_spans_of_time_become_seconds(tmp_path, texts, unit):
+    rows = [f"{text},{i}" for i, text in enumerate(texts)]
+    (tmp_path / "t.csv").write_text("\n".join([f"time{unit},x [m]", *rows]) + "\n")
+    assert read_table(tmp_path / "t.csv").time.values.tolist() == [1.0, 60.25, 86400.0]
+
+
+@pytest.mark.parametrize("text", ["00:01", "P1Y", "1 day ago", "0 days 1:00"])
+def test_what_is_no_span_of_time_is_refused(tmp_path, text):
+    (tmp_path / "t.csv").write_text(f"time [s],x [m]\n{text},0\n{text},1\n")
+    with pytest.raises(ShipcosimError, match="not numbers"):
+        read_table(tmp_path / "t.csv")
+
+
+@pytest.mark.parametrize(
     "content",
     ["time [s];u [N]\n0;1,5\n0,5;-2,25\n", "time [s]\tu [N]\n0\t1.5\n0.5\t-2.25\n"],
     ids=["decimal commas", "tabs"],

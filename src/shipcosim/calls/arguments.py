@@ -62,7 +62,12 @@ def named(argument: str) -> str:
     >>> named("stop_time")
     'stop_time (--stop-time)'
     """
-    return f"{argument} (--{argument.replace('_', '-')})"
+    option = _OPTIONS.get(argument, argument.replace("_", "-"))
+    return f"{argument} (--{option})"
+
+
+_OPTIONS = {"output_interval": "every", "causes": "effects"}
+"""Options of the command line that are not called as the argument of the Python call is."""
 
 
 def find(kind: str, given: Any, argument: str = "") -> Path:

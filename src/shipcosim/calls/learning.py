@@ -15,7 +15,13 @@ from shipcosim.ssp import AnyPath
 
 
 def check_learning(
-    learn: bool, length: float | str | None, *, several: bool, system: Any, reference: Any
+    learn: bool,
+    length: float | str | None,
+    *,
+    several: bool,
+    system: Any,
+    reference: Any,
+    causes: Any,
 ) -> None:
     """Raise ShipcosimError where arguments do not go together."""
     if not learn:
@@ -28,6 +34,11 @@ def check_learning(
         other = named("reference" if system is None else "system")
         found = f"with {other}, her numbers are known already."
         raise error_at(named("learn"), found, "Give one of the two.")
+    if causes is not None:
+        found = f"with {named('causes')}: causes are sought in a craft that is known already."
+        raise error_at(
+            named("learn"), found, "Learn her first, then give the system that it leaves."
+        )
     if several:
         remedy = "`shipcosim calibrate` learns from several logs; it takes a system of craft.toml."
         raise error_at(named("learn"), "there are several logs.", remedy)

@@ -210,7 +210,8 @@ def diagnose(
     if out is not None:
         check_targets(Path(out))
     if learn or length is not None:
-        check_learning(learn, length, several=several, system=system, reference=reference)
+        given = {"system": system, "reference": reference, "causes": causes}
+        check_learning(learn, length, several=several, **given)
         return _written(
             lambda stage: _learned(sources[0], channels, length, progress, stage),
             *(out, force, progress),

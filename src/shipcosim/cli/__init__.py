@@ -5,10 +5,11 @@ is imported inside the commands: help comes at once.
 """
 
 import io
+import re
 import sys
 
 from shipcosim.cli.app import app
-from shipcosim.cli.exit_guard import guard_exit, release_exit
+from shipcosim.cli.exit_guard import run_in_child
 
 
 def main() -> None:
@@ -16,16 +17,17 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a console that knows no '≥' shows '?'
-    guard_exit()
-    code = 1
-    try:
-        app(prog_name="shipcosim")
-        code = 0
-    except SystemExit as end:
-        code = end.code if isinstance(end.code, int) else int(end.code is not None)
-        raise
-    finally:
-        release_exit(code)
+    _refuse_empty(sys.argv[1:])
+    run_in_child(lambda: app(prog_name="shipcosim"))
+
+
+def _refuse_empty(arguments: list[str]) -> None:
+    """Exit with 2 where an argument or an option's value is empty: as a path it would be the working folder."""
+    for place, argument in enumerate(arguments, start=1):
+        if re.fullmatch(r"(--[\w-]+=)?", argument):
+            found = f"error: argument {place} of the command:\nis empty."
+            sys.stderr.write(f"{found} Give it a value; is a variable of the shell not set?\n")
+            sys.exit(2)
 
 
 __all__ = ["app", "main"]

@@ -31,7 +31,7 @@ def _plain(value: Any) -> bool | int | float | str:
         raise ValueError(f"{value} is not a finite number. Give one, in the variable's unit.")
     if isinstance(value, (bool, int, float, str)):
         return value
-    raise ValueError(f"{value!r} is no value. A value is a number, true or false, or a text.")
+    raise ValueError(f"{value!r:.60} is no value. A value is a number, true or false, or a text.")
 
 
 def _amount(value: Any) -> float | str:

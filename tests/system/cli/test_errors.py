@@ -674,6 +674,22 @@ def command(*arguments, before="", **options):
     return done
 
 
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("simulate", "x.fmu", "--out", ""),
+        ("simulate", "x.fmu", "--out="),
+        ("simulate", "", "--out", "x"),
+        ("simulate", "x.fmu", "--junit", "", "-q"),
+        ("check", "x.fmu", ""),
+    ],
+)
+def test_an_empty_argument_is_refused_and_leaves_nothing(tmp_path, arguments):
+    done = command(*arguments, cwd=tmp_path)
+    assert done.returncode == 2 and "is empty" in done.stderr and done.stderr.count("\n") <= 3
+    assert not list(tmp_path.iterdir())
+
+
 def limit_file_size(size):
     """What a full disk does, from the kernel: no file grows beyond this. [bytes]"""
     import resource

@@ -66,14 +66,18 @@ def with_values(system: System, values: Mapping[str, Value], where: str = "") ->
             )
     if findings.errors:
         raise ShipcosimError(findings.errors)
-    components = {
+    # Of two names of one variable the last that is set holds, so the order of start values counts too.
+    changed = {
         name: replace(component, start=starts[name])
         for name, component in system.components.items()
+        if list(starts[name].items()) != list(component.start.items())
     }
     # Two names of one variable may have got two values, or no longer have them.
-    before = alias_remarks(system.components, system.connections)
+    earlier = {name: system.components[name] for name in changed}
+    before = alias_remarks(earlier, system.connections)
     kept = [remark for remark in system.remarks if remark not in before]
-    remarks = (*kept, *alias_remarks(components, system.connections))
+    remarks = (*kept, *alias_remarks(changed, system.connections))
+    components = {**system.components, **changed}
     return replace(system, components=components, inputs=inputs, remarks=remarks)
 
 
@@ -131,7 +135,7 @@ def _fits(
     right = kind is None or isinstance(value, TYPES_OF.get(kind, (bytes,)))
     if not right or (isinstance(value, bool) and kind not in ("Boolean", None)):
         remedy = f"Items: {', '.join(owner.items)}." if owner.items else _wanted(kind, owner.unit)
-        findings.error(place, f"{value!r} is no {kind}.", remedy)
+        findings.error(place, f"{value!r:.60} is no {kind}.", remedy)
         return False
     # JSON and TOML can hold NaN and infinity; models cannot start from them.
     if isinstance(value, float) and not isfinite(value):

@@ -7,6 +7,7 @@ from typing import Any
 
 import lxml.etree as etree
 
+from shipcosim.ssp.xml.definitions import by_name
 from shipcosim.ssp.xml.document import is_true, local
 
 
@@ -69,4 +70,4 @@ def items_of(declaration: etree._Element | None) -> dict[str, int]:
         return {}
     first = int(declaration.get("min") or 1)
     items = [part for part in declaration if local(part) == "Item"]
-    return {item.get("name"): number for number, item in enumerate(items, start=first)}
+    return by_name("item", ((item.get("name"), i) for i, item in enumerate(items, start=first)))

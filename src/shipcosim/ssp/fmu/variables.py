@@ -7,6 +7,7 @@ import lxml.etree as etree
 
 from shipcosim.ssp.fmu.description import Variable
 from shipcosim.ssp.fmu.fmi1 import is_negated, items_of, traits_of
+from shipcosim.ssp.xml.definitions import by_name
 from shipcosim.ssp.xml.document import Document, Findings, local, parts_of
 from shipcosim.ssp.xml.values import KINDS, Value, read_value, typed_part
 
@@ -45,25 +46,15 @@ def read_variables(document: Document, findings: Findings) -> dict[str, Variable
                 if name in variables:
                     # Say of a second variable of a name what becomes of it: the name means the first one, as in
                     # libcosim.
-                    first = variables[name]
-                    place = document.place(element, name)
-                    same = (first.type, first.value_reference) == (
-                        variable.type,
-                        variable.value_reference,
+                    first = (
+                        f"{variables[name].type}, value reference {variables[name].value_reference}"
                     )
-                    what = (
-                        "the same value"
-                        if same
-                        else f"another value ({variable.type}, value reference {variable.value_reference})"
-                    )
-                    found = (
-                        f"A second variable has this name, for {what}. The name means the first one"
-                    )
-                    findings.flaw(
-                        place,
-                        f"{found}." if same else f"{found}; this one cannot be reached.",
-                        "Names must differ.",
-                    )
+                    second = f"{variable.type}, value reference {variable.value_reference}"
+                    same = first == second
+                    what = "the same value" if same else f"another value ({second})"
+                    more = "" if same else "; this one cannot be reached"
+                    found = f"A second variable has this name, for {what}. The name means the first one{more}."
+                    findings.flaw(document.place(element, name), found, "Names must differ.")
                 variables.setdefault(name, variable)
                 if outside := _start_outside(variable):
                     findings.remark(document.place(element, name), outside)
@@ -190,7 +181,7 @@ def _items(declared: etree._Element | None, is_first: bool) -> dict[str, int]:
     if is_first:
         return items_of(declaration)
     found = [] if declaration is None else [part for part in declaration if local(part) == "Item"]
-    return {item.get("name"): int(item.get("value")) for item in found}
+    return by_name("item", ((item.get("name"), int(item.get("value"))) for item in found))
 
 
 def _start(typed: etree._Element, kind: str, dimensions: tuple[int, ...]) -> Value | None:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Mapping
+from typing import Any
 
 import lxml.etree as etree
 
@@ -93,15 +94,37 @@ def read_enumerations(elements: Iterable[etree._Element]) -> dict[str, dict[str,
     Raises
     ------
     ValueError
-        If an item's value is no whole number.
+        If an item's value is no whole number, or one name stands for two things.
     """
-    return {
-        element.get("name", ""): {
-            item.get("name"): read_value("Integer", item.get("value", ""))
-            for item in children(element, "ssc:Item")
-        }
-        for element in elements
-    }
+    return by_name(
+        "enumeration",
+        (
+            (element.get("name", ""), _items_of(children(element, "ssc:Item")))
+            for element in elements
+        ),
+    )
+
+
+def _items_of(elements: Iterable[etree._Element]) -> dict[str, int]:
+    return by_name(
+        "item",
+        ((item.get("name"), read_value("Integer", item.get("value", ""))) for item in elements),
+    )
+
+
+def by_name(what: str, pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+    """What a file defines by its names.
+
+    Raises
+    ------
+    ValueError
+        If one name stands for two things. The same definition twice does no harm.
+    """
+    found: dict[str, Any] = {}
+    for name, defined in pairs:
+        if found.setdefault(name, defined) != defined:
+            raise ValueError(f"The {what} '{name}' is defined twice: {found[name]} and {defined}.")
+    return found
 
 
 def define_unit(root: etree._Element, tag: str, unit: Unit) -> bool:

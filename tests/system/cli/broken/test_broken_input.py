@@ -151,19 +151,40 @@ def test_folders_of_dead_processes_are_cleared_away(tmp_path):
         assert [path.name for path in tmp_path.iterdir()] == [Path(own).name]
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="the guard uses C's list of Linux")
-def test_a_library_that_calls_exit_is_no_run_that_went_well():
-    code = (
-        "import ctypes; from shipcosim.cli.exit_guard import guard_exit, release_exit;"
-        "guard_exit(); {}ctypes.CDLL(None).exit(0)"
-    )
+def end_of(work):
+    """Exit code and messages of work that is done in a child process."""
+    code = f"import ctypes, os, sys; from shipcosim.cli.exit_guard import run_in_child; run_in_child(lambda: {work})"
     ended = subprocess.run(
-        [sys.executable, "-c", code.format("")], capture_output=True, text=True, check=False
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False, timeout=60
     )
-    assert ended.returncode == 1 and "--isolate" in ended.stderr
-    released = [sys.executable, "-c", code.format("release_exit(0);")]
-    done = subprocess.run(released, capture_output=True, text=True, check=False)
-    assert done.returncode == 0 and not done.stderr
+    return ended.returncode, ended.stderr
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux ends children with their parent")
+@pytest.mark.parametrize(
+    ("call", "how"),
+    [
+        ("exit(0)", "ended the process"),
+        ("_exit(0)", "ended the process"),
+        ("_exit(7)", "ended the process"),
+        ("quick_exit(0)", "ended the process"),
+        ("abort()", "crashed (SIGABRT)"),
+        ("strlen(0)", "crashed (SIGSEGV)"),
+    ],
+)
+def test_a_library_that_ends_the_process_is_no_run_that_went_well(call, how):
+    code, err = end_of(f"ctypes.CDLL(None).{call}")
+    assert code == 1 and how in err and "--isolate" in err and err.count("\n") <= 3
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux ends children with their parent")
+@pytest.mark.parametrize(
+    ("work", "code"),
+    [("None", 0), ("sys.exit(0)", 0), ("sys.exit(2)", 2), ("os.kill(os.getppid(), 15)", 128 + 15)],
+)
+def test_a_command_that_ends_by_itself_keeps_its_exit_code(work, code):
+    wait = " or __import__('signal').pause()" if code > 128 else ""
+    assert end_of(work + wait) == (code, "")
 
 
 @given(

@@ -67,6 +67,7 @@ def test_a_craft_at_rest_teaches_nothing(table):
         ({"learn": True, "length": "5 kg"}, "length"),
         ({"learn": True, "length": 5.0, "system": "gunnerus_open"}, "known already"),
         ({"learn": True, "length": 5.0, "reference": "x"}, "known already"),
+        ({"learn": True, "length": 5.0, "causes": "."}, "--effects.*known already"),
     ],
 )
 def test_what_does_not_go_together_is_refused(table, given, said):

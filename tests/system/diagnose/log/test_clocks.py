@@ -50,6 +50,24 @@ def test_a_clock_that_is_put_back_by_an_hour_goes_on(read):
     assert "put back by an hour" in " ".join(log.attrs["column_remarks"])
 
 
+def _span(seconds, day, clock):
+    whole = timedelta(seconds=float(seconds))
+    return f"{day.format(whole.days)}{clock(whole.seconds, whole.microseconds)}"
+
+
+SPANS = {
+    "pandas": ("{} days +", lambda s, us: f"{s // 3600:02}:{s // 60 % 60:02}:{s % 60:02}.{us:06}"),
+    "ISO 8601": ("P{}DT", lambda s, us: f"{s // 3600}H{s // 60 % 60}M{s % 60}.{us:06}S"),
+}
+
+
+@pytest.mark.parametrize("form", SPANS)
+@pytest.mark.parametrize("start", [0.0, 86250.0, -150.0], ids=["0", "past a day", "before 0"])
+def test_spans_of_time_are_seconds(read, form, start):
+    log = read("time", [_span(start + t, *SPANS[form]) for t in SECONDS])
+    assert log["time"].values == pytest.approx(start + SECONDS)
+
+
 @pytest.mark.parametrize(
     "start", [738821.9, 0.5, 59879.2], ids=["MATLAB", "fraction of a day", "modified Julian"]
 )

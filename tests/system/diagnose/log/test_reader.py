@@ -181,6 +181,22 @@ def test_a_nautical_mile_is_no_nanometre(tmp_path, unit, metres):
     assert log["north"].values == pytest.approx([metres, 2 * metres])
 
 
+@pytest.mark.parametrize(
+    ("unit", "degrees"), [("gon", 9.0), ("gradian", 9.0), ("Grad", 10.0), ("deg", 10.0)]
+)
+def test_a_gon_is_no_degree(tmp_path, unit, degrees):
+    path = tmp_path / "log.csv"
+    path.write_text(f"time [s],heading [{unit}]\n0,10\n1,10\n")
+    assert read_log(path)["heading"].values == pytest.approx([degrees, degrees])
+
+
+def test_a_unit_that_can_be_a_gon_or_a_degree_is_refused(tmp_path):
+    path = tmp_path / "log.csv"
+    path.write_text("time [s],heading [grad]\n0,10\n1,10\n")
+    with pytest.raises(ShipcosimError, match="grad.*deg"):
+        read_log(path)
+
+
 @pytest.mark.parametrize("unit", ["1/s", "s-1", "s^-1"])
 def test_per_second_is_radians_of_a_turn_and_revolutions_of_a_shaft(tmp_path, unit):
     log = read_log(

@@ -615,3 +615,45 @@ def test_values_given_for_a_run_are_checked(shop):
         "four.toml: b.v: It is of causality output, a value that the FMU calculates. Set parameters and inputs.",
         "four.toml: b.u: nan is not a finite number. Give a number, with a decimal point, in m.",
     ]
+
+
+def test_an_item_that_stands_for_two_values_is_refused(shop):
+    pair(
+        shop,
+        *("Enumeration declaredType=Mode", "Enumeration declaredType=Mode"),
+        types=MODES.replace('"on"', '"off"'),
+    )
+    assert "The item 'off' is defined twice: 1 and 2." in shop.refused()
+
+
+@pytest.mark.parametrize(
+    ("items", "found"),
+    [
+        ('<ssc:Item name="off" value="2"/>', "The item 'off' is defined twice: 1 and 2."),
+        (
+            '</ssc:Enumeration><ssc:Enumeration name="E"><ssc:Item name="on" value="2"/>',
+            "The enumeration 'E' is defined twice",
+        ),
+    ],
+)
+def test_an_enumeration_of_a_structure_that_is_ambiguous_is_refused(shop, items, found):
+    shop.fmu("one", "output y Real m")
+    head = f'<ssd:Enumerations><ssc:Enumeration name="E"><ssc:Item name="off" value="1"/>{items}'
+    shop.ssd(
+        shop.component("a", "one", "output y"),
+        rest=f"{head}</ssc:Enumeration></ssd:Enumerations>",
+    )
+    assert found in shop.refused()
+
+
+def test_values_of_one_component_do_not_look_at_the_others(shop, monkeypatch):
+    shop.fmu("one", "output y Real m", "input u Real m")
+    shop.ssd(shop.component("a", "one", "output y") + shop.component("b", "one", "output y"))
+    system = shop.read()
+    looked_at = []
+    monkeypatch.setattr(
+        "shipcosim.ssp.flatten.with_values.alias_remarks",
+        lambda components, connections: looked_at.extend(components) or [],
+    )
+    assert with_values(system, {"a.u": 2.0}).components["a"].start == {"u": 2.0}
+    assert set(looked_at) == {"a"}

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from shipcosim.diagnose.numerics import finite
+from shipcosim.dialects import seconds_of_spans
 from shipcosim.errors import error_at
 
 EPOCHS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
@@ -93,7 +94,7 @@ def epoch_unit(values: np.ndarray) -> str | None:
 def seconds_of(
     texts: np.ndarray, order: str | None = None, unit: str = ""
 ) -> tuple[np.ndarray, list[str]] | None:
-    """Stamps of date and time, or of time alone, as seconds after the first; None where they are none.
+    """Stamps of date and time, of time alone, or spans of time, as seconds; None where they are none.
 
     Parameters
     ----------
@@ -107,7 +108,8 @@ def seconds_of(
     Returns
     -------
     (n,) array and list of str
-        NaN where there is no stamp, and what is to be said; clock times that pass midnight go on.
+        Dates count from the first; NaN where there is no stamp. And what is to be said; clock times that pass midnight
+        go on.
 
     Raises
     ------
@@ -133,6 +135,8 @@ def seconds_of(
             )
             if _whole(parsed, cells):
                 return seconds_of_clock(_since_first(parsed, "2000-01-01"))
+    if (spans := seconds_of_spans(cells)) is not None:
+        return spans, []
     # Try every form of date and clock; day and month can give two readings.
     readings = {}
     for key, dates in _DATES.items():

@@ -122,7 +122,8 @@ def unit_after(words: tuple[str, ...], target: str) -> tuple[tuple[str, ...], st
 
 
 def _plain(text: str) -> str:
-    # Times by CF say since when after their unit.
+    # Times by CF say since when after their unit. "Grad" is German for a degree; "grad" can be a gon as well.
+    text = re.sub(r"\bGrad\b", "deg", text)
     return re.sub(r"\s+since\s.*|\s+", "", text).lower()
 
 
