@@ -28,9 +28,11 @@ from shipcosim.diagnose.validation.cosimulation import Replayed, simulated
 from shipcosim.diagnose.validation.gain import (
     MODELS,
     baseline,
+    beyond_observer,
+    by_condition,
+    chance_of_more,
     compare,
     gain,
-    parts,
     rms,
 )
 from shipcosim.diagnose.validation.missing_force import missing_force
@@ -108,7 +110,7 @@ def test_a_named_cause_takes_most_of_the_explainable_error_away(loss):
     found = gain(loss.errors)
     assert set(found) == CONTRACT
     assert found["noise_floor_m"] <= found["after_m"] < 0.5 * found["before_m"]
-    assert found["share_of_explainable"] > 0.5
+    assert found["share_of_explainable"] > 0.5 and beyond_observer(loss.errors) > 0.5
     low, high = found["ci95"]
     assert 0.0 < low < found["share_of_explainable"] < high <= 1.0
 
@@ -127,6 +129,7 @@ def test_both_sides_have_the_same_observers_so_that_without_a_cause_nothing_is_b
     assert twin.errors.sel(model="extended_observer").equals(
         twin.errors.sel(model="bias_observer").assign_coords(model="extended_observer")
     )
+    assert not beyond_observer(twin.errors) > 0.0
     errors = loss.errors.copy(deep=True)
     for model, missed in (
         ("plain", 9.0),
@@ -136,6 +139,7 @@ def test_both_sides_have_the_same_observers_so_that_without_a_cause_nothing_is_b
     ):
         errors["position"].loc[{"model": model}] = missed
     errors["position"].loc[{"model": "floor"}] = 1.0
+    assert beyond_observer(errors) == pytest.approx(0.75)
     assert (
         gain(errors)["after_m"] == 8.0
     )  # the cause alone: what an observer does is not the name's doing
@@ -171,12 +175,10 @@ def test_the_same_seed_gives_the_same_interval_and_another_nearly(loss):
 
 
 def test_conditions_share_the_segments_among_them(loss):
-    found = parts(loss.errors)
-    assert set(found) <= {"holding", "moving", "turning"}  # no thruster fails in these logs
-    assert sum(part.sizes["segment"] for part in found.values()) == loss.errors.sizes["segment"]
-    squares = sum(
-        part.sizes["segment"] * rms(part, "position", "plain") ** 2 for part in found.values()
-    )
+    parts = by_condition(loss.errors, "regime")
+    assert set(parts) <= {"holding", "moving", "turning"}  # no thruster fails in these logs
+    assert sum(part["segments"] for part in parts.values()) == loss.errors.sizes["segment"]
+    squares = sum(part["segments"] * part["plain"] ** 2 for part in parts.values())
     assert np.sqrt(squares / loss.errors.sizes["segment"]) == pytest.approx(
         rms(loss.errors, "position", "plain")
     )
@@ -314,6 +316,17 @@ def test_an_interval_needs_blocks(loss):
     few = loss.errors.isel(segment=slice(0, 24))
     assert gain(few, fewest=2)["ci95"] is None and gain(few)["ci95"] is not None
     assert gain(few, fewest=2)["share_of_explainable"] == gain(few)["share_of_explainable"]
+
+
+def test_a_model_is_surely_worse_only_where_most_draws_say_so(loss):
+    assert chance_of_more(loss.errors, "plain", "extended") > 0.95
+    assert chance_of_more(loss.errors, "extended", "plain") < 0.05
+    errors = loss.errors.copy(deep=True)
+    times = errors["start_time"].values
+    odd = ((times - times[0]) // 120.0).astype(int) % 2 == 1
+    errors["position"].loc[{"model": "plain"}] = np.where(odd, 1.1, 1.0)
+    errors["position"].loc[{"model": "extended"}] = np.where(odd, 1.0, 1.1)
+    assert 0.2 < chance_of_more(errors, "plain", "extended") < 0.8
 
 
 def test_no_gain_is_claimed_from_a_handful_of_rows(diagnosed):
