@@ -82,7 +82,7 @@ def _fitted(natural: Sequence[int], least: Sequence[int], room: int) -> list[int
 def _print_row(console: Console, cells: Sequence[Text], widths: Sequence[int]) -> None:
     """Print a row, on as many lines as its longest cell needs."""
     wrapped = [
-        TextWrapper(width, break_long_words=False, break_on_hyphens=False).wrap(cell.plain)
+        TextWrapper(max(width, 1), break_long_words=False, break_on_hyphens=False).wrap(cell.plain)
         for cell, width in zip(cells, widths, strict=True)
     ]
     for parts in zip_longest(*wrapped, fillvalue="") if any(wrapped) else [[""] * len(cells)]:

@@ -129,6 +129,11 @@ def test_words_wrap_and_numbers_do_not():
     assert " ".join(" ".join(lines[1:]).replace("12345.678 m", "").split()) == rows[0][0]
 
 
+def test_a_column_that_is_empty_in_every_row_is_no_fault():
+    lines = printed(60, ("", ""), [("port", ""), ("tunnel", "")])
+    assert [line.strip() for line in lines if line.strip()] == ["port", "tunnel"]
+
+
 def test_columns_that_do_not_fit_are_named_and_the_first_two_stay():
     head = [f"quantity_{number} [m]" for number in range(6)]
     rows = [[f"{number}.25" for number in range(6)]]
