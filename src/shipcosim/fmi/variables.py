@@ -51,10 +51,10 @@ class Variable:
         minimum: float | None = None,
         maximum: float | None = None,
         tunable: bool = False,
+        optional: bool = False,
         origin: str = "",
         tolerance: float = 0.0,
     ):
-        self.optional = False
         # A type in place of a value: the parameter has no default, and a mark stands for it.
         self.required = start in (float, str)
         if self.required:
@@ -76,6 +76,7 @@ class Variable:
         self.minimum = minimum
         self.maximum = maximum
         self.tunable = tunable
+        self.optional = optional
         self.origin = origin
         self.tolerance = tolerance
         if outside := self.outside(start):
@@ -127,8 +128,9 @@ class Signal(Variable):
         maximum: float | None = None,
         optional: bool = False,
     ):
-        super().__init__(start, unit, description, minimum=minimum, maximum=maximum)
-        self.optional = optional
+        super().__init__(
+            start, unit, description, minimum=minimum, maximum=maximum, optional=optional
+        )
 
 
 class Input(Signal):

@@ -94,7 +94,7 @@ def epoch_unit(values: np.ndarray) -> str | None:
 def seconds_of(
     texts: np.ndarray, order: str | None = None, unit: str = ""
 ) -> tuple[np.ndarray, list[str]] | None:
-    """Stamps of date and time, of time alone, or spans of time, as seconds; None where they are none.
+    """Stamps of date and time, of time alone, or spans of time, as seconds; None where the texts are others.
 
     Parameters
     ----------
@@ -108,8 +108,8 @@ def seconds_of(
     Returns
     -------
     (n,) array and list of str
-        Dates count from the first; NaN where there is no stamp. And what is to be said; clock times that pass midnight
-        go on.
+        Seconds, and remarks for the user. Dates count from the first; clock times that pass midnight go on; NaN where
+        there is no stamp.
 
     Raises
     ------
