@@ -38,8 +38,9 @@ class RunOptions:
     ----------
     engine : str
         What runs the FMUs: ``"fmpy"`` (our own co-simulation master), ``"native"`` (the same, with models and loop
-        compiled), ``"libcosim"`` or ``"ecos"``. The last two know neither `start_time` nor `until`, `resume`, `store`,
-        `isolate`, `realtime` and `profile`.
+        compiled), ``"auto"`` (native where a run is long and can be compiled, else fmpy), ``"libcosim"`` or
+        ``"ecos"``. The last two know neither `start_time` nor `until`, `resume`, `store`, `isolate`, `realtime` and
+        `profile`.
     inputs : Dataset, optional
         Feeds inputs of the system, by their names. A variable's attribute ``interpolation`` says what it does between
         its rows: ``"held"``, the default, or ``"linear"``, angles the shorter way round. The table's attribute
@@ -75,7 +76,7 @@ class RunOptions:
         If the timeout of isolated components or the pace is no positive number.
     """
 
-    engine: str = "fmpy"
+    engine: str = "auto"
     inputs: xarray.Dataset | None = None
     progress: CountProgress | None = None
     order: str = "jacobi"

@@ -108,7 +108,8 @@ Engine = Annotated[
     str,
     typer.Option(
         "--engine",
-        help="What runs the FMUs: fmpy (ours), native (ours, with the models compiled), libcosim or ecos.",
+        help="What runs the FMUs: fmpy (ours), native (ours, with the models compiled), auto (native for long runs), "
+        "libcosim or ecos.",
         autocompletion=words_of(*ENGINES),
     ),
 ]

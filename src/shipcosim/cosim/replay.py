@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.cosim.master.compiled import LONG
 from shipcosim.cosim.master.interrupt import delayed_interrupt
 from shipcosim.cosim.master.run import RunError, Simulation
 from shipcosim.cosim.master.time_grid import time_grid_of
@@ -121,7 +122,9 @@ class _Segments:
         self.system = system
         self.starts = starts
         self.duration = duration
-        self.options = RunOptions(inputs=inputs)
+        # Whether compiling pays depends on all segments together.
+        steps = len(starts) * round(duration / step_size) * len(system.components)
+        self.options = RunOptions(inputs=inputs, engine="native" if steps >= LONG else "fmpy")
         self.how = {"step_size": step_size, "output_interval": output_interval}
         # Start values of all segments, converted to the units of the variables once.
         self.states = {

@@ -44,7 +44,7 @@ def run(
         ),
     ],
     out: Out = None,
-    engine: Engine = "fmpy",
+    engine: Engine = "auto",
     parameters: Parameters = None,
     settings: Settings = None,
     components: Components = None,

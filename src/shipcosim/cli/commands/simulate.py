@@ -74,7 +74,7 @@ def simulate(
     stop_time: SystemsStopTime = None,
     step_size: SystemsStepSize = None,
     out: Out = None,
-    engine: Engine = "fmpy",
+    engine: Engine = "auto",
     parameters: Parameters = None,
     inputs: Inputs = None,
     interpolate: Interpolate = None,

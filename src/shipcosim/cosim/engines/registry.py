@@ -4,11 +4,17 @@ from shipcosim.cosim.engines import ecos, libcosim
 from shipcosim.cosim.master.run import run
 from shipcosim.errors import Problem, ShipcosimError
 
-ENGINES = {"fmpy": run, "native": run, "libcosim": libcosim.run, "ecos": ecos.run}
+ENGINES = {
+    "auto": run,
+    "fmpy": run,
+    "native": run,
+    "libcosim": libcosim.run,
+    "ecos": ecos.run,
+}
 """Functions from a checked system, a scenario and `RunOptions` to a table."""
 
-OWN = ("fmpy", "native")
-"""Engines that are our own master: in Python, and with models and loop compiled."""
+OWN = ("auto", "fmpy", "native")
+"""Engines that are our own master: as it pays, in Python, and with models and loop compiled."""
 
 OWN_OPTIONS = ("start_time", "until", "resume", "store", "isolate", "realtime", "profile")
 """Options that only our own master knows."""

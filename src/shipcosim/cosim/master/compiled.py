@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from contextlib import nullcontext
 from importlib.resources import files
 from time import perf_counter
@@ -24,6 +24,8 @@ from shipcosim.native.component import CALL
 from shipcosim.options import CountProgress
 
 DONE, FAILED, NOT_FINITE = range(3)
+LONG = 50_000
+"""Steps of all components for which Python takes some five seconds; a DP system is compiled once in ten."""
 HOST = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_int, ctypes.c_int64)
 INT = ctypes.c_int64
 P = ctypes.c_void_p
@@ -181,7 +183,7 @@ class CompiledMaster(Master):
         between: Between | None = None,
     ) -> None:
         """See `Master.run`."""
-        if why := self._not_compiled():
+        if why := why_in_python(self._sequential, self._string_connections, self._exchanges):
             self.reasons = {"all components": why}
             super().run(grid, actions, external, recorders, progress, between)
             return
@@ -236,15 +238,18 @@ class CompiledMaster(Master):
         with nullcontext() if self.profile is None else self.profile.during(MASTER, "load"):
             return _CompiledLoop(self, grid, external, recorders)
 
-    def _not_compiled(self) -> str:
-        """Why nothing in this system is compiled; empty if something can be."""
-        if not is_installed():
-            return "there is no compiler, install it: pip install 'shipcosim[native]'"
-        if self._sequential:
-            return "the components step one after the other, in the order gauss-seidel"
-        if self._string_connections:
-            return "texts are exchanged"
-        return "whole numbers of 64 bits are exchanged" if "Long" in self._exchanges else ""
+
+def why_in_python(
+    sequential: bool, string_connections: Sequence[object], kinds: Container[str]
+) -> str:
+    """Why nothing of a run is compiled, by its order and what it exchanges; empty if something can be."""
+    if not is_installed():
+        return "there is no compiler, install it: pip install 'shipcosim[native]'"
+    if sequential:
+        return "the components step one after the other, in the order gauss-seidel"
+    if string_connections:
+        return "texts are exchanged"
+    return "whole numbers of 64 bits are exchanged" if "Long" in kinds else ""
 
 
 class _CompiledLoop:

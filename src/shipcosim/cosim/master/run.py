@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shipcosim.cosim.master.algorithm import Ended, Failure, Master
-from shipcosim.cosim.master.compiled import CompiledMaster
+from shipcosim.cosim.master.compiled import LONG, CompiledMaster, why_in_python
 from shipcosim.cosim.master.events import add_pace, event_actions, external_values
 from shipcosim.cosim.master.groups import couple, exchanged_at_steps, groups_of, inner_connections
 from shipcosim.cosim.master.inputs import digest, input_values
@@ -148,7 +148,6 @@ class Simulation:
     ):
         order = options.order
         inputs = options.inputs
-        self._engine = options.engine
         self._realtime = options.realtime
         self._profile = Profile() if options.profile else None
         if order not in ORDERS:
@@ -173,6 +172,8 @@ class Simulation:
         self._together: list[set[str]] = []
         self.clashes = [] if options.isolate else module_clashes(system, late_alone=True)
         self._remarks = [f"{p.where}: {p.found} Each has its own process." for p in self.clashes]
+        self._is_asked = options.engine == "native"
+        self._engine = self._engine_of(options)
         self._master: Master | None = None
         self.is_ended = False
         # All rows are reserved before the run.
@@ -242,6 +243,21 @@ class Simulation:
             restore_snapshot(self._resume, self.plan, self.exchanges, self.strings, self.components)
             master.resume(grid.first)
         return master
+
+    def _engine_of(self, options):
+        """The engine that runs this; of "auto" the compiled one where compiling pays."""
+        if options.engine != "auto":
+            return options.engine
+        # By what is asked alone, not by what lies in the cache: the same run gives the same bits.
+        steps = (self._grid.last - self._grid.first) * len(self.plan.system.components)
+        if steps < LONG or options.isolate or self.clashes or options.realtime is not None:
+            return "fmpy"
+        is_sequential = self._order == "gauss-seidel"
+        return (
+            "fmpy"
+            if why_in_python(is_sequential, self.plan.string_connections, self.exchanges)
+            else "native"
+        )
 
     def _during(self, phase):
         """Counts the time of a block, where it is asked for."""
@@ -372,7 +388,8 @@ class Simulation:
 
     def remarks(self) -> list[str]:
         """Remarks that do not stop the run, each once."""
-        in_python = self._master.reasons if isinstance(self._master, CompiledMaster) else {}
+        is_told = self._is_asked and isinstance(self._master, CompiledMaster)
+        in_python = self._master.reasons if is_told else {}
         remarks = [
             *self._remarks,
             *(f"stepped by Python, {name}: {reason}" for name, reason in in_python.items()),
