@@ -121,6 +121,8 @@ def print_summary(result: Run, page: Path, *, to_stderr: bool = False) -> None:
         if remark not in before:
             console.print(Text(remark, style="yellow"))
     print_problems(result.errors)
+    if result.table.attrs.get("engine") == "native":
+        console.print("The models ran as compiled code.")
     say_outcome(console, outcome)
     say_page(console, page)
 

@@ -69,7 +69,8 @@ def _engines() -> list[Row]:
 
     missing = engines_missing()
     said = {name: f"{problem.found} {problem.remedy}" for name, problem in missing.items()}
-    said |= {"fmpy": "our own", "native": "our own, with the models compiled"}
+    said |= {"auto": "native for long runs, else fmpy", "fmpy": "our own"}
+    said |= {"native": "our own, with the models compiled"}
     return [(name, said.get(name, "installed")) for name in ENGINES]
 
 

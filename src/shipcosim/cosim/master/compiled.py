@@ -19,11 +19,13 @@ from shipcosim.cosim.master.signals import Exchange
 from shipcosim.cosim.master.time_grid import TimeGrid
 from shipcosim.cosim.profile import MASTER, Profile
 from shipcosim.cosim.slaves.slave import SlaveError
+from shipcosim.errors import ShipcosimError
 from shipcosim.native import CompiledStep, Untraceable, compiled_steps, is_installed, libraries
 from shipcosim.native.component import CALL
 from shipcosim.options import CountProgress
 
 DONE, FAILED, NOT_FINITE = range(3)
+ALL = "all components"
 LONG = 50_000
 """Steps of all components for which Python takes some five seconds; a DP system is compiled once in ten."""
 HOST = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_int, ctypes.c_int64)
@@ -183,13 +185,12 @@ class CompiledMaster(Master):
         between: Between | None = None,
     ) -> None:
         """See `Master.run`."""
-        if why := why_in_python(self._sequential, self._string_connections, self._exchanges):
-            self.reasons = {"all components": why}
+        loop = self._loop_for(grid, external, recorders)
+        if isinstance(loop, str):
+            self.reasons = {ALL: loop}
             super().run(grid, actions, external, recorders, progress, between)
             return
-        # A repeated run uses the arrays of the run before, if only numbers differ.
-        if (loop := self._loop) is None or not loop.take_anew(external):
-            self._loop = loop = self._new_loop(grid, external, recorders)
+        self._loop = loop
         k = first = grid.first
         last = grid.last
         steps = 16
@@ -234,9 +235,19 @@ class CompiledMaster(Master):
         if progress is not None:
             progress(last - first, last - first)
 
-    def _new_loop(self, grid, external, recorders) -> _CompiledLoop:
-        with nullcontext() if self.profile is None else self.profile.during(MASTER, "load"):
-            return _CompiledLoop(self, grid, external, recorders)
+    def _loop_for(self, grid, external, recorders) -> _CompiledLoop | str:
+        """The loop of a run, or why Python steps all of it."""
+        if why := why_in_python(self._sequential, self._string_connections, self._exchanges):
+            return why
+        # A repeated run uses the arrays of the run before, if only numbers differ.
+        if self._loop is not None and self._loop.take_anew(external):
+            return self._loop
+        try:
+            with nullcontext() if self.profile is None else self.profile.during(MASTER, "load"):
+                return _CompiledLoop(self, grid, external, recorders)
+        # The compiler fails, or the cache cannot be written.
+        except ShipcosimError as error:
+            return str(error)
 
 
 def why_in_python(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shipcosim.cosim.master.algorithm import Ended, Failure, Master
-from shipcosim.cosim.master.compiled import LONG, CompiledMaster, why_in_python
+from shipcosim.cosim.master.compiled import ALL, LONG, CompiledMaster, why_in_python
 from shipcosim.cosim.master.events import add_pace, event_actions, external_values
 from shipcosim.cosim.master.groups import couple, exchanged_at_steps, groups_of, inner_connections
 from shipcosim.cosim.master.inputs import digest, input_values
@@ -388,8 +388,11 @@ class Simulation:
 
     def remarks(self) -> list[str]:
         """Remarks that do not stop the run, each once."""
-        is_told = self._is_asked and isinstance(self._master, CompiledMaster)
-        in_python = self._master.reasons if is_told else {}
+        master = self._master
+        in_python = master.reasons if isinstance(master, CompiledMaster) else {}
+        # Who leaves the engine to us need not know which component could not be compiled.
+        if not self._is_asked and ALL not in in_python:
+            in_python = {}
         remarks = [
             *self._remarks,
             *(f"stepped by Python, {name}: {reason}" for name, reason in in_python.items()),

@@ -8,11 +8,14 @@ import pytest
 
 from shipcosim.cosim import RunError, RunOptions, simulate
 from shipcosim.cosim.master import compiled
+from shipcosim.cosim.master import run as own
 from shipcosim.cosim.master.run import Interrupted
 from shipcosim.cosim.systems import system_of
+from shipcosim.errors import error_at
 from shipcosim.scenario import Event, read_scenario
 
 NATIVE = RunOptions(engine="native")
+PYTHON = RunOptions(engine="fmpy")
 SCENARIOS = (
     "four_corner",
     "drift",
@@ -57,7 +60,7 @@ def far_off(table, other):
 def both(scenario, until):
     system = system_of(scenario)
     options = {"until": until}
-    return simulate(system, scenario, RunOptions(**options)), simulate(
+    return simulate(system, scenario, RunOptions(engine="fmpy", **options)), simulate(
         system, scenario, RunOptions(engine="native", **options)
     )
 
@@ -113,7 +116,7 @@ def test_values_of_all_types_are_exchanged_as_in_python(make_system, make_scenar
         {"time": 1.2, "reset": ["lag.u"]},
     ]
     system, scenario = make_system(parts, lines), make_scenario(2.4, 0.1, events=events)
-    python, native = simulate(system, scenario), simulate(system, scenario, NATIVE)
+    python, native = simulate(system, scenario, PYTHON), simulate(system, scenario, NATIVE)
     assert "clock" in by_python(native)  # it makes a text of a number
     for name in python:
         assert np.allclose(native[name], python[name], rtol=1e-13, atol=0.0), name
@@ -157,3 +160,36 @@ def test_another_order_and_a_missing_compiler_are_said_and_run_in_python(
     table = simulate(system, scenario, NATIVE)
     assert "pip install 'shipcosim[native]'" in by_python(table)["all components"]
     assert table["lag.y"].values.tolist() == python["lag.y"].values.tolist()
+
+
+def test_auto_compiles_a_run_that_is_long_and_no_other(make_system, make_scenario, monkeypatch):
+    system, scenario = make_system({"lag": ("lag", {"u": 3.0})}), make_scenario()
+    python = simulate(system, scenario, RunOptions(engine="fmpy"))
+    assert simulate(system, scenario).attrs["engine"] == "fmpy"
+    monkeypatch.setattr(own, "LONG", 10)
+    table = simulate(system, scenario)
+    assert table.attrs["engine"] == "native" and not by_python(table)
+    assert np.allclose(table["lag.y"], python["lag.y"], rtol=1e-13, atol=0.0)
+    for options in (
+        {"order": "gauss-seidel"},
+        {"isolate": True},
+        {"realtime": 1000.0},
+        {"until": 0.2},
+    ):
+        assert simulate(system, scenario, RunOptions(**options)).attrs["engine"] == "fmpy"
+    monkeypatch.setattr(compiled, "is_installed", lambda: False)
+    assert simulate(system, scenario).attrs["engine"] == "fmpy"
+
+
+def test_a_compiler_that_fails_is_said_and_python_steps(make_system, make_scenario, monkeypatch):
+    def failing(sources):
+        raise error_at("compiler", "fails: no space left.")
+
+    system, scenario = make_system({"lag": ("lag", {"u": 3.0})}), make_scenario()
+    python = simulate(system, scenario)
+    monkeypatch.setattr(compiled, "libraries", failing)
+    monkeypatch.setattr(own, "LONG", 10)
+    for engine in ("auto", "native"):
+        table = simulate(system, scenario, RunOptions(engine=engine))
+        assert "no space left" in by_python(table)["all components"]
+        assert table["lag.y"].values.tolist() == python["lag.y"].values.tolist()
