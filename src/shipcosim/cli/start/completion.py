@@ -6,7 +6,7 @@ from shipcosim import library
 
 Names = list[tuple[str, str]]
 LISTED = ("scenarios", "studies", "systems", "ships", "fmus", "examples", "causes", "engines")
-ENGINES = ("fmpy", "native", "libcosim", "ecos")
+ENGINES = ("auto", "fmpy", "native", "libcosim", "ecos")
 
 
 def names_of(*kinds: str) -> Callable[[str], Names]:

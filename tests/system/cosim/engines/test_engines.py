@@ -12,12 +12,13 @@ import numpy as np
 import pytest
 
 from shipcosim.cosim import ENGINES, Interrupted, RunError, RunOptions, engines_missing, simulate
+from shipcosim.cosim.engines.registry import OWN
 from shipcosim.errors import ShipcosimError
 from shipcosim.scenario import read_scenario
 from shipcosim.series import make_table
 from shipcosim.ssp import read_system
 
-OTHERS = [name for name in ENGINES if name not in ("fmpy", "native")]
+OTHERS = [name for name in ENGINES if name not in OWN]
 EXACT = {"libcosim": 0.0, "ecos": 1e-12}
 """Largest differences in a short run: ecos adds up its time."""
 
