@@ -51,6 +51,7 @@ training = typer.Typer(
     no_args_is_help=True,
 )
 app.command("list", epilog=EXIT_CODES)(guarded(list.list_))
+app.command(epilog=EXIT_CODES)(guarded(list.docs))
 for _function in (
     init.init,
     build.build,

@@ -284,3 +284,11 @@ def test_names_are_completed(shell, empty):
 )
 def test_each_argument_completes_its_own_kind(line, expected, empty):
     assert completed("bash", line).split() == expected.split()
+
+
+def test_the_documentation_is_read_in_the_terminal(call):
+    listed = call("docs").out
+    assert "own-ship" in listed and "Your own ship" in listed and "diagnosis" in listed
+    assert call("docs", "diagnosis").out.startswith("# ")
+    failed = call("docs", "diagnose")
+    assert failed.code == 2 and "diagnosis" in failed.err

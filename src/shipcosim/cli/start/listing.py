@@ -1,6 +1,7 @@
 """What there is: everything that has a name, a line each, and what the command says without arguments."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 
 from shipcosim import library
 from shipcosim.cli.start.completion import LISTED
@@ -12,6 +13,7 @@ Begin with:
   shipcosim diagnose gunnerus_log   what a simulation gets wrong of a measured log, and why
   shipcosim init my-project         a project of your own: system, scenarios, CI, notebook
   shipcosim list                    everything that is there, a line each
+  shipcosim docs                    the pages to read
 """
 
 
@@ -72,6 +74,25 @@ def _engines() -> list[Row]:
     said |= {"auto": "native for long runs, else fmpy", "fmpy": "our own"}
     said |= {"native": "our own, with the models compiled"}
     return [(name, said.get(name, "installed")) for name in ENGINES]
+
+
+def pages() -> dict[str, Path]:
+    """Pages of the documentation that came with shipcosim, by name; tutorials first."""
+    folder = library.shipped() / "docs"
+    return {
+        path.stem: path for part in ("learn", ".") for path in sorted(folder.glob(f"{part}/*.md"))
+    }
+
+
+def table_of_pages(found: Mapping[str, Path]) -> str:
+    """The names of pages with their titles."""
+    titles = {
+        name: path.read_text(encoding="utf-8").partition("\n")[0] for name, path in found.items()
+    }
+    return _table(
+        "pages (shipcosim docs PAGE)",
+        ((name, title.lstrip("# ")) for name, title in titles.items()),
+    )
 
 
 def _table(heading: str, rows: Iterable[Row]) -> str:
