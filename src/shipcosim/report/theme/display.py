@@ -1,6 +1,7 @@
 """A table for readers: degrees and kN, angles without jumps, few enough rows to draw."""
 
 import numpy as np
+import pandas
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 from xarray import Dataset
@@ -47,9 +48,9 @@ def display_table(table: Dataset, ship_heading: str | None = None) -> Dataset:
             factor * np.asarray(values, float), unit, variable.attrs.get("long_name", ""), factor
         )
         found[name].attrs["logical"] = variable.dtype.kind == "b"
-    shown = xr.Dataset(
-        found, coords={"time": ("time", np.asarray(table["time"].values, float))}, attrs=table.attrs
-    )
+    # As an index of pandas, for which xarray need not import pint.
+    clock = pandas.Index(np.asarray(table["time"].values, float))
+    shown = xr.Dataset(found, coords={"time": ("time", clock)}, attrs=table.attrs)
     # Headings next to each other must lie on the same turn.
     if ship_heading is not None:
         _align_headings(shown, ship_heading)
