@@ -13,7 +13,7 @@ import sys
 from shipcosim.cli.app import app
 from shipcosim.cli.exit_guard import run_in_child
 
-NEW_OBJECTS = 100_000
+NEW_OBJECTS = 300_000
 """So many objects are made between two searches for unused cycles. Python's 700 cost a tenth of a run's time."""
 
 
