@@ -342,15 +342,18 @@ def check_table(path: Path) -> list[Problem]:
 
 
 def _check_system_file(file: str, path: Path) -> list[Problem]:
-    from shipcosim.ssp import check_file
+    from shipcosim.ssp.check import check_file, problems_of
+    from shipcosim.ssp.system_files import assemble
 
     fmus = library.fmus(path, build=False)
-    problems = check_file(file, fmus=fmus)
+    if path.suffix.lower() in library.SYSTEMS or path.is_dir():
+        system, findings = assemble(file, fmus=fmus)
+        problems = problems_of(system, findings)
+        if system is not None and not findings.errors:
+            problems += _driven_by_water(file, system)
+    else:
+        problems = check_file(file, fmus=fmus)
     is_readable = not any(problem.severity == "error" for problem in problems)
-    if is_readable and (path.suffix.lower() in library.SYSTEMS or path.is_dir()):
-        from shipcosim.ssp import read_system
-
-        problems += _driven_by_water(file, read_system(file, fmus=fmus))
     if path.suffix.lower() == ".fmu" and is_readable:
         from shipcosim.cosim.slaves.validation import library_problems, validation_problems
 

@@ -79,6 +79,7 @@ def make_table(
     attributes : dict, optional
         What holds for the table as a whole: versions, parameters, seeds.
     """
+    import pandas
     import xarray
 
     columns = list(columns)
@@ -92,7 +93,8 @@ def make_table(
         name: ("time", values, {"units": unit, "long_name": long_name})
         for name, values, unit, long_name in columns
     }
-    clock = ("time", time, {"units": "s", "long_name": "time"})
+    # As an index of pandas: to look at an array xarray imports pint, which takes 0.3 s.
+    clock = ("time", pandas.Index(time), {"units": "s", "long_name": "time"})
     return xarray.Dataset(variables, {"time": clock}, attributes or {})
 
 
@@ -282,24 +284,27 @@ def _netcdf(table: xarray.Dataset) -> bytes:
     with h5py.File(content, "w", track_order=True) as file:
         file.attrs.update(table.attrs)
         # The scale of the dimension that all signals have, as NetCDF 4 keeps it in HDF5.
-        time = _write_variable(file, "time", table["time"])
+        clock = table.variables["time"]
+        time = _write_variable(file, "time", clock.values, clock.attrs)
         time.make_scale("time")
-        for name, signal in table.data_vars.items():
+        for name in table.data_vars:
+            signal = table.variables[name]
+            attributes = signal.attrs
             own = str(name)
             # HDF5 separates groups by slashes and takes dots for places; such names stand in an attribute.
             if {"/", "%"} & set(own) or not own.strip("."):
                 own = quote(own, safe="").replace(".", "%2E")
-                signal = signal.assign_attrs({OWN_NAME: str(name)})
-            _write_variable(file, own, signal).dims[0].attach_scale(time)
+                attributes = {**attributes, OWN_NAME: str(name)}
+            _write_variable(file, own, signal.values, attributes).dims[0].attach_scale(time)
     return content.getvalue()
 
 
-def _write_variable(file: h5py.File, name: str, values: xarray.DataArray) -> h5py.Dataset:
+def _write_variable(
+    file: h5py.File, name: str, found: np.ndarray, attributes: Mapping[Any, Any]
+) -> h5py.Dataset:
     """A signal with its attributes as a dataset of HDF5; truth values and texts as xarray writes and reads them."""
     import h5py
 
-    found = values.values
-    attributes = values.attrs
     if found.dtype.kind == "b":
         found = found.astype("int8")
         attributes = {**attributes, "dtype": "bool"}
@@ -310,15 +315,25 @@ def _write_variable(file: h5py.File, name: str, values: xarray.DataArray) -> h5p
 
 
 def _csv(table: xarray.Dataset) -> bytes:
-    columns = {"time": table["time"], **table.data_vars}
+    names = ["time", *table.data_vars]
+    columns = [table.variables[name] for name in names]
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerow(
-        header_of(str(name), column.attrs.get("units") or "1") for name, column in columns.items()
+        header_of(str(name), column.attrs.get("units") or "1")
+        for name, column in zip(names, columns, strict=True)
     )
-    values = [c.values.astype("int8") if c.dtype == bool else c.values for c in columns.values()]
-    for row in zip(*(map(repr, of_column.tolist()) for of_column in values), strict=True):
-        text.write(",".join(cell.removesuffix(".0") for cell in row) + "\n")
+    for row in zip(*(_cells_of(column.values) for column in columns), strict=True):
+        text.write(",".join(row) + "\n")
     return text.getvalue().encode()
+
+
+def _cells_of(values: np.ndarray) -> Iterable[str]:
+    """Texts of a column."""
+    numbers = values.astype("int8") if values.dtype == bool else values
+    # Half the signals of a run keep their value: one text serves all rows. Bytes tell 0.0 from -0.0.
+    if numbers.tobytes() == numbers[:1].tobytes() * len(numbers):
+        return [repr(one).removesuffix(".0") for one in numbers[:1].tolist()] * len(numbers)
+    return (repr(number).removesuffix(".0") for number in numbers.tolist())
 
 
 def _check_declared(path: Path) -> None:

@@ -17,6 +17,9 @@ from pathlib import Path
 from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.temporary import temporary_folder
 
+WRITING = "writing the page"
+"""What a progress function is told at the end, where results are written."""
+
 
 def check_targets(folder: Path | None, file: Path | None = None) -> None:
     """Whether results can be written, as far as that can be known before a long run.

@@ -13,14 +13,13 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
-from shipcosim import cosim, library
+from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors, suggestion
 from shipcosim.results.log import Log
 from shipcosim.results.run import Run
 from shipcosim.scenario import Scenario, check_files, check_times
 from shipcosim.scenario import read_scenario as read_scenario_file
 from shipcosim.scenario.model import problems_in
-from shipcosim.scenario.osp import read_osp_scenario
 from shipcosim.ssp import (
     AnyPath,
     AnySystem,
@@ -171,9 +170,11 @@ class Reading:
 
     def system_of_scenario(self, scenario: Scenario) -> System:
         """The system of a scenario, checked, with the parameter sets and FMUs of both."""
+        from shipcosim.cosim import system_of
+
         if missing := check_files(scenario):
             raise ShipcosimError(missing)
-        return cosim.system_of(
+        return system_of(
             scenario,
             parameters=[Path(one) for one in listed(self.parameters)],
             components=fmus_of(self.components),
@@ -341,6 +342,8 @@ def with_osp_events(
     start_time : float
         Of the run. [s]
     """
+    from shipcosim.scenario.osp import read_osp_scenario
+
     if path is None:
         return scenario, []
     read = read_osp_scenario(Path(path), scenario.step_size, scenario.stop_time, start_time)

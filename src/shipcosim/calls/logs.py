@@ -31,7 +31,7 @@ from shipcosim.results.shown import parts_of
 from shipcosim.results.studies import Calibration, Replay, SeaTrials
 from shipcosim.ships import make_systems
 from shipcosim.ssp import System, SystemStructure, read, with_values
-from shipcosim.staging import check_targets, staged
+from shipcosim.staging import WRITING, check_targets, staged
 from shipcosim.temporary import temporary_folder
 
 if TYPE_CHECKING:
@@ -46,8 +46,6 @@ if TYPE_CHECKING:
     AnyLog = AnyPath | xarray.Dataset | Log | Run
 
 
-WRITING = "writing the page"
-"""What the progress function is told at the end, where results are written."""
 EXTENDED = ("extended.ssp", "extended.ssv", "craft.toml", "craft_open.ssp")
 CALIBRATED = ("calibrated.ssv", "reference.json")
 """Files that an earlier diagnosis or calibration may have left, and a later one does not always write."""

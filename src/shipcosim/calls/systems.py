@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from shipcosim import library
 from shipcosim.calls.arguments import (
@@ -31,12 +31,14 @@ from shipcosim.errors import error_at, held_strictly
 from shipcosim.options import CountProgress, RunOptions
 from shipcosim.results.check import CheckedFiles
 from shipcosim.results.shown import parts_of
-from shipcosim.results.studies import CapabilityOfShip, EngineComparison
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System, SystemStructure, osp_file, pack
 from shipcosim.ssp import read as read_structure
 from shipcosim.staging import check_targets
 from shipcosim.temporary import temporary_folder
+
+if TYPE_CHECKING:
+    from shipcosim.results.studies import CapabilityOfShip, EngineComparison
 
 SYSTEM_OF_CAPABILITY = "gunnerus_dp"
 """Whose capability is computed where no system is given."""
@@ -180,6 +182,7 @@ def compare(
         If our own engine cannot run it.
     """
     from shipcosim.cosim.compare import compare
+    from shipcosim.results.studies import EngineComparison
 
     reading = Reading(parameters=parameters, components=components, fmus=fmus, strict=strict)
     times = in_seconds({"stop_time": stop_time, "step_size": step_size}, ["stop_time", "step_size"])
@@ -299,6 +302,7 @@ def capability(
     'DP capability-L1(5, 4, 0, 0)'
     """
     from shipcosim.capability import capability_of, vessel_of
+    from shipcosim.results.studies import CapabilityOfShip
 
     if out is not None:
         check_targets(Path(out))

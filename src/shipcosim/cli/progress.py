@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from shipcosim.calls.logs import WRITING as LAST_STEP
 from shipcosim.cli.terminal import make_console
+from shipcosim.staging import WRITING as LAST_STEP
 
 if TYPE_CHECKING:
     from rich.console import Console

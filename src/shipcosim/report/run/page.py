@@ -18,7 +18,7 @@ from shipcosim.report.run.roles import Roles, find_roles
 from shipcosim.report.run.scene import Run, make_run
 from shipcosim.report.run.weather import Flow, weather
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.display import display_table, is_constant, thinned
+from shipcosim.report.theme.display import display_table, is_constant, series_in, thinned
 from shipcosim.report.theme.packing import most_rows, packed_series
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import Fact, JsonObject, Link, Outcome, Page, Table, known_facts
@@ -228,7 +228,7 @@ def links(runs: Sequence[Run], sections: Sequence[Section]) -> tuple[Link, ...]:
 def drawn_rows(shown: Dataset) -> tuple[Dataset, Thinned | None]:
     """The rows that fit on a page, and what was left out; None where every row is drawn."""
     # Constant signals need no space: only the others count.
-    varying = [v.values for v in shown.data_vars.values() if not is_constant(v.values)]
+    varying = [v.values for v in series_in(shown).values() if not is_constant(v.values)]
     drawn, span = thinned(shown, most_rows(varying, BYTES_FOR_SIGNALS))
     return drawn, Thinned(drawn.sizes["time"], shown.sizes["time"], span) if span > 1 else None
 
@@ -262,12 +262,12 @@ def drawn_data(
     return {
         "time": packed_series(drawn["time"].values, EXACT),
         "signals": {
-            str(name): {
+            name: {
                 "unit": v.attrs["units"],
                 "label": v.attrs["long_name"],
                 "values": float(v.values[0]) if is_constant(v.values) else packed_series(v.values),
             }
-            for name, v in drawn.data_vars.items()
+            for name, v in series_in(drawn).items()
         },
         "choice": list(choice),
         "scene": list(runs),

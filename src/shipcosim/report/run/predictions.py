@@ -120,9 +120,7 @@ def make_predictions(table: Dataset) -> pandas.DataFrame:
     if roles.signal(roles.ship, "x") is not None:
         for component, horizons in find_predictors(roles).items():
             rows = first_rows(table, component)
-            parts += [
-                _at_horizon(table.isel(time=rows), table, roles, component, end) for end in horizons
-            ]
+            parts += [_at_horizon(table, rows, roles, component, end) for end in horizons]
     # Columns of all parts; also without predictors the table has its columns.
     columns = {
         name: np.concatenate([part[name] for part in parts]) if parts else np.zeros(0)
@@ -133,13 +131,12 @@ def make_predictions(table: Dataset) -> pandas.DataFrame:
 
 
 def _at_horizon(
-    made: Dataset, table: Dataset, roles: Roles, component: str, horizon: int
+    table: Dataset, rows: NDArray, roles: Roles, component: str, horizon: int
 ) -> dict[str, NDArray]:
-    """Columns of the predictions of one component at one horizon."""
+    """Columns of the predictions that one component made at these rows, at one horizon."""
 
     def read(connector):
-        name = join(component, connector)
-        return made[name].values.astype(float) if name in made else np.zeros(made.sizes["time"])
+        return _values_at(table, rows, join(component, connector))
 
     # Predicted pose, and the true pose when its time has come.
     time = read("predicted_at")
@@ -166,6 +163,11 @@ def _at_horizon(
         "in_heading_region": _within(np.abs(off["psi"]), width),
         "learned": read("learned"),
     }
+
+
+def _values_at(table: Dataset, rows: NDArray, name: str) -> NDArray:
+    """Values of a signal at some rows; 0 where there is no such signal."""
+    return table[name].values[rows].astype(float) if name in table else np.zeros(len(rows))
 
 
 def _truth(table: Dataset, roles: Roles, time: NDArray) -> dict[str, NDArray]:
@@ -209,19 +211,15 @@ def predicted_tracks(table: Dataset, shift: float = 0.0) -> list[dict[str, Any]]
         rows = rows[
             np.unique(np.linspace(0, len(rows) - 1, min(len(rows), MOST_DRAWN)).round().astype(int))
         ]
-        made = table.isel(time=rows)
 
-        def packed(connector, resolution, made=made, component=component):
-            name = join(component, connector)
-            values = (
-                made[name].values.astype(float) if name in made else np.zeros(made.sizes["time"])
-            )
+        def packed(connector, resolution, rows=rows, component=component):
+            values = _values_at(table, rows, join(component, connector))
             values = np.degrees(unwrap_series(values)) if connector.startswith("psi") else values
             return packed_series(values, max(LEVELS, float(np.ptp(values)) / resolution))
 
         # Pack each column with the resolution that a screen shows.
         if len(rows):
-            made_at = made[join(component, "predicted_at")].values.astype(float) + shift
+            made_at = _values_at(table, rows, join(component, "predicted_at")) + shift
             parts = {"north": ("x_", 0.01), "east": ("y_", 0.01), "heading": ("psi_", 0.02)}
             parts |= {"radius": ("position_region_", 0.01)}
             columns = {

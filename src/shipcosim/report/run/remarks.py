@@ -9,6 +9,7 @@ from xarray import Dataset
 from shipcosim.report.run.derived import ERRORS, FROM_EXPECTED, FROM_REFERENCE
 from shipcosim.report.run.details import parsed
 from shipcosim.report.run.roles import Roles, join
+from shipcosim.report.theme.display import series_in
 
 STRETCH = 60.0  # s over which a ship that cannot hold is recognised
 AT_LIMIT = 0.5  # share of the stretch in which something must be at its limit
@@ -48,9 +49,9 @@ def _not_finite(shown: Dataset) -> list[str]:
     """The first signals that become non-finite, and how many follow."""
     # First time of each such signal; derived signals only repeat their inputs.
     begin: dict[str, float] = {
-        str(name): float(shown["time"].values[~np.isfinite(v.values)][0])
-        for name, v in shown.data_vars.items()
-        if str(name) not in _DERIVED and not np.isfinite(v.values).all()
+        name: float(shown["time"].values[~np.isfinite(v.values)][0])
+        for name, v in series_in(shown).items()
+        if name not in _DERIVED and not np.isfinite(v.values).all()
     }
     # The earliest three: the others usually follow from them.
     names = sorted(begin, key=begin.__getitem__)

@@ -14,6 +14,7 @@ from xarray import Dataset
 from shipcosim.errors import ShipcosimError
 from shipcosim.models.core.tables import columns
 from shipcosim.report.run.roles import find_roles, join
+from shipcosim.report.theme.display import series_in
 from shipcosim.series import conversion
 
 Pair = tuple[float, float]
@@ -106,12 +107,7 @@ def find_vessels(table: Dataset) -> tuple[Vessel, ...]:
     -------
     tuple of Vessel
     """
-    # Signals over time that are numbers.
-    names = [
-        str(name)
-        for name, v in table.data_vars.items()
-        if v.dtype.kind in "fiub" and v.dims == ("time",)
-    ]
+    names = list(series_in(table))
     main = find_roles(names).ship
     # The main ship first, then by number of loads: sensors have none.
     poses = sorted(

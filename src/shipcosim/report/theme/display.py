@@ -1,6 +1,7 @@
 """A table for readers: degrees and kN, angles without jumps, few enough rows to draw."""
 
 import numpy as np
+import pandas
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 from xarray import Dataset
@@ -39,7 +40,7 @@ def display_table(table: Dataset, ship_heading: str | None = None) -> Dataset:
     # One unit for each quantity on the whole page.
     units = units_to_read(table)
     found = {}
-    for name, variable in _series(table).items():
+    for name, variable in series_in(table).items():
         unit, factor = units.get(variable.attrs.get("units"), (variable.attrs.get("units"), 1.0))
         # Angles are drawn without jumps.
         values = unturned(str(name), variable.values) if unit == "deg" else variable.values
@@ -47,9 +48,9 @@ def display_table(table: Dataset, ship_heading: str | None = None) -> Dataset:
             factor * np.asarray(values, float), unit, variable.attrs.get("long_name", ""), factor
         )
         found[name].attrs["logical"] = variable.dtype.kind == "b"
-    shown = xr.Dataset(
-        found, coords={"time": ("time", np.asarray(table["time"].values, float))}, attrs=table.attrs
-    )
+    # As an index of pandas, for which xarray need not import pint.
+    clock = pandas.Index(np.asarray(table["time"].values, float))
+    shown = xr.Dataset(found, coords={"time": ("time", clock)}, attrs=table.attrs)
     # Headings next to each other must lie on the same turn.
     if ship_heading is not None:
         _align_headings(shown, ship_heading)
@@ -66,7 +67,7 @@ def units_to_read(table: Dataset) -> dict[str | None, tuple[str, float]]:
     chosen = {}
     # Largest size of each unit: kN pays only from 1000 N on.
     largest = dict.fromkeys([v.attrs.get("units") for v in table.variables.values()], 0.0)
-    for variable in _series(table).values():
+    for variable in series_in(table).values():
         if variable.dtype.kind != "b" and variable.size and not np.isnan(variable.values).all():
             unit = variable.attrs.get("units")
             largest[unit] = max(largest[unit], np.nanmax(np.abs(variable.values)))
@@ -77,8 +78,8 @@ def units_to_read(table: Dataset) -> dict[str | None, tuple[str, float]]:
     return chosen
 
 
-def _series(table: Dataset) -> dict[str, xr.Variable]:
-    """The columns of numbers."""
+def series_in(table: Dataset) -> dict[str, xr.Variable]:
+    """The columns of numbers, as variables: making a DataArray looks through all names of the table."""
     found = {str(name): table.variables[name] for name in table.data_vars}
     return {name: v for name, v in found.items() if v.dtype.kind in "fiub" and v.dims == ("time",)}
 

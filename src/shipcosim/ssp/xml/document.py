@@ -190,7 +190,8 @@ def children(element: etree._Element, *path: str) -> list[etree._Element]:
 
 def local(element: etree._Element) -> str:
     """Name of an element without its namespace; empty for comments and the like."""
-    return etree.QName(element).localname if isinstance(element.tag, str) else ""
+    tag = element.tag
+    return tag.rpartition("}")[2] if isinstance(tag, str) else ""
 
 
 def parts_of(root: etree._Element, name: str) -> list[etree._Element]:

@@ -87,6 +87,7 @@ def mend(document: Document, tag: str) -> None:
     noted = Findings()
     _set_namespaces(document, prefix, noted)
     _complete(document, noted)
+    known = names_of("ssd").elements | KINDS.keys() | {"Dimension", "MetaData", "Signature"}
     for element in list(_own(document.root)):
         drop_empty_attributes(document, element, noted)
         _move_source(document, element, noted)
@@ -97,7 +98,7 @@ def mend(document: Document, tag: str) -> None:
         if is_type and element.get("name") is None and _prefix_in(element) == "ssc":
             element.set("name", "")
         mend_boolean(document, element, noted)
-        _drop_what_1_0_lacks(document, element, noted)
+        _drop_what_1_0_lacks(document, element, known, noted)
         sort_parts(document, element, ORDER.get(local(element), "").split(), noted)
         _join_lists(document, element, noted)
         _drop_empty_lists(document, element, noted)
@@ -255,11 +256,12 @@ def mend_boolean(document: Document, element: etree._Element, noted: Findings) -
             )
 
 
-def _drop_what_1_0_lacks(document: Document, element: etree._Element, noted: Findings) -> None:
+def _drop_what_1_0_lacks(
+    document: Document, element: etree._Element, known: Collection[str], noted: Findings
+) -> None:
     """Remove parts that SSP 1.0 does not know; what 1.0 lacks may be something of 2.0."""
     if (document.root.get("version") or "").startswith("2"):
         return
-    known = names_of("ssd").elements | set(KINDS) | {"Dimension", "MetaData", "Signature"}
     if local(element) in known and local(element) != "Annotation" and local(element) not in KINDS:
         drop_unknown(document, element, known, noted)
 
