@@ -396,6 +396,20 @@ MISTAKES = [
         "beyond the end of the runs at 2 s",
         "within",
     ),
+    (
+        "quantity.during",
+        'during      = ["0 s", "1 s"]',
+        'during = ["-1 s", "1 s"]',
+        "before the runs",
+        "within",
+    ),
+    (
+        "quantity.expect",
+        "at_most = 2.5 }]",
+        "at_most = 2.5, during = [1.0, 9.0] }]",
+        "beyond the end",
+        "within",
+    ),
     ("quantity.percentile", "percentile = 90.0", "percentile = 100.0", "100.0", "less than"),
     ("quantity.limit", 'limit  = "1 m"', 'limit = "1 kg"', "1 kg", "m"),
     (
