@@ -60,3 +60,10 @@ def test_a_file_that_is_missing_keeps_no_other_from_being_checked(root, call):
 def test_a_check_of_nothing_is_refused():
     with pytest.raises(ShipcosimError, match="Name one to check"):
         check([])
+
+
+@pytest.mark.parametrize("content", [b"", b"MATLAB 5.0 MAT-file", b"\x89HDF\r\n\x1a\n"])
+def test_a_file_of_matlab_is_checked_as_a_log(tmp_path, call, content):
+    (tmp_path / "log.mat").write_bytes(content)
+    done = call("check", tmp_path / "log.mat")
+    assert done.code == 1 and "log.mat: " in done.out and "are not known" not in done.out
