@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import csv
 import json
 import re
@@ -33,6 +34,36 @@ _SEPARATORS = ("\t", ";", "|", ",", " ")
 _SAMPLE = 60  # lines by which a layout is judged
 _MARKS = ("#", "%", "//", "!")
 _WORD = re.compile(r"[A-Za-z_][\w./-]*")
+
+
+def unicode_of(content: bytes) -> str:
+    """Which encoding of Unicode a text is in, by its byte order mark, zero bytes or UTF-8's rules; empty for others.
+
+    Examples
+    --------
+    >>> [unicode_of("time".encode(name)) for name in ("utf-8", "utf-16", "utf-16-le")]
+    ['utf-8', 'utf-16', 'utf-16-le']
+    """
+    for mark, name in _BYTE_ORDERS:
+        if content.startswith(mark):
+            return name
+    first = content[:400]
+    if len(first) > 3 and first[1::2].count(0) > 0.6 * len(first[1::2]):
+        return "utf-16-le"
+    if len(first) > 3 and first[0::2].count(0) > 0.6 * len(first[0::2]):
+        return "utf-16-be"
+    try:
+        content.decode("utf-8")
+    except UnicodeDecodeError:
+        return ""
+    return "utf-8"
+
+
+_BYTE_ORDERS = (
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
 
 
 def is_comment(line: str) -> bool:

@@ -30,9 +30,10 @@ from shipcosim.dialects import (
     name_in,
     seconds_of_spans,
     separator_of,
+    unicode_of,
 )
 from shipcosim.errors import Problem, ShipcosimError, error_at, reading
-from shipcosim.units import UnitError, spelled_conversion
+from shipcosim.units import UnitError, spelled_conversion, spelled_unit
 
 if TYPE_CHECKING:
     import h5py
@@ -455,7 +456,8 @@ def _read_columns(path: Path) -> list[tuple[str, str, np.ndarray]]:
 def _read_csv(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
     """Headers, and cells by column."""
     try:
-        text = unpacked_bytes(path).decode("utf-8-sig")
+        content = unpacked_bytes(path)
+        text = content.decode(unicode_of(content) or "cp1252").removeprefix("\ufeff")
         rows, decimal = _cells(path, text)
     except (OSError, EOFError, csv.Error, UnicodeDecodeError, zlib.error) as error:
         raise ShipcosimError(_unreadable(path, error)) from error
@@ -470,7 +472,21 @@ def _read_csv(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
         if len(row) != width:
             found = f"Row {number}: Expected {width} columns, got {len(row)}: {','.join(row)}"
             raise ShipcosimError(_unreadable(path, ValueError(found)))
+    rows = _without_row_of_units(rows)
     return rows[0], list(zip(*rows[1:], strict=True))
+
+
+def _without_row_of_units(rows: list[list[str]]) -> list[list[str]]:
+    """The rows, with the units of a row of them below the names in the header."""
+    units = [cell.strip("[]() ") for cell in (rows[1] if len(rows) > 1 else ())]
+    known = [unit in ("", "-") or spelled_unit(unit) is not None for unit in units]
+    if not any(units) or not all(known) or any(map(is_figure, units)):
+        return rows
+    header = [
+        header if _HEADER.match(header) or unit in ("", "-") else f"{header} [{unit}]"
+        for header, unit in zip(rows[0], units, strict=True)
+    ]
+    return [header, *rows[2:]]
 
 
 def unpacked_bytes(path: Path) -> bytes:

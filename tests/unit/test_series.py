@@ -298,3 +298,31 @@ def test_netcdf_is_what_xarray_writes_and_reads(table, tmp_path):
     ):
         xarray.testing.assert_identical(ours.load(), theirs.load())
         assert {n: v.dtype for n, v in ours.items()} == {n: v.dtype for n, v in theirs.items()}
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "cp1252"])
+@pytest.mark.parametrize("ending", [".csv", ".csv.gz"])
+def test_a_table_in_the_encodings_of_loggers_is_read(tmp_path, encoding, ending):
+    content = "time [s],måling [°]\n0.0,1.5\n1.0,2.5\n".encode(encoding)
+    path = tmp_path / f"t{ending}"
+    path.write_bytes(gzip.compress(content) if ending == ".csv.gz" else content)
+    table = read_table(path)
+    assert table["måling"].values.tolist() == [1.5, 2.5] and table["måling"].attrs["units"] == "°"
+
+
+@pytest.mark.parametrize("row", ["ms,deg,-", "[ms],(deg),", "ms;deg;-"])
+def test_a_row_of_units_below_the_names_is_that(tmp_path, row):
+    separator = ";" if ";" in row else ","
+    lines = ["time,psi,flag", row, "0,1.5,0", "500,2.5,1"]
+    text = "\n".join(line.replace(",", separator) for line in lines)
+    (tmp_path / "t.csv").write_text(text, encoding="utf-8")
+    table = read_table(tmp_path / "t.csv")
+    assert table["time"].values.tolist() == [0.0, 0.5]
+    assert [table[name].attrs["units"] for name in ("psi", "flag")] == ["deg", ""]
+
+
+@pytest.mark.parametrize("row", ["s,parsnip", "s,3.0", "s,m s"])
+def test_a_row_of_other_texts_is_refused_as_such(tmp_path, row):
+    (tmp_path / "t.csv").write_text(f"time,x\n{row}\n0,1\n1,2\n", encoding="utf-8")
+    with pytest.raises(ShipcosimError, match="column 'time'.*holds texts"):
+        read_table(tmp_path / "t.csv")

@@ -27,7 +27,7 @@ from shipcosim.calls.arguments import (
     without_none,
 )
 from shipcosim.calls.keywords import with_known_keywords
-from shipcosim.errors import error_at, held_strictly
+from shipcosim.errors import Problem, ShipcosimError, error_at, held_strictly
 from shipcosim.options import CountProgress, RunOptions
 from shipcosim.results.check import CheckedFiles
 from shipcosim.results.shown import parts_of
@@ -103,7 +103,7 @@ def check(
     Raises
     ------
     ShipcosimError
-        If there is no such file, name or tool.
+        If there is no such tool, or none of the files and names is there.
 
     Examples
     --------
@@ -117,9 +117,20 @@ def check(
     tools = [hosts] if isinstance(hosts, str) else hosts
     for tool in tools:
         check_host(tool)
-    paths = {os.fspath(one): library.find_any(os.fspath(one)) for one in listed(files)}
     table = None if channels is None else Path(channels)
-    found = {name: check_any(path, table, tools) for name, path in paths.items()}
+    paths = {}
+    found: dict[str, list[Problem]] = {}
+    for file in listed(files):
+        name = os.fspath(file)
+        try:
+            paths[name] = library.find_any(name)
+        except ShipcosimError as error:
+            found[name] = error.problems
+        else:
+            found[name] = check_any(paths[name], table, tools)
+    if not paths:
+        missing = [problem for problems in found.values() for problem in problems]
+        raise ShipcosimError(missing or Problem("files", "There is none.", "Name one to check."))
     held = {
         name: tuple(held_strictly(problems) if strict else problems)
         for name, problems in found.items()

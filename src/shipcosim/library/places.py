@@ -3,6 +3,8 @@
 import os
 from pathlib import Path
 
+from shipcosim.errors import error_at
+
 StrPath = str | os.PathLike[str]
 PACKAGE = Path(__file__).resolve().parents[1]
 FOLDERS = (
@@ -46,11 +48,20 @@ def roots(start: StrPath | None = None) -> list[Path]:
 
 
 def cache() -> Path:
-    """Folder of what is made on first use: SHIPCOSIM_CACHE, else where the platform keeps such things."""
+    """Folder of what is made on first use: SHIPCOSIM_CACHE, else where the platform keeps such things.
+
+    Raises
+    ------
+    ShipcosimError
+        If the variable names a file, or a place in one.
+    """
     from platformdirs import user_cache_path
 
-    return (
-        Path(os.environ[CACHE])
-        if os.environ.get(CACHE)
-        else user_cache_path("shipcosim", appauthor=False)
-    )
+    named = os.environ.get(CACHE)
+    if not named:
+        return user_cache_path("shipcosim", appauthor=False)
+    folder = Path(named)
+    if file := next((place for place in (folder, *folder.parents) if place.is_file()), None):
+        remedy = f"Set {CACHE} to a folder that can be written to."
+        raise error_at(named, f"cannot be written: {file} is a file.", remedy)
+    return folder

@@ -148,11 +148,17 @@ def time_complaints(
                 "",
                 "remark",
             )
-    # A window beyond the end is judged only as far as the run goes.
     for number, expect in enumerate(scenario.expect):
-        if expect.during and expect.during[1] > stop:
-            found = f"during = {expect.during} reaches beyond the end of the run at {stop:g} s."
-            yield ("expect", number, "during"), found, "", "remark"
+        window = expect.during
+        keys = ("expect", number, "during")
+        # A window before the start is never judged, in no run.
+        if window and window[0] < start_time:
+            found = f"during = {window} begins before the run, at {start_time:g} s."
+            yield keys, found, "Let it begin there or later.", "error"
+        # One beyond the end is judged only as far as the run goes.
+        elif window and window[1] > stop:
+            found = f"during = {window} reaches beyond the end of the run at {stop:g} s."
+            yield keys, found, "", "remark"
 
 
 def check_parameters(scenario: Scenario, system: System) -> Iterator[Problem]:

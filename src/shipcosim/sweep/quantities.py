@@ -222,17 +222,17 @@ def _remarks(quantity: Quantity, scenario: Scenario, end: float, planned: float)
 def _outside(study: Study, scenario: Scenario, end: float, planned: float) -> Iterable[Problem]:
     """Windows and times that no run reaches."""
     for number, one in enumerate(study.quantity):
-        starts = (
-            ("during", one.during[1] if one.during else None),
-            ("time", one.time),
-            ("since", one.since),
-        )
-        for key, time in starts:
-            if time is not None and time > end:
-                found = f"{key} lies beyond the end of the runs at {end:g} s."
-                yield problem_of(
-                    study, ("quantity", number, key), found, "Take a time within them."
-                )
+        times = [(("during",), time) for time in one.during or ()]
+        times += [(("time",), one.time), (("since",), one.since)]
+        for i, expect in enumerate(one.expect):
+            times += [(("expect", i, "during"), time) for time in expect.during or ()]
+        for keys, time in times:
+            if time is None or 0.0 <= time <= end:
+                continue
+            found = f"{keys[-1]} lies beyond the end of the runs at {end:g} s."
+            if time < 0.0:
+                found = f"{keys[-1]} lies before the runs, which begin at 0 s."
+            yield problem_of(study, ("quantity", number, *keys), found, "Take a time within them.")
         if one.scenario_expectations and len(_claims(one, scenario, end, planned)) == len(
             one.expect
         ):

@@ -331,13 +331,54 @@ class Tune(Part):
     objective: list[Objective] = Field(min_length=2)
 
 
+def _names_or_false(value: Any) -> Any:
+    return [] if value is False else [value] if isinstance(value, str) else value
+
+
 class View(Part):
     """A view on the results page; its keys depend on its kind."""
 
-    model_config = ConfigDict(extra="allow")
-
     kind: Literal["polar", "curves", "tracks", "bars", "pareto", "scatter"]
     title: str = ""
+    note: str = ""
+    series: Annotated[list[str] | None, BeforeValidator(_names_or_false)] = None
+    only: dict[str, Value | list[Value]] = {}
+    table: str | None = None
+    angle: str | None = None
+    radius: str | None = None
+    static: Annotated[list[Literal["simulator", "level 1"]], BeforeValidator(as_list)] = []
+    quantity: str | None = None
+    circles: list[Annotated[float, Field(gt=0.0)]] = []
+    category: str | None = None
+    value: ListOfNames = []
+    most: Count | None = None
+    quantities: ListOfNames = Field(default=[], min_length=2, max_length=3)
+    largest: ListOfNames = []
+    marked: str | None = None
+    x: str | None = None
+    y: str | None = None
+
+    @model_validator(mode="after")
+    def _keys_of_its_kind(self) -> View:
+        """Raise ValueError where a key is missing, or would be left out without a word."""
+        needed, others = _KEYS_OF_VIEWS[self.kind]
+        if missing := [key for key in needed if not getattr(self, key)]:
+            raise ValueError(f"a view of kind '{self.kind}' needs {' and '.join(missing)}.")
+        known = {"kind", "title", "note", "series", "only", "table", *needed, *others}
+        if foreign := sorted(self.model_fields_set - known):
+            raise ValueError(f"a view of kind '{self.kind}' has no {', '.join(foreign)}.")
+        return self
+
+
+_KEYS_OF_VIEWS = {
+    "polar": (("angle", "radius"), ("static",)),
+    "curves": (("quantity",), ()),
+    "tracks": ((), ("circles",)),
+    "bars": (("category", "value"), ("most",)),
+    "pareto": (("quantities",), ("largest", "marked")),
+    "scatter": (("x", "y"), ()),
+}
+"""Keys that a view needs, and others that it can have, by its kind."""
 
 
 class Tracks(Part):

@@ -540,7 +540,7 @@ def test_files_of_windows_editors_are_read(call, gunnerus):
         (NOISE, ["in.csv:", "is not UTF-8 text"]),
         (
             b"time [s],tunnel_rpm [\xb0]\n0,1\n1,1\n",
-            ["in.csv:", "is not UTF-8 text: byte 0xb0", "Save the file in UTF-8."],
+            ["in.csv: tunnel_rpm:", "cannot convert '°' into 'rpm'"],
         ),
     ],
 )

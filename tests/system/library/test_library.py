@@ -158,3 +158,11 @@ def test_cache_that_cannot_be_written_is_said_with_the_remedy(wheel):
     (wheel / "cache").write_text("a file", encoding="utf-8")
     with pytest.raises(ShipcosimError, match="cannot be written.*SHIPCOSIM_CACHE"):
         library.fmus()
+
+
+@pytest.mark.parametrize("inside", ["", "a/b"])
+def test_a_file_as_the_cache_is_said_with_the_variable(tmp_path, monkeypatch, inside):
+    (tmp_path / "cache").write_text("a file", encoding="utf-8")
+    monkeypatch.setenv("SHIPCOSIM_CACHE", str(tmp_path / "cache" / inside))
+    with pytest.raises(ShipcosimError, match="cache is a file. Set SHIPCOSIM_CACHE to a folder"):
+        library.places.cache()

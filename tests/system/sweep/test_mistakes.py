@@ -149,11 +149,14 @@ none      = "none"
 [[view]]
 kind  = "scatter"
 title = "levels"
+x     = "level"
+y     = "highest"
 
 [tracks]
 signals  = ["lag.y"]
 interval = "0.2 s"
 """
+TEXTS = ("note", "table", "angle", "radius", "quantity", "category", "marked")
 MISTAKES = [
     # key, line of WHOLE, what stands in its place, what is found, what would be right
     ("extends", "", 'extends = "levls"', "no study 'levls'", "levels"),
@@ -393,6 +396,20 @@ MISTAKES = [
         "beyond the end of the runs at 2 s",
         "within",
     ),
+    (
+        "quantity.during",
+        'during      = ["0 s", "1 s"]',
+        'during = ["-1 s", "1 s"]',
+        "before the runs",
+        "within",
+    ),
+    (
+        "quantity.expect",
+        "at_most = 2.5 }]",
+        "at_most = 2.5, during = [1.0, 9.0] }]",
+        "beyond the end",
+        "within",
+    ),
     ("quantity.percentile", "percentile = 90.0", "percentile = 100.0", "100.0", "less than"),
     ("quantity.limit", 'limit  = "1 m"', 'limit = "1 kg"', "1 kg", "m"),
     (
@@ -459,6 +476,18 @@ MISTAKES = [
     ("summary.none", 'none      = "none"', "none = [1]", "none = [1]", "number or a text"),
     ("view.kind", 'kind  = "scatter"', 'kind = "scater"', 'kind = "scater"', "'scatter'"),
     ("view.title", 'title = "levels"', "title = 1", "title = 1", "text"),
+    *((f"view.{key}", 'title = "levels"', f"{key} = 1", f"{key} = 1", "text") for key in TEXTS),
+    ("view.x", 'x     = "level"', "", "needs x", ""),
+    ("view.y", 'y     = "highest"', "y = 1", "y = 1", "text"),
+    ("view.series", 'title = "levels"', "series = true", "series = true", "list"),
+    ("view.only", 'title = "levels"', "only = { level = nan }", "nan", ""),
+    ("view.static", 'title = "levels"', 'static = ["level 2"]', '"level 2"', "'level 1'"),
+    ("view.circles", 'title = "levels"', "circles = [5.0, nan]", "circles.1 = nan", "finite"),
+    ("view.circles", 'title = "levels"', "circles = [5.0]", "kind 'scatter' has no circles", ""),
+    ("view.value", 'title = "levels"', "value = 1", "value = 1", "list"),
+    ("view.most", 'title = "levels"', "most = 0", "most = 0", "greater than or equal to 1"),
+    ("view.quantities", 'title = "levels"', 'quantities = ["level"]', "quantities", "more values"),
+    ("view.largest", 'title = "levels"', "largest = 1", "largest = 1", "list"),
     ("tracks.signals", 'signals  = ["lag.y"]', 'signals = ["lag.z"]', "'z'", "u, y"),
     ("tracks.interval", 'interval = "0.2 s"', "interval = 0.0", "interval = 0.0", "greater than 0"),
 ]

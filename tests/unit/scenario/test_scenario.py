@@ -151,6 +151,16 @@ def test_what_lies_after_the_end_is_remarked(tmp_path):
     assert "line 23: during = [5.0, 10.0] reaches beyond the end of the run at 3 s." in said[1]
 
 
+@pytest.mark.parametrize("start", [0.0, 6.0])
+def test_a_window_that_begins_before_the_run_is_an_error(tmp_path, start):
+    scenario = read_scenario(written(tmp_path, GOOD))
+    late = scenario.expect[0].model_copy(update={"during": [start - 0.5, 8.0]})
+    late = scenario.model_copy(update={"expect": [late]})
+    found = [problem for problem in check_times(late, start) if problem.severity == "error"]
+    said = f"during = [{start - 0.5}, 8.0] begins before the run, at {start:g} s."
+    assert said in [problem.found for problem in found]
+
+
 def test_a_scenario_in_a_folder_of_scenarios_finds_the_project(tmp_path):
     (tmp_path / "ssp" / "small").mkdir(parents=True)
     path = tmp_path / "scenarios" / "failures" / "calm.toml"

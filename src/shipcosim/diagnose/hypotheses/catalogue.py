@@ -121,18 +121,23 @@ def read_catalogue(folder: AnyPath | None = None) -> dict[str, Cause]:
     ShipcosimError
         With everything that is wrong in the files.
     """
-    own = sorted(Path(folder).iterdir()) if folder else []
-    found = dict(_shipped())
+    own: dict[str, Cause] = {}
     problems = []
-    for path in (path for path in own if path.name.endswith(".toml")):
+    for path in sorted(Path(folder).iterdir()) if folder else []:
+        if not path.name.endswith(".toml"):
+            continue
         try:
             cause = read_cause(path)
-            found[cause.cause] = cause
         except ShipcosimError as error:
             problems += error.problems
+            continue
+        if cause.cause in own:
+            found = f"'{cause.cause}' is the cause of another file in this folder too."
+            problems.append(Problem(str(path), found, "Give one of them another name."))
+        own[cause.cause] = cause
     if problems:
         raise ShipcosimError(problems)
-    return found
+    return {**_shipped(), **own}
 
 
 def read_cause(path: Path) -> Cause:
@@ -150,9 +155,8 @@ def read_cause(path: Path) -> Cause:
         problems = []
         for detail in error.errors():
             key = ".".join(map(str, detail["loc"]))
-            problems.append(
-                Problem(f"{path}, {key}" if key else str(path), f"{detail['msg']}.", remedy)
-            )
+            found = detail["msg"].removeprefix("Value error, ").removesuffix(".")
+            problems.append(Problem(f"{path}, {key}" if key else str(path), f"{found}.", remedy))
         raise ShipcosimError(problems) from None
     except (OSError, ValueError, RecursionError) as error:
         raise error_at(str(path), f"It cannot be read: {error}.", remedy) from None

@@ -4,16 +4,24 @@
 """
 
 from string import Formatter
-from typing import Literal, Self
+from typing import Annotated, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from shipcosim.units import spelled_conversion
 
 FACTS = ("astern_share", "speed", "surge", "surge_acceleration", "sway", "wind_speed", "yaw_rate")
 """What `why_not_testable` can say of a log: root mean squares of the motion, the mean wind, the share astern."""
 
 
 class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+Number = Annotated[float, Field(strict=True)]
+"""A finite one; true and "0.5" are none."""
+Size = Annotated[Number, Field(gt=0.0)]
+NotNegative = Annotated[Number, Field(ge=0.0)]
 
 
 class OnConnections(_Strict):
@@ -28,7 +36,7 @@ class OnConnections(_Strict):
     """
 
     of: Literal["loads", "rpm", "azimuth"]
-    sign: float
+    sign: Number
 
 
 class CauseParameter(_Strict):
@@ -57,15 +65,24 @@ class CauseParameter(_Strict):
         How the extended system has it where the FMU of a thruster has no such parameter.
     """
 
-    of: list[str]
+    of: Annotated[list[str], Field(min_length=1)]
     unit: str = "1"
-    typical: float
-    tolerance: float = 0.0
-    bounds: tuple[float, float]
+    typical: Size
+    tolerance: NotNegative = 0.0
+    bounds: tuple[Number, Number]
     complement: bool = False
     factor: bool = False
     relative_to: str | None = None
     on_connections: OnConnections | None = None
+
+    @model_validator(mode="after")
+    def _checked(self) -> Self:
+        """Refuse bounds that no value is between, and an unknown unit."""
+        spelled_conversion(self.unit, self.unit)
+        low, high = self.bounds
+        if not low < high:
+            raise ValueError(f"bounds = [{low:g}, {high:g}]: the first should be below the second")
+        return self
 
 
 class ExtensionRule(_Strict):
@@ -169,8 +186,8 @@ class Cause(_Strict):
     axis: Literal["", "surge", "sway", "yaw"] = ""
     law: Literal["linear", "vector", "turning"] = "linear"
     sought_by: list[str] = []
-    least: float = 0.2
-    cost: float = 0.0
+    least: NotNegative = 0.2
+    cost: Number = 0.0
     companions: list[str] = []
     shape: list[str] = []
     replaces: list[str] = []
@@ -178,7 +195,7 @@ class Cause(_Strict):
     without_wind: Literal["sought", "left out", "allowed for"] = "sought"
     unit_of: list[str] = []
     extension: ExtensionRule | None = None
-    parameters: dict[str, CauseParameter]
+    parameters: Annotated[dict[str, CauseParameter], Field(min_length=1)]
 
     @model_validator(mode="after")
     def _checked(self) -> Self:

@@ -382,12 +382,10 @@ def scatter(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
     frame = frame_of(tables, view, names)
     columns = [frame.column(name) for name in names]
     # Colour by a factor, if it has few enough levels.
-    chosen = view.get("colour") or view.get("series")
-    series = series_of(
-        frame,
-        {**view, "series": chosen if chosen and frame.column(chosen).levels else False},
-        names,
-    )
+    asked = view.get("series") or []
+    chosen = [asked] if isinstance(asked, str) else asked
+    has_levels = all(frame.column(name).levels for name in chosen)
+    series = series_of(frame, {**view, "series": chosen if has_levels else False}, names)
     # Evenly fewer dots, by the same share in each series.
     share = min(MOST_DOTS / max(frame.rows, 1), 1.0)
     traces = [

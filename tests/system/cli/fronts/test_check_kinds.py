@@ -2,7 +2,9 @@
 
 import pytest
 
+from shipcosim import check
 from shipcosim.checks import kind_of_toml
+from shipcosim.errors import ShipcosimError
 
 KINDS = {
     "src/shipcosim/diagnose/hypotheses/causes/*.toml": "cause",
@@ -44,3 +46,24 @@ def test_a_channel_file_is_right_or_its_mistakes_are_said(root, tmp_path, call):
     wrong.write_text('north = "N"\nheadin = "psi"\n')
     done = call("check", wrong)
     assert done.code == 1 and "Did you mean 'heading'?" in done.out and "time" in done.out
+
+
+def test_a_file_that_is_missing_keeps_no_other_from_being_checked(root, call):
+    scenario = root / "scenarios/gust.toml"
+    done = call("check", scenario, "absent", root / "scenarios/held.toml")
+    assert done.code == 1 and done.out.count("nothing wrong") == 2
+    assert "absent: 1 error" in done.out and "There is no such file or folder." in done.out
+    done = call("check", "absent", "missing")
+    assert done.code == 2 and "absent" in done.err and "missing" in done.err
+
+
+def test_a_check_of_nothing_is_refused():
+    with pytest.raises(ShipcosimError, match="Name one to check"):
+        check([])
+
+
+@pytest.mark.parametrize("content", [b"", b"MATLAB 5.0 MAT-file", b"\x89HDF\r\n\x1a\n"])
+def test_a_file_of_matlab_is_checked_as_a_log(tmp_path, call, content):
+    (tmp_path / "log.mat").write_bytes(content)
+    done = call("check", tmp_path / "log.mat")
+    assert done.code == 1 and "log.mat: " in done.out and "are not known" not in done.out

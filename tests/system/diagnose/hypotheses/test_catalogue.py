@@ -213,6 +213,45 @@ def test_a_file_with_the_name_of_a_known_cause_replaces_it(tmp_path):
     ]
 
 
+@pytest.mark.parametrize("key", ["typical", "tolerance", "bounds", "least", "cost", "sign"])
+@pytest.mark.parametrize("value", ["nan", "inf", "-inf", "1e400", "true", '"0.5"'])
+def test_a_number_of_a_cause_is_finite_and_no_other_value(tmp_path, key, value):
+    lines = {
+        "typical": MINE.replace("typical = 0.5", f"typical = {value}"),
+        "tolerance": f"{MINE}tolerance = {value}\n",
+        "bounds": MINE.replace("4.0]", f"{value}]"),
+        "least": MINE.replace("for_each", f"least = {value}\nfor_each"),
+        "cost": MINE.replace("for_each", f"cost = {value}\nfor_each"),
+        "sign": f'{MINE}on_connections = {{ of = "rpm", sign = {value} }}\n',
+    }
+    (tmp_path / "one.toml").write_text(lines[key], encoding="utf-8")
+    with pytest.raises(ShipcosimError, match=f"one.toml, .*{key}"):
+        read_catalogue(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("is_there", "instead"),
+    [
+        ("typical = 0.5", "typical = 0.0"),
+        ("typical = 0.5", "typical = 0.5\ntolerance = -0.1"),
+        ("bounds = [-1.0, 4.0]", "bounds = [4.0, -1.0]"),
+        ("typical = 0.5", 'typical = 0.5\nunit = "parsnip"'),
+        ('of = ["{thruster}.side_force_coefficient"]', "of = []"),
+    ],
+)
+def test_a_cause_that_no_log_can_show_is_refused(tmp_path, is_there, instead):
+    (tmp_path / "one.toml").write_text(MINE.replace(is_there, instead), encoding="utf-8")
+    with pytest.raises(ShipcosimError, match="one.toml, parameters.coefficient"):
+        read_catalogue(tmp_path)
+
+
+def test_two_files_of_a_folder_with_one_cause_are_refused(tmp_path):
+    for name in ("one.toml", "two.toml"):
+        (tmp_path / name).write_text(MINE, encoding="utf-8")
+    with pytest.raises(ShipcosimError, match="two.toml: 'side_force' is the cause of another file"):
+        read_catalogue(tmp_path)
+
+
 @pytest.mark.parametrize(
     ("line", "said"),
     [

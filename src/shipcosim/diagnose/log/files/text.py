@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-import codecs
 import zlib
 from pathlib import Path
 
 from shipcosim.diagnose.log.names.vocabulary import word_parts
+from shipcosim.dialects import unicode_of
 from shipcosim.errors import error_at
 from shipcosim.series import unpacked_bytes
-
-_MARKS = (
-    (codecs.BOM_UTF8, "utf-8-sig"),
-    (codecs.BOM_UTF16_LE, "utf-16"),
-    (codecs.BOM_UTF16_BE, "utf-16"),
-)
 
 
 def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
@@ -57,21 +51,8 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
 
 
 def _encoding_of(content: bytes) -> str:
-    # Byte order mark, then zero bytes of UTF-16, then
-    # UTF-8; any other text is in an encoding of one byte.
-    for mark, name in _MARKS:
-        if content.startswith(mark):
-            return name
-    first = content[:400]
-    if len(first) > 3 and first[1::2].count(0) > 0.6 * len(first[1::2]):
-        return "utf-16-le"
-    if len(first) > 3 and first[0::2].count(0) > 0.6 * len(first[0::2]):
-        return "utf-16-be"
-    try:
-        content.decode("utf-8")
-        return "utf-8"
-    except UnicodeDecodeError:
-        pass
+    if found := unicode_of(content):
+        return found
     # Japanese text is only believed where it has words of logs, as other encodings decode too.
     for name in ("cp932", "euc_jp", "cp1252"):
         try:
