@@ -512,6 +512,7 @@ def unpacked_bytes(path: Path) -> bytes:
 
 def _cells(path: Path, text: str) -> tuple[list[list[str]], str]:
     """Cells by row, and the decimal sign. Commas separate where the header has one; else what fits."""
+    text = _without_comments(text)
     lines = text.splitlines()
     separator = "," if not lines or "," in lines[0] else separator_of(lines)
     if separator in (",", " "):
@@ -519,6 +520,20 @@ def _cells(path: Path, text: str) -> tuple[list[list[str]], str]:
     rows = [cells_in(line, separator) for line in lines if line.strip()]
     with_comma = {cell for row in rows[1:] for cell in row if "," in cell and is_figure(cell)}
     return rows, decimal_of(str(path), sorted(with_comma)) or "."
+
+
+def _without_comments(text: str) -> str:
+    """The text without lines with # above its header; where numbers follow the lines with # at once, the last of these is the header."""
+    lines = text.splitlines(keepends=True)
+    is_above = [not line.strip() or line.startswith("#") for line in lines]
+    if not text.startswith("#") or all(is_above):
+        return text
+    first = is_above.index(False)
+    table = "".join(lines[first:])
+    if all(map(is_figure, cells_in(lines[first], separator_of(lines[first:])))):
+        header = next(line for line in reversed(lines[:first]) if line.strip())
+        return header.lstrip("# ") + table
+    return table
 
 
 def _with_point(cell: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from shipcosim.errors import Problem, ShipcosimError
@@ -27,6 +27,7 @@ def parsed_settings(settings: Iterable[str]) -> dict[str, Any]:
                     "--set", f"'{setting}' sets nothing.", "Right would be component.name=value."
                 )
             )
+        problems += _of_twice("--set", name.strip(), values)
         values[name.strip()] = _parsed(text.strip())
     if problems:
         raise ShipcosimError(problems)
@@ -46,6 +47,7 @@ def parsed_components(given: Iterable[str]) -> dict[str, str]:
     for pair in given:
         name, sign, fmu = (part.strip() for part in pair.partition("="))
         if sign and name and fmu:
+            problems += _of_twice("--component", name, found)
             found[name] = fmu
         else:
             problems.append(
@@ -54,6 +56,12 @@ def parsed_components(given: Iterable[str]) -> dict[str, str]:
     if problems:
         raise ShipcosimError(problems)
     return found
+
+
+def _of_twice(option: str, name: str, given: Mapping[str, Any]) -> list[Problem]:
+    if name not in given:
+        return []
+    return [Problem(option, f"'{name}' is given twice.", "Keep one of them.")]
 
 
 def isolation(isolate: bool, timeout: float | None) -> dict[str, Any]:

@@ -24,7 +24,7 @@ from shipcosim.sweep.levels import Level, Levels
 from shipcosim.sweep.plan import Plan, Swapped
 from shipcosim.sweep.quantities import measures_of
 from shipcosim.sweep.reader import problem_of
-from shipcosim.sweep.sampling import samples_of
+from shipcosim.sweep.sampling import Samples, samples_of
 from shipcosim.sweep.study_model import Study
 from shipcosim.sweep.tuning import ranges_of
 from shipcosim.units import whole_steps
@@ -86,6 +86,7 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
     happening = [event for one in found for level in one for event in level.events]
     measures, problems = measures_of(study, scenario, system, happening, planned)
     problems = [*levels.problems, *problems, *_of_summaries(study), *_of_fork(study, scenario)]
+    problems += _of_replaced(study, found, samples)
     problems += [one for one in check_scenario(scenario, system) if one.severity == "error"]
     if problems:
         raise ShipcosimError(problems)
@@ -213,6 +214,33 @@ def _of_fork(study: Study, scenario: Scenario) -> Iterator[Problem]:
         stop = scenario.stop_time
         remedy = f"It is a multiple of the step size, {step:g} s, before the end at {stop:g} s."
         yield problem_of(study, ("fork_at",), f"fork_at = {study.fork_at:g} s.", remedy)
+
+
+def _of_replaced(
+    study: Study, found: Sequence[Sequence[Level]], samples: Samples | None
+) -> Iterator[Problem]:
+    """Problems of factors of which every value is replaced by what comes after them, so that they change nothing."""
+    # From the last factor to the first: what is set in all runs by something later.
+    sampled = () if samples is None else samples.columns
+    replaced_by = {
+        signal: column.name for column in sampled if not column.at_fork for signal in column.signals
+    }
+    for number in reversed(range(len(found))):
+        levels = found[number]
+        name = study.factor[number].name
+        own = {signal for level in levels for signal in level.values}
+        does_more = any(level.events or level.components or level.stop_time for level in levels)
+        if own and own <= replaced_by.keys() and not does_more:
+            signal = min(own)
+            yield problem_of(
+                study,
+                ("factor", number),
+                f"'{replaced_by[signal]}' sets {signal} too, so '{name}' changes nothing.",
+                "Keep one of them.",
+            )
+        # A signal that only some levels set keeps its earlier value in the runs of the others.
+        in_all = set.intersection(*(set(level.values) for level in levels)) if levels else set()
+        replaced_by |= dict.fromkeys(in_all, name)
 
 
 def _of_summaries(study: Study) -> Iterator[Problem]:
