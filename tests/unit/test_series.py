@@ -321,6 +321,23 @@ def test_a_row_of_units_below_the_names_is_that(tmp_path, row):
     assert [table[name].attrs["units"] for name in ("psi", "flag")] == ["deg", ""]
 
 
+@pytest.mark.parametrize(
+    ("above", "header"),
+    [
+        ("# by hand\n", "time [s],x [m]"),
+        ("# by hand\n\n#, of May\n", "time [s];x [m]"),
+        ("# by hand\n", "# time [s],x [m]"),
+        ("#", "time [s],x [m]"),
+        ("#1\r\n", "time [s],x [m]"),
+    ],
+)
+def test_lines_with_a_sign_of_comments_above_the_header_are_left_out(tmp_path, above, header):
+    rows = "0,1.5\n1,2.5\n".replace(",", ";" if ";" in header else ",")
+    (tmp_path / "t.csv").write_text(f"{above}{header}\n{rows}", encoding="utf-8", newline="")
+    table = read_table(tmp_path / "t.csv")
+    assert table["x"].values.tolist() == [1.5, 2.5] and table["x"].attrs["units"] == "m"
+
+
 @pytest.mark.parametrize("row", ["s,parsnip", "s,3.0", "s,m s"])
 def test_a_row_of_other_texts_is_refused_as_such(tmp_path, row):
     (tmp_path / "t.csv").write_text(f"time,x\n{row}\n0,1\n1,2\n", encoding="utf-8")

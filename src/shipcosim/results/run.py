@@ -119,7 +119,7 @@ class Run(LikeTable, Result):
             message = f"worst {words.worst} at {words.time} ({signals})"
             checks.append(Check(name, passed_or_failed(verdict.passed), message, page=page))
         for claim in json.loads(self.table.attrs.get("not_reached", "[]")):
-            message = f"not reached, the run ended at {self._span[1]:g} s"
+            message = "not reached, the run went from {:g} to {:g} s".format(*self._span)
             checks.append(Check(claim, "skipped", message, page=page))
         return tuple(checks)
 

@@ -115,6 +115,10 @@ def not_shipped():
             ["--set", "vessel.mass"],
             ["'vessel.mass' sets nothing. Right would be component.name=value."],
         ),
+        (
+            ["--set", "vessel.mass=5e5", "--set", "vessel.mass = 6e5"],
+            ["--set:", "'vessel.mass' is given twice. Keep one of them."],
+        ),
         (["--engine", "fmpi"], ["There is no engine 'fmpi'", "Did you mean 'fmpy'?"]),
         (
             ["--until", "0.52"],

@@ -84,7 +84,7 @@ def test_what_a_part_of_a_run_does_not_reach_is_said(call, project):
     said = part.out.replace("\u00a0", " ")
     assert (
         part.code == 0
-        and "Not reached: lag.y: 1 ± 0.05 m during 4 to 5 s. The run ended at 4 s." in said
+        and "Not reached: lag.y: 1 ± 0.05 m during 4 to 5 s. The run went from 0 to 4 s." in said
     )
     assert "None of its" in part.out or "not reached" in part.out
 

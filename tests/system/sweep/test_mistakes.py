@@ -54,8 +54,8 @@ values   = [1.0, 2.0]
 at_fork  = true
 
 [[factor]]
-name   = "noise"
-signal = "other.noise"
+name   = "limit"
+signal = "other.ends_above"
 from   = 0.0
 to     = 0.2
 step   = 0.1
@@ -663,6 +663,32 @@ def parts_in(annotation):
 def test_a_level_that_is_there_twice_is_refused(complaints, values, level):
     (first,) = complaints(WHOLE.replace('["100 cm", 2.0]', values))
     assert f"The level {level} is there twice." in first.found
+
+
+@pytest.mark.parametrize(
+    ("after", "by"),
+    [
+        ('[[factor]]\nname = "later"\nsignal = "both.u"\nvalues = [5.0, 6.0]', "later"),
+        (
+            '[[factor]]\nname = "later"\n[[factor.case]]\nlabel = "a"\nset = {"both.u" = 3.0}\n'
+            '[[factor.case]]\nlabel = "b"\nset = {"both.u" = 4.0, "lag.noise" = 0.1}',
+            "later",
+        ),
+        ('[sample]\nruns = 4\n[sample.of."both.u"]\nname = "u"\ndistribution = "norm"', "u"),
+    ],
+)
+def test_a_factor_of_which_every_value_is_replaced_is_refused(complaints, after, by):
+    own = 'scenario = "filling"\n[[factor]]\nname = "level"\nsignal = "both.u"\nvalues = [1.0, 2.0]\n'
+    of_both = '[names]\nboth = ["lag", "other"]\n'
+    taken = '[[quantity]]\nname = "y"\nsignal = "lag.y"\nreduce = "maximum"\n'
+    (first,) = complaints(own + taken + after + "\n" + of_both)
+    assert f"'{by}' sets lag.u too, so 'level' changes nothing." in first.found
+
+
+def test_a_factor_that_is_replaced_in_some_runs_is_laid_out(complaints, study):
+    text = WHOLE.replace('"other.u" = 1.5', '"other.u" = 1.5, "lag.u" = 1.5')
+    assert text != WHOLE
+    plan_of(read_study(study(text)))
 
 
 @pytest.mark.parametrize("count", [10_001, 10**9, 10**18])

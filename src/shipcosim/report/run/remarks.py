@@ -34,8 +34,9 @@ def remarks(table: Dataset, shown: Dataset, roles: Roles) -> list[str]:
     """
     # Expectations that a part of a run did not get to.
     missed = parsed(table.attrs.get("not_reached", "[]"))
-    end = float(table["time"].values[-1]) if missed else 0.0
-    not_reached = [f"Not reached: {claim}. The run ended at {end:g} s." for claim in missed]
+    start, end = table["time"].values[[0, -1]] if missed else (0.0, 0.0)
+    went = f"The run went from {start:g} to {end:g} s."
+    not_reached = [f"Not reached: {claim}. {went}" for claim in missed]
     # FMU warnings and unreached expectations first, then what the signals show.
     said = [*parsed(table.attrs.get("remarks", "[]")), *not_reached, *_not_finite(shown)]
     said += _failures(shown, roles) + _alarms(shown, roles)
