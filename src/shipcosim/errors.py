@@ -228,6 +228,19 @@ def it_has(name: str, known: Iterable[str]) -> str:
     return "It has" + suggestion(name, known).removeprefix("There is")
 
 
+def shortened(names: Iterable[object], most: int = 5, between: str = ", ") -> str:
+    """Names for a sentence, and how many there are beyond the first ones.
+
+    Examples
+    --------
+    >>> shortened(["x", "y"]), shortened("abcdefg", 4)
+    ('x, y', 'a, b, c, d and 3 more')
+    """
+    texts = [str(name) for name in names]
+    more = f" and {len(texts) - most} more" if len(texts) > most else ""
+    return between.join(texts[:most]) + more
+
+
 @contextmanager
 def imported(where: str, found: str, extra: str = "sweep") -> Iterator[None]:
     """For an import of a library that an extra of the package brings.

@@ -32,7 +32,7 @@ from shipcosim.dialects import (
     separator_of,
     unicode_of,
 )
-from shipcosim.errors import Problem, ShipcosimError, error_at, reading
+from shipcosim.errors import Problem, ShipcosimError, error_at, reading, shortened
 from shipcosim.units import UnitError, spelled_conversion, spelled_unit
 
 if TYPE_CHECKING:
@@ -523,7 +523,7 @@ def _cells(path: Path, text: str) -> tuple[list[list[str]], str]:
 
 
 def _without_comments(text: str) -> str:
-    """The text without lines with # above its header; where numbers follow the lines with # at once, the last of these is the header."""
+    """The text without lines with # above its header; where numbers follow them at once, the last one is the header."""
     lines = text.splitlines(keepends=True)
     is_above = [not line.strip() or line.startswith("#") for line in lines]
     if not text.startswith("#") or all(is_above):
@@ -680,6 +680,6 @@ def _repeated(path: Path, names: list[str]) -> list[Problem]:
 def _no_time(path: Path, names: list[str]) -> Problem:
     return Problem(
         str(path),
-        f"has no column 'time', only {', '.join(names[:8])}.",
+        f"has no column 'time', only {shortened(names, 8)}.",
         "It should have 'time [s]'.",
     )

@@ -14,12 +14,11 @@ from shipcosim.cosim.differences import (
     difference,
     differs,
     explained,
-    listed,
 )
 from shipcosim.cosim.engines.registry import ENGINES, OWN, engines_missing
 from shipcosim.cosim.master.run import RunError
 from shipcosim.cosim.simulate import simulate
-from shipcosim.errors import ShipcosimError
+from shipcosim.errors import ShipcosimError, shortened
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System
@@ -194,7 +193,9 @@ def _explained_by_reading(host, taken, ours, theirs, scenario, tolerance):
         for respect in respects:
             alone = simulate(respect.system, scenario)
             changed = [name for name in differing if differs(name, ours, alone, tolerance)]
-            remarks.append(f"{respect.what}. This changes {listed(changed)}.")
+            remarks.append(
+                f"{respect.what}. This changes {shortened(changed) or 'nothing that differs'}."
+            )
             for name in changed:
                 causes.setdefault(str(name), []).append(respect.what)
         # All together: if the result equals the tool's, nothing remains to be explained.
@@ -206,7 +207,7 @@ def _explained_by_reading(host, taken, ours, theirs, scenario, tolerance):
     if respects and not left:
         remarks.append(f"Run here with that, every signal is that of {host}.")
     elif respects:
-        remarks.append(f"That does not explain all of {listed(left)}.")
+        remarks.append(f"That does not explain all of {shortened(left)}.")
     return remarks, causes
 
 

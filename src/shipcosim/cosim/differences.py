@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from shipcosim.errors import shortened
 
 if TYPE_CHECKING:
     import xarray
@@ -33,12 +34,6 @@ class Difference:
     largest: float
     relative: float
     time: float
-
-
-def listed(names: Sequence[str]) -> str:
-    """Names for a sentence, at most five of them."""
-    shown = ", ".join(map(str, names[:5])) or "nothing that differs"
-    return shown + (f" and {len(names) - 5} more" if len(names) > 5 else "")
 
 
 def differs(name: str, ours: xarray.Dataset, theirs: xarray.Dataset, tolerance: float) -> bool:
@@ -110,7 +105,7 @@ def explained(
     time = float(ours["time"].values[row])
     where = "from the start" if row == 0 else f"from t = {time:.9g} s on"
     causes = list(dict.fromkeys(_cause(name, ours, theirs, step_size) for name in names[:5]))
-    return [f"{len(first)} signals differ, {where}: {listed(names)}.", *causes]
+    return [f"{len(first)} signals differ, {where}: {shortened(names)}.", *causes]
 
 
 def _cause(name, ours, theirs, step_size):

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
 
-from shipcosim.errors import Problem
+from shipcosim.errors import Problem, shortened
 from shipcosim.ssp.flatten.loops import loop_problems
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.fmu.description import FmuDescription
@@ -90,8 +90,8 @@ def _unconnected_inputs(system: System) -> list[Problem]:
             owners.setdefault(free, []).append(component.name)
     if not owners:
         return []
-    listed = "; ".join(f"{', '.join(those)}: {', '.join(free)}" for free, those in owners.items())
-    found = f"Unconnected inputs keep their start values. {listed}."
+    groups = [f"{shortened(those, 12)}: {shortened(free, 40)}" for free, those in owners.items()]
+    found = f"Unconnected inputs keep their start values. {shortened(groups, 40, '; ')}."
     return [Problem(system.name, found, severity="remark")]
 
 

@@ -678,7 +678,9 @@ def test_a_level_that_is_there_twice_is_refused(complaints, values, level):
     ],
 )
 def test_a_factor_of_which_every_value_is_replaced_is_refused(complaints, after, by):
-    own = 'scenario = "filling"\n[[factor]]\nname = "level"\nsignal = "both.u"\nvalues = [1.0, 2.0]\n'
+    own = (
+        'scenario = "filling"\n[[factor]]\nname = "level"\nsignal = "both.u"\nvalues = [1.0, 2.0]\n'
+    )
     of_both = '[names]\nboth = ["lag", "other"]\n'
     taken = '[[quantity]]\nname = "y"\nsignal = "lag.y"\nreduce = "maximum"\n'
     (first,) = complaints(own + taken + after + "\n" + of_both)

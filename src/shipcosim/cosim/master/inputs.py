@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
+from shipcosim.errors import Problem, ShipcosimError, error_at, shortened, suggestion
 from shipcosim.series import conversion
 
 if TYPE_CHECKING:
@@ -140,10 +140,7 @@ def digest(table: xarray.Dataset) -> str:
 def _unknown(table, system):
     unknown = [str(name) for name in table.data_vars if name not in system.inputs]
     if unknown:
-        shown = ", ".join(f"'{name}'" for name in unknown[:8]) + (
-            ", ..." if len(unknown) > 8 else ""
-        )
-        found = f"{system.name} has no input {shown}."
+        found = f"{system.name} has no input {shortened(map(repr, unknown), 8)}."
         yield Problem(
             "inputs", found, f"{suggestion(unknown[0], system.inputs)} Rename or drop such columns."
         )

@@ -25,7 +25,7 @@ from shipcosim.diagnose.log.roles import NAVIGATION, OVER_EARTH, role_of
 from shipcosim.diagnose.log.thresholds import LATEST, SHORTEST_STEP
 from shipcosim.diagnose.log.values import LARGEST, WrongUnit, values_of
 from shipcosim.diagnose.numerics import finite, usual_rise
-from shipcosim.errors import Problem, ShipcosimError, error_at
+from shipcosim.errors import Problem, ShipcosimError, error_at, shortened
 from shipcosim.series import make_table
 
 if TYPE_CHECKING:
@@ -274,7 +274,7 @@ def _check_time(source, time):
 
 
 def _shown(columns):
-    return ", ".join(repr(name) for name in list(columns.values)[:8])
+    return shortened(map(repr, columns.values), 8)
 
 
 def _meaning(name):
@@ -353,7 +353,7 @@ def _without_value(source, signals):
     """Takes away channels without any value, and says so."""
     empty = [name for name, (values, _) in signals.items() if not np.isfinite(values).any()]
     if empty and len(empty) == len(signals):
-        found = f"no row has a value of {_few(empty)}."
+        found = f"no row has a value of {shortened(empty, MOST_NAMED)}."
         raise error_at(source, found, "A log has numbers beside its times.")
     for name in empty:
         del signals[name]
@@ -374,19 +374,15 @@ def _told(proposal):
         if not _is_unnamed(guess.column):
             reasons.setdefault(guess.why, []).append(f"'{guess.column}'")
     for why, names in reasons.items():
-        yield f"Column{'s' * (len(names) > 1)} not used: {_few(names)}: {why}."
-
-
-def _few(names):
-    """The first of many names."""
-    more = len(names) - MOST_NAMED
-    return ", ".join(names[:MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
+        yield f"Column{'s' * (len(names) > 1)} not used: {shortened(names, MOST_NAMED)}: {why}."
 
 
 def _not_named(unused):
     """Columns that a channel file does not name."""
     return (
-        [f"Columns that the channel file does not name are not used: {_few(unused)}."]
+        [
+            f"Columns that the channel file does not name are not used: {shortened(unused, MOST_NAMED)}."
+        ]
         if unused
         else []
     )

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from xarray import Dataset
 
 from shipcosim.angles import wrap_series
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, shortened
 from shipcosim.report.run.derived import ERRORS, FROM_REFERENCE
 from shipcosim.report.run.details import Detail, parsed
 from shipcosim.report.run.moments import Moment
@@ -361,8 +361,7 @@ def _remarks(pair: Pair) -> list[str]:
     # Signals that only one run has: name the first five.
     for name, own, other in ((first, *pair.shown), (second, *pair.shown[::-1])):
         if alone := [str(signal) for signal in own.data_vars if signal not in other]:
-            more = f" and {len(alone) - 5} more" if len(alone) > 5 else ""
-            said.append(f"Only in {name}: {', '.join(alone[:5])}{more}.")
+            said.append(f"Only in {name}: {shortened(alone)}.")
     return said
 
 

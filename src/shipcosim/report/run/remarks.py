@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from xarray import Dataset
 
+from shipcosim.errors import shortened
 from shipcosim.report.run.derived import ERRORS, FROM_EXPECTED, FROM_REFERENCE
 from shipcosim.report.run.details import parsed
 from shipcosim.report.run.roles import Roles, join
@@ -56,12 +57,9 @@ def _not_finite(shown: Dataset) -> list[str]:
     }
     # The earliest three: the others usually follow from them.
     names = sorted(begin, key=begin.__getitem__)
-    others = f" and {len(names) - 3} more" if len(names) > 3 else ""
-    return (
-        [f"Not finite from {begin[names[0]]:g} s on: {', '.join(names[:3])}{others}."]
-        if names
-        else []
-    )
+    if not names:
+        return []
+    return [f"Not finite from {begin[names[0]]:g} s on: {shortened(names, 3)}."]
 
 
 def _failures(shown: Dataset, roles: Roles) -> list[str]:

@@ -2,7 +2,7 @@
 
 from difflib import get_close_matches
 
-from shipcosim.errors import MOST_COMPARED, suggestion
+from shipcosim.errors import MOST_COMPARED, shortened, suggestion
 from shipcosim.ssp.flatten.hierarchy import ElementPath, Hierarchy
 from shipcosim.ssp.flatten.ports import Key
 from shipcosim.ssp.fmu.description import FmuDescription
@@ -51,14 +51,12 @@ def _take(tree: Hierarchy, path: ElementPath, fmu: FmuDescription, wired: set[Ke
             del tree.ports[key]
     if not missed:
         return
-    shown = missed[:MOST_NAMED]
-    more = f" and {len(missed) - MOST_NAMED} more" if len(missed) > MOST_NAMED else ""
-    lacks = ", ".join(key.name for key in shown) + more
     name = ".".join(path)
+    lacks = shortened((key.name for key in missed), MOST_NAMED)
     found = f"{fmu.path.name} cannot take the place of '{name}': it lacks {lacks}, which are wired."
     # Offer variables of similar names that are still free.
     close = []
-    for key in shown:
+    for key in missed[:MOST_NAMED]:
         names = [name for name in fmu.named(tree.ports[key].kind) if Key(path, name) not in wired][
             :MOST_COMPARED
         ]

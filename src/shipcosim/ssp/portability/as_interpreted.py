@@ -6,6 +6,7 @@ Refusals and crashes are not considered; see `shipcosim.ssp.portability.support_
 from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass, replace
 
+from shipcosim.errors import shortened
 from shipcosim.ssp.flatten.connections import Connection
 from shipcosim.ssp.flatten.system import Component, System
 from shipcosim.ssp.fmu.description import FmuDescription, Variable
@@ -210,5 +211,4 @@ def _forms(host: str, subject: Subject, system: System) -> tuple[str, System]:
 
 
 def _listed(what: str, found: list[str]) -> str:
-    more = f" and {len(found) - 5} more" if len(found) > 5 else ""
-    return f"{what}: {'; '.join(found[:5])}{more}" if found else ""
+    return f"{what}: {shortened(found, between='; ')}" if found else ""
