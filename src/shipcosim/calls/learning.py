@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import isfinite
 from typing import Any
 
@@ -40,16 +41,16 @@ def check_learning(
             named("learn"), found, "Learn her first, then give the system that it leaves."
         )
     if several:
-        remedy = "`shipcosim calibrate` learns from several logs; it takes a system of craft.toml."
+        remedy = "`shipcosim calibrate` with --learn learns from several logs."
         raise error_at(named("learn"), "there are several logs.", remedy)
 
 
-def assumed_craft(log: Any, channels: AnyPath | None, length: float | str | None) -> str:
-    """Text of the ship file of a craft, from her length and the thrusters that her log has.
+def assumed_craft(logs: Sequence[Any], channels: AnyPath | None, length: float | str | None) -> str:
+    """Text of the ship file of a craft, from her length and the thrusters that her logs have.
 
     Parameters
     ----------
-    log : path or xarray.Dataset
+    logs : sequence of path or xarray.Dataset
     channels : path, optional
         Channel file.
     length : float or str
@@ -58,7 +59,7 @@ def assumed_craft(log: Any, channels: AnyPath | None, length: float | str | None
     Raises
     ------
     ShipcosimError
-        A length that cannot be read; a log without a channel of a thruster, or with too few of one.
+        A length that cannot be read; logs without a channel of a thruster, or with too few of one.
     """
     from shipcosim.diagnose.log.reader import read_log
     from shipcosim.diagnose.log.roles import THRUSTER_ROLES
@@ -69,20 +70,25 @@ def assumed_craft(log: Any, channels: AnyPath | None, length: float | str | None
         raise error_at(named("length"), f"{error}", 'Write "1.2 m".') from None
     if not isfinite(size) or size <= 0.0:
         raise error_at(named("length"), f"found {length}.", 'It is greater than 0: "1.2 m".')
-    table = read_log(log, channels)
+    # Of each thruster what drives it, and its largest speed in any of the logs.
     drives: dict[str, set[str]] = {}
-    for name in map(str, table.data_vars):
-        thruster, _, drive = name.rpartition("_")
-        if thruster and drive in THRUSTER_ROLES:
+    largest: dict[str, float] = {}
+    for log in logs:
+        table = read_log(log, channels)
+        for name, column in table.data_vars.items():
+            thruster, _, drive = str(name).rpartition("_")
+            if not thruster or drive not in THRUSTER_ROLES:
+                continue
             drives.setdefault(thruster, set()).add(drive)
-    if not drives:
-        remedy = "Name them NAME_rpm, NAME_azimuth or NAME_thrust, or say in a channel file which they are."
-        raise error_at(
-            f"{table.encoding.get('source', 'log')}", "has no channel of a thruster.", remedy
-        )
-    units = []
-    for name, has in drives.items():
-        speed = np.abs(table[f"{name}_rpm"].values) if "rpm" in has else np.zeros(1)
-        largest = float(np.nanmax(speed, initial=0.0, where=np.isfinite(speed)))
-        units.append(LoggedThruster(name, frozenset(has), largest))
+            if drive == "rpm":
+                speed = np.abs(column.values)
+                most = float(np.nanmax(speed, initial=0.0, where=np.isfinite(speed)))
+                largest[thruster] = max(most, largest.get(thruster, 0.0))
+        if not drives:
+            remedy = "Name them NAME_rpm, NAME_azimuth or NAME_thrust, or say in a channel file which they are."
+            source = f"{table.encoding.get('source', 'log')}"
+            raise error_at(source, "has no channel of a thruster.", remedy)
+    units = [
+        LoggedThruster(name, frozenset(has), largest.get(name, 0.0)) for name, has in drives.items()
+    ]
     return assumed_ship_text(size, units)

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 
 EXTENDED = ("extended.ssp", "extended.ssv", "craft.toml", "craft_open.ssp")
-CALIBRATED = ("calibrated.ssv", "reference.json")
+CALIBRATED = ("calibrated.ssv", "reference.json", "craft.toml", "craft_open.ssp")
 """Files that an earlier diagnosis or calibration may have left, and a later one does not always write."""
 Saved = TypeVar("Saved", bound=DiagnosisOfLog | DiagnosisOfLogs | SeaTrials)
 
@@ -239,17 +239,28 @@ def _learned(
     from shipcosim.diagnose.pipeline import diagnose
 
     folder = temporary_folder()
-    text = assumed_craft(source, channels, length)
-    (Path(folder.name) / "craft.toml").write_text(text, encoding="utf-8")
-    fmus = library.fmus()
-    system = make_systems(Path(folder.name) / "craft.toml", folder.name, fmus)[0]
-    ship = read(system, fmus=fmus)
-    if stage is not None:
-        (stage / "craft.toml").write_text(text, encoding="utf-8")
-        ship.write(stage / "craft_open.ssp")
+    ship = _assumed_system([source], channels, length, Path(folder.name), stage)
     found = diagnose(source, ship, channels, None, progress, out=stage, is_assumed=True)
     # The folder of her system stays as long as what was found.
     return replace(DiagnosisOfLog(**parts_of(found)), folder=(folder, found.folder))
+
+
+def _assumed_system(
+    sources: Sequence[Any],
+    channels: AnyPath | None,
+    length: float | str | None,
+    folder: Path,
+    stage: Path | None,
+) -> SystemStructure:
+    """System of a craft that no file describes, made in a folder; its files are left in another one too."""
+    text = assumed_craft(sources, channels, length)
+    (folder / "craft.toml").write_text(text, encoding="utf-8")
+    fmus = library.fmus()
+    ship = read(make_systems(folder / "craft.toml", str(folder), fmus)[0], fmus=fmus)
+    if stage is not None:
+        (stage / "craft.toml").write_text(text, encoding="utf-8")
+        ship.write(stage / "craft_open.ssp")
+    return ship
 
 
 @with_known_keywords
@@ -363,6 +374,8 @@ def calibrate(
     *,
     out: AnyPath | None = None,
     force: bool = False,
+    learn: bool = False,
+    length: float | str | None = None,
 ) -> Calibration:
     """Fit a ship's numbers to logs in which she is known to be well: her own parameter set, and a reference.
 
@@ -375,6 +388,9 @@ def calibrate(
         nothing is written without.
     force : bool
         Replace files of these names there, instead of keeping them in a numbered folder beside it.
+    learn, length
+        As for `diagnose`: a craft that no file describes. `out` gets craft.toml and craft_open.ssp, the system of
+        calibrated.ssv, and no reference.
 
     Returns
     -------
@@ -391,14 +407,27 @@ def calibrate(
     several = logs if isinstance(logs, Sequence) and not isinstance(logs, str) else [logs]
     sources, channels = sources_of(several, channels)
     check_inputs(sources, channels, causes)
-    ship = ship_of(system)
+    if learn or length is not None:
+        given = {"system": system, "reference": None, "causes": causes}
+        check_learning(learn, length, several=False, **given)
+
+    def result_in(stage: Path | None) -> Calibration:
+        with temporary_folder() as folder:
+            ship = (
+                _assumed_system(sources, channels, length, Path(folder), stage)
+                if learn
+                else ship_of(system)
+            )
+            found = calibrate(
+                sources, ship, channels, causes, progress, out=stage, is_assumed=learn
+            )
+        return Calibration(**parts_of(found))
+
     if out is None:
-        return Calibration(**parts_of(calibrate(sources, ship, channels, causes, progress)))
+        return result_in(None)
     check_targets(Path(out))
     with staged(Path(out), CALIBRATED, force=force) as stage:
-        result = Calibration(
-            **parts_of(calibrate(sources, ship, channels, causes, progress, out=stage))
-        )
+        result = result_in(stage)
         _say(progress, WRITING)
         result.write(stage)
     return result

@@ -88,6 +88,14 @@ Effects = Annotated[
     Path | None,
     typer.Option("--effects", metavar="FOLDER", help="Causes of your own, one .toml each."),
 ]
+Learn = Annotated[
+    bool,
+    typer.Option("--learn", help="Learn a craft that no file describes; needs --length."),
+]
+Length = Annotated[
+    str | None,
+    typer.Option("--length", metavar="LENGTH", help='With --learn: her length, "1.2 m".'),
+]
 SystemsStopTime = Annotated[
     float | None, time_option("--stop-time", "In s, or as '10 min'. Default: the system's.")
 ]

@@ -9,7 +9,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 import shipcosim
-from shipcosim.diagnose.compared_log import learned_from
+from shipcosim.diagnose.compared_log import learned_from, surely_taught
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.inference.thresholds import FORM_COST
@@ -47,6 +47,10 @@ READING = "are the logs right?"
 _ANOTHER_CRAFT = (
     "The craft is not the file's by far, so her numbers are learned from the accelerations that the logs show. Whether "
     "she was well these logs cannot say."
+)
+_ALL_LEARNED = (
+    "All numbers of the craft were assumed from her length or learned from these logs. They make no reference: whether "
+    "she was well, and later has a fault, such a rough craft cannot show."
 )
 _KINDS_OF_THE_LOG = ("slow", "with the heading", "periodic", "in a channel")
 
@@ -120,6 +124,7 @@ def calibrate(
     progress: Progress | None = None,
     *,
     out: AnyPath | None = None,
+    is_assumed: bool = False,
 ) -> CalibratedShip:
     """Fit a ship's numbers to logs in which she is known to be well.
 
@@ -136,7 +141,9 @@ def calibrate(
     progress : callable, optional
         Called with what is being done, in words.
     out : path, optional
-        Folder that gets calibrated.ssv and reference.json, unless the logs are refused.
+        Folder that gets calibrated.ssv, and reference.json of a known ship, unless the logs are refused.
+    is_assumed : bool
+        Whether all numbers of the ship are guesses: they are learned, and no cause in her is sought.
 
     Returns
     -------
@@ -151,13 +158,13 @@ def calibrate(
     given = given_system(system).given
     with threadpool_limits(1):
         problems = problems_of(logs, given, channels, causes, say)
-        # Faults of the logs first; logs that may be misread make no reference.
-        found = {name: corrected(problem) for name, problem in problems.items()}
+        # Faults of the logs first; logs that may be misread make no reference. A guessed ship shows none by her response.
+        found = problems if is_assumed else {n: corrected(one) for n, one in problems.items()}
         _check_usable(found)
         # A craft far from the file's is learned by regression instead.
-        if any(one.comparison.started_craft for one in found.values()):
+        if is_assumed or any(one.comparison.started_craft for one in found.values()):
             say("fitting the ship's numbers")
-            return _calibrated_craft(found, given, out)
+            return _calibrated_craft(found, given, out, is_assumed)
         # Fit all logs together: common numbers of the ship, weather by log.
         several = SeveralLogs({name: one.problem for name, one in found.items()}, is_well=True)
         say("fitting the ship's numbers")
@@ -194,7 +201,7 @@ def calibrate(
 
 
 def _calibrated_craft(
-    found: Mapping[str, Identification], given: System, out: AnyPath | None
+    found: Mapping[str, Identification], given: System, out: AnyPath | None, is_assumed: bool
 ) -> CalibratedShip:
     """A craft that is not the file's by far, as the logs teach her; refused where she predicts no better.
 
@@ -205,10 +212,15 @@ def _calibrated_craft(
     """
     first = next(iter(found.values()))
     ship = first.comparison.given(first.ship)
-    craft = learned_from([(one.repaired, one.comparison) for one in found.values()], ship)
-    if craft is None:
+    compared = [(one.repaired, one.comparison) for one in found.values()]
+    if is_assumed:
+        craft, what = surely_taught(compared, ship)
+        right = ""
+    else:
+        craft = learned_from(compared, ship)
         what = "Numbers learned from the others predict a log, or a part of it, no better than the system for sure."
         right = "Give more logs, with turns and with thrust ahead and astern."
+    if craft is None:
         raise error_at(", ".join(found), what, right)
     reference = learned_reference(
         craft, ship, _reference_logs(found), given.name, shipcosim.__version__
@@ -222,8 +234,9 @@ def _calibrated_craft(
         errors = learned_errors(one.problem.record, model, others, craft, names)
         logs.append(CalibratedLog(name, one.faults, {}, errors, {}))
     refusals = tuple(_reasons_not_to_trust(logs, {}))
-    result = CalibratedShip(reference, tuple(logs), refusals, (_ANOTHER_CRAFT,))
-    return _written(result, given, out)
+    remark = _ALL_LEARNED if is_assumed else _ANOTHER_CRAFT
+    result = CalibratedShip(reference, tuple(logs), refusals, (remark,))
+    return _written(result, given, out, is_assumed)
 
 
 def _check_usable(found: dict[str, Identification]) -> None:
@@ -294,11 +307,17 @@ def _reference_logs(found: Mapping[str, Identification]) -> list[ReferenceLog]:
     return logs
 
 
-def _written(result: CalibratedShip, given: System, out: AnyPath | None) -> CalibratedShip:
-    """The same, once its files are in a folder; nothing is written where nobody asks, or the logs are refused."""
+def _written(
+    result: CalibratedShip, given: System, out: AnyPath | None, is_assumed: bool = False
+) -> CalibratedShip:
+    """The same, once its files are in a folder; nothing is written where nobody asks, or the logs are refused.
+
+    A craft of whom all was guessed is no reference: her form is too rough for causes to be named beside it.
+    """
     if out is not None and not result.refusals:
         write_parameter_set(given, result.reference, Path(out) / SET)
-        result.reference.write(Path(out) / FILE)
+        if not is_assumed:
+            result.reference.write(Path(out) / FILE)
     return result
 
 

@@ -36,7 +36,7 @@ from shipcosim.diagnose.ship.smoothing import froude_time
 from shipcosim.diagnose.ship.stretches import in_stretches
 from shipcosim.diagnose.ship.surrogate_building import with_surrogates
 
-NOT_SHOWN = "This log does not teach the craft: her motion does not show what her thrusters did."
+NOT_SHOWN = "The craft is not learned: her motion does not show what her thrusters did."
 LEARNED = (
     "All numbers of the craft were assumed or learned from this log: no cause in her is sought."
 )
@@ -206,7 +206,7 @@ def _learned_alone(log: ComparedLog) -> ComparedLog:
     comparison = log.comparison
     craft, obstacles = None, comparison.obstacles
     if not obstacles:
-        craft, why = _surely_taught(log)
+        craft, why = surely_taught([(log.repaired, log.comparison)], log.ship)
         obstacles = (why,)
     told = LogComparison(
         comparison.errors,
@@ -219,29 +219,37 @@ def _learned_alone(log: ComparedLog) -> ComparedLog:
     return replace(log, comparison=told, ship=craft.on(log.ship) if craft else log.ship)
 
 
-def _surely_taught(log: ComparedLog) -> tuple[LearnedCraft | None, str]:
-    """The craft that a log teaches, if she surely predicts better than one that keeps her velocity; and what to say.
+def surely_taught(
+    logs: Sequence[tuple[xarray.Dataset, LogComparison]], ship: ShipModel
+) -> tuple[LearnedCraft | None, str]:
+    """The craft that logs teach, if she surely predicts better than one that keeps her velocity; and what to say.
 
-    A log in which the motion does not show what the thrusters did teaches none.
+    Logs in which the motion does not show what the thrusters did teach none.
+
+    Parameters
+    ----------
+    logs, ship
+        As of `learned_from`; all numbers of the ship are guesses.
     """
-    if not any(gain.is_known for gain in log.comparison.gains):
+    if not any(gain.is_known for _, comparison in logs for gain in comparison.gains):
         return None, NOT_SHOWN
-    craft = _taught_by([(log.repaired, log.comparison)], log.ship)
+    craft = _taught_by(logs, ship)
     errors = craft.errors if craft else None
     if errors is not None and errors.beats_steady:
         return craft, LEARNED
-    return None, _not_learned(errors)
+    return None, _not_learned(errors, len(logs))
 
 
-def _not_learned(errors: HeldOutErrors | None) -> str:
-    """Why a log does not teach a craft, and what would help."""
+def _not_learned(errors: HeldOutErrors | None, count: int) -> str:
+    """Why logs do not teach a craft, and what would help."""
     remedy = (
-        "A longer log with turns and changes of speed helps, and the right length of the craft."
+        "Longer or more logs with turns and changes of speed help, and the right length of her."
     )
+    what = "This log does" if count == 1 else "These logs do"
     if errors is None:
-        return f"This log does not teach the craft: it is too short, or no ship moves as it shows. {remedy}"
+        return f"{what} not teach the craft: too short, or no ship moves like that. {remedy}"
     return (
-        "This log does not teach the craft: her best numbers predict parts that were held out no better, for sure, than "
+        f"{what} not teach the craft: her best numbers predict parts that were held out no better, for sure, than "
         f"a craft that keeps her velocity. After {errors.horizon:.3g} s they are {errors.after:.2g} m and "
         f"{errors.after_deg:.2g} deg off, she is {errors.steady:.2g} m and {errors.steady_deg:.2g} deg. {remedy}"
     )

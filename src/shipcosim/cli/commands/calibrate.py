@@ -1,11 +1,22 @@
 """The command `shipcosim calibrate`."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from shipcosim.cli.options import AsJson, Channels, Debug, Effects, Force, Junit, Quiet, Ship
+from shipcosim.cli.options import (
+    AsJson,
+    Channels,
+    Debug,
+    Effects,
+    Force,
+    Junit,
+    Learn,
+    Length,
+    Quiet,
+    Ship,
+)
 from shipcosim.cli.outcomes.exits import Conclusion
 
 
@@ -19,6 +30,8 @@ def calibrate(
     channels: Channels = None,
     system: Ship = None,
     effects: Effects = None,
+    learn: Learn = False,
+    length: Length = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -38,6 +51,9 @@ def calibrate(
     Leaves calibrated.ssv, reference.json and report.html. `shipcosim diagnose LOG --reference DIR` then says what has
     changed since. Exit code 1 if these logs make no reference: only the page is left then, which says why.
 
+    With --learn the logs teach a craft that has no system: calibrated.ssv has her numbers for craft_open.ssp. They make
+    no reference.
+
     Example: shipcosim calibrate monday.csv tuesday.csv
     """
     from shipcosim.calls.arguments import SYSTEM_OF_LOGS
@@ -47,8 +63,10 @@ def calibrate(
     from shipcosim.cli.progress import shown_progress
     from shipcosim.diagnose.calibration_pipeline import steps_of
 
-    ship = ship_of(system or SYSTEM_OF_LOGS)
-    folder = out or Path("results") / f"calibrated-{ship.name}"
+    read = None if learn else ship_of(system or SYSTEM_OF_LOGS)
+    name = read.name if read else "craft"
+    folder = out or Path("results") / f"calibrated-{name}"
+    asked: dict[str, Any] = {"out": folder, "force": force, "learn": learn, "length": length}
     with shown_progress(steps_of(logs)) as progress:
-        found = calibrate_ship(logs, ship, channels, effects, progress, out=folder, force=force)
-    return Conclusion(ship.name, found, lambda: print_calibration(found, folder), folder)
+        found = calibrate_ship(logs, read or system, channels, effects, progress, **asked)
+    return Conclusion(name, found, lambda: print_calibration(found, folder), folder)

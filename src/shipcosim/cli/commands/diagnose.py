@@ -5,18 +5,20 @@ from typing import Annotated, Any
 
 import typer
 
-from shipcosim.cli.options import AsJson, Channels, Debug, Effects, Force, Junit, Quiet, Ship
+from shipcosim.cli.options import (
+    AsJson,
+    Channels,
+    Debug,
+    Effects,
+    Force,
+    Junit,
+    Learn,
+    Length,
+    Quiet,
+    Ship,
+)
 from shipcosim.cli.outcomes.exits import Conclusion
 from shipcosim.cli.start.completion import names_of
-
-Learn = Annotated[
-    bool,
-    typer.Option("--learn", help="Learn a craft that no file describes; needs --length."),
-]
-Length = Annotated[
-    str | None,
-    typer.Option("--length", metavar="LENGTH", help='With --learn: her length, "1.2 m".'),
-]
 
 
 def diagnose(

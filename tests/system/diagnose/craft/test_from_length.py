@@ -46,6 +46,34 @@ def test_what_was_learned_predicts_the_rest_of_the_log(ran, table):
     assert last["after"] < 0.5 * last["before"]
 
 
+@pytest.fixture(scope="module")
+def taught(table, tmp_path_factory):
+    """The command on two parts of a log, with a length that is a third too long; its folder."""
+    folder = tmp_path_factory.mktemp("taught")
+    parts = {"a.csv": slice(0.0, 500.0), "b.csv": slice(500.0, 1000.0)}
+    for name, part in parts.items():
+        table.sel(time=part).to_dataframe().to_csv(folder / name)
+    given = [*(str(folder / name) for name in parts), "--learn", "--length", "45 m"]
+    return CliRunner().invoke(app, ["calibrate", *given, "--out", str(folder / "out")]), folder
+
+
+def test_several_logs_teach_a_craft_that_no_file_describes(taught, table):
+    result, folder = taught
+    assert result.exit_code == 0, result.output
+    assert "All numbers of the craft were assumed from her length or learned" in result.stdout
+    left = {file.name for file in (folder / "out").iterdir()}
+    assert left == {"craft.toml", "craft_open.ssp", "calibrated.ssv", "report.html"}
+    rest = table.sel(time=slice(1000.0, None))
+    found = sc.replay(
+        rest,
+        folder / "out/craft_open.ssp",
+        parameters=[folder / "out/calibrated.ssv"],
+        horizon=20.0,
+    )
+    last = found.to_pandas()["position"].groupby("simulation").last()
+    assert last["after"] < last["before"]
+
+
 def test_a_craft_at_rest_teaches_nothing(table):
     still = table.sel(time=slice(0.0, LEARNED_UNTIL)).copy(deep=True)
     random = np.random.default_rng(3)
@@ -76,8 +104,34 @@ def test_what_does_not_go_together_is_refused(table, given, said):
 
 
 def test_several_logs_are_refused(table):
-    with pytest.raises(sc.ShipcosimError, match="several logs"):
+    with pytest.raises(sc.ShipcosimError, match="several logs.*calibrate"):
         sc.diagnose([table, table], learn=True, length=34.0)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"learn": True}, "does not tell how long"),
+        ({"length": 5.0}, "nothing is learned"),
+        ({"learn": True, "length": 5.0, "system": "gunnerus_open"}, "known already"),
+        ({"learn": True, "length": 5.0, "causes": "."}, "--effects.*known already"),
+    ],
+)
+def test_what_does_not_go_together_is_refused_of_several_logs_too(table, given, said):
+    with pytest.raises(sc.ShipcosimError, match=said):
+        sc.calibrate([table, table], **given)
+
+
+def test_several_logs_at_rest_teach_nothing(table):
+    still = [table.sel(time=slice(0.0, end)).copy(deep=True) for end in (400.0, 500.0)]
+    random = np.random.default_rng(3)
+    for one in still:
+        for name in ("port_rpm", "starboard_rpm", "tunnel_rpm"):
+            one[name].values[:] = 0.0
+        for name in ("north", "east", "surge", "sway", "yaw_rate", "heading"):
+            one[name].values[:] = 0.02 * random.standard_normal(one["time"].size)
+    with pytest.raises(sc.ShipcosimError, match="does not show what her thrusters did"):
+        sc.calibrate(still, learn=True, length=34.0)
 
 
 def test_a_log_without_thrusters_is_refused(table):
