@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import ValidationError
 
 from shipcosim.report.study import figures, words
 from shipcosim.report.study.frames import Lacking, narrowed
@@ -27,6 +28,7 @@ from shipcosim.report.theme.views import (
     Page,
     Table,
 )
+from shipcosim.sweep.study_model import View
 
 BYTES_FOR_RUNS = 800_000  # of a page that shall stay below 1.6 MB
 EXACT = 1e9  # steps of the numbers of runs
@@ -37,7 +39,7 @@ SECTIONS = {
     "summary": "Summary",
     "study": "How it was made",
 }
-VIEWS: Mapping[str, Callable[[StudyTables, Mapping[str, Any]], Figure]] = {
+VIEWS: Mapping[str, Callable[[StudyTables, View], Figure]] = {
     "polar": figures.polar,
     "curves": figures.curves,
     "bars": figures.bars,
@@ -168,19 +170,17 @@ def _views(
     tracks = []
     plots = []
     undrawn = []
-    for view in tables.study.get("view") or ():
-        kind = str(view.get("kind"))
+    for content in tables.study.get("view") or ():
         # Each view with its own rows; what is missing is told in its place.
         try:
+            view = View.model_validate(content)
             shown = narrowed(tables, view)
-            if kind == "tracks":
+            if view.kind == "tracks":
                 tracks.append(tracks_view(shown, view))
-            elif kind in VIEWS:
-                plots.append(VIEWS[kind](shown, view))
             else:
-                raise Lacking(f"There is no such kind. There is: {', '.join([*VIEWS, 'tracks'])}.")
-        except Lacking as lack:
-            undrawn.append(f"View '{kind}' is not drawn. {lack}")
+                plots.append(VIEWS[view.kind](shown, view))
+        except (Lacking, ValidationError) as lack:
+            undrawn.append(f"View '{content.get('kind')}' is not drawn. {lack}")
     return tuple(tracks), tuple(plots), tuple(undrawn)
 
 

@@ -85,7 +85,7 @@ def tables_of(swept: Swept, command: str) -> StudyTables:
     folder = swept.folder
     tracks = swept.folder / "tracks.parquet"
     scenario = swept.plan.scenario
-    views = swept.about["study"].get("view", ())
+    views = swept.plan.study.view
     beside, remarks = static_curves(views, scenario.system_path, scenario.parameter_paths)
     remarks = [*swept.about.get("remarks", ()), *remarks]
     found = (
