@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import AsJson, Channels, Debug, Effects, Force, Junit, Quiet, Ship
+from shipcosim.cli.options import AsJson, Channels, Effects, Force, Junit, Quiet, Ship
 from shipcosim.cli.outcomes.exits import Conclusion
 
 
@@ -31,7 +31,6 @@ def calibrate(
     junit: Junit = None,
     quiet: Quiet = False,
     force: Force = False,
-    debug: Debug = False,
 ) -> Conclusion:
     """Fit a ship's numbers to logs in which she is known to be well: her own parameter set, and a reference.
 

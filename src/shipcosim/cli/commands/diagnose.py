@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from shipcosim.cli.options import AsJson, Channels, Debug, Effects, Force, Junit, Quiet, Ship
+from shipcosim.cli.options import AsJson, Channels, Effects, Force, Junit, Quiet, Ship
 from shipcosim.cli.outcomes.exits import Conclusion
 from shipcosim.cli.start.completion import names_of
 
@@ -49,7 +49,6 @@ def diagnose(
     junit: Junit = None,
     quiet: Quiet = False,
     force: Force = False,
-    debug: Debug = False,
 ) -> Conclusion:
     """Say what a simulation gets wrong of a measured log, and why: causes by name, with size and probability.
 
