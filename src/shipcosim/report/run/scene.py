@@ -207,10 +207,7 @@ def make_run(
 
 def unwrap_degrees(values: NDArray) -> NDArray:
     """Angles without jumps at half turns. [deg]"""
-    finite = np.isfinite(values)
-    answer = values.copy()
-    answer[finite] = np.degrees(unwrap_series(np.radians(values[finite])))
-    return answer
+    return np.degrees(unwrap_series(np.radians(values)))
 
 
 def _packed(values: NDArray, resolution: float) -> float | JsonObject | list[float | None]:
