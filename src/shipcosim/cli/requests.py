@@ -27,7 +27,10 @@ def parsed_settings(settings: Iterable[str]) -> dict[str, Any]:
                     "--set", f"'{setting}' sets nothing.", "Right would be component.name=value."
                 )
             )
-        values[name.strip()] = _parsed(text.strip())
+        try:
+            values[name.strip()] = tomllib.loads(f"value = {text.strip()}")["value"]
+        except (ValueError, RecursionError):
+            values[name.strip()] = text.strip()
     if problems:
         raise ShipcosimError(problems)
     return values
@@ -59,10 +62,3 @@ def parsed_components(given: Iterable[str]) -> dict[str, str]:
 def isolation(isolate: bool, timeout: float | None) -> dict[str, Any]:
     """Options of a run that --isolate and --timeout stand for."""
     return {"isolate": isolate} | ({} if timeout is None else {"timeout": timeout})
-
-
-def _parsed(text: str) -> Any:
-    try:
-        return tomllib.loads(f"value = {text}")["value"]
-    except (ValueError, RecursionError):
-        return text
