@@ -193,12 +193,9 @@ def read_columns(path: str | os.PathLike) -> dict[str, tuple[np.ndarray, str]]:
 def _suffix(path: str | os.PathLike, known: Iterable[str]) -> str:
     path = Path(path)
     suffix = next((s for s in known if path.name.endswith(s)), None)
-    if path.is_dir():
-        raise error_at(str(path), "is a folder, no table.", f"Tables are {', '.join(known)}.")
-    if suffix is None:
-        raise error_at(
-            str(path), f"'{path.suffix}' is no table.", f"Tables are {', '.join(known)}."
-        )
+    if path.is_dir() or suffix is None:
+        found = "is a folder, no table." if path.is_dir() else f"'{path.suffix}' is no table."
+        raise error_at(str(path), found, f"Tables are {', '.join(known)}.")
     if not path.is_file():
         raise error_at(str(path), "there is no such file.")
     return suffix
@@ -318,11 +315,9 @@ def _write_variable(
 def _csv(table: xarray.Dataset) -> bytes:
     names = ["time", *table.data_vars]
     columns = [table.variables[name] for name in names]
+    units = (column.attrs.get("units") or "1" for column in columns)
     text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerow(
-        header_of(str(name), column.attrs.get("units") or "1")
-        for name, column in zip(names, columns, strict=True)
-    )
+    csv.writer(text, lineterminator="\n").writerow(map(header_of, map(str, names), units))
     for row in zip(*(_cells_of(column.values) for column in columns), strict=True):
         text.write(",".join(row) + "\n")
     return text.getvalue().encode()
@@ -414,29 +409,19 @@ def _read_netcdf(path: Path) -> xarray.Dataset:
 
 def _netcdf_columns(table: xarray.Dataset) -> dict[str, tuple[np.ndarray, str]]:
     """The variables with one dimension. Units like "seconds since 2022-10-27" count seconds."""
-    single = {
-        str(name): variable for name, variable in table.variables.items() if variable.ndim == 1
-    }
-    units = {
-        name: str(variable.attrs.get("units", "")).partition(" since ")[0]
-        for name, variable in single.items()
-    }
-    numeric = {name: variable.dtype.kind in "fiub" for name, variable in single.items()}
-    return {
-        name: (
-            np.asarray(variable.values, float) if numeric[name] else _texts(variable.values),
-            units[name],
-        )
-        for name, variable in single.items()
-    }
-
-
-def _texts(values: np.ndarray) -> np.ndarray:
-    """Values of a column that are no numbers as texts, as those of a CSV file are."""
-    return np.array(
-        [v.decode(errors="replace") if isinstance(v, bytes) else str(v) for v in values],
-        dtype=object,
-    )
+    found = {}
+    for name, variable in table.variables.items():
+        if variable.ndim != 1:
+            continue
+        values = variable.values
+        if variable.dtype.kind in "fiub":
+            values = np.asarray(values, float)
+        else:
+            # What is no number becomes a text, as in a CSV file.
+            plain = [v.decode(errors="replace") if isinstance(v, bytes) else v for v in values]
+            values = np.array(list(map(str, plain)), dtype=object)
+        found[str(name)] = values, str(variable.attrs.get("units", "")).partition(" since ")[0]
+    return found
 
 
 def _read_columns(path: Path) -> list[tuple[str, str, np.ndarray]]:
@@ -447,9 +432,11 @@ def _read_columns(path: Path) -> list[tuple[str, str, np.ndarray]]:
             str(path), "has no row below its header.", "Each row is a time and its values."
         )
     found = []
-    for (name, unit), values in zip(map(_name_and_unit, headers), columns, strict=True):
-        values, is_stamp = _plain(values)
-        found.append((name, "s" if is_stamp else unit, values))
+    for header, cells in zip(headers, columns, strict=True):
+        values, is_stamp = _plain(cells)
+        parts = _HEADER.match(header)
+        name, unit = (parts["name"], parts["unit"]) if parts else (header, "")
+        found.append((name_in(name.strip()), "s" if is_stamp else unit, values))
     return found
 
 
@@ -466,7 +453,11 @@ def _read_csv(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
     if not rows:
         raise ShipcosimError(_unreadable(path, ValueError("Empty CSV file")))
     if decimal == ",":
-        rows = [rows[0], *([_with_point(cell) for cell in row] for row in rows[1:])]
+        # A number with a decimal comma is written with a point; points in it group thousands.
+        for row in rows[1:]:
+            row[:] = [
+                cell.replace(".", "").replace(",", ".") if is_figure(cell) else cell for cell in row
+            ]
     width = len(rows[0])
     for number, row in enumerate(rows, start=1):
         if len(row) != width:
@@ -536,11 +527,6 @@ def _without_comments(text: str) -> str:
     return table
 
 
-def _with_point(cell: str) -> str:
-    """A number with a decimal comma, written with a point; points in it group thousands. Texts stay."""
-    return cell.replace(".", "").replace(",", ".") if is_figure(cell) else cell
-
-
 def _read_parquet(path: Path) -> tuple[list[str], list[np.ndarray]]:
     """Headers and columns."""
     try:
@@ -570,13 +556,6 @@ def _read_parquet(path: Path) -> tuple[list[str], list[np.ndarray]]:
     return content.column_names, columns
 
 
-def _name_and_unit(header: str) -> tuple[str, str]:
-    """Parts of ``name [unit]``; the unit is empty where there is none."""
-    found = _HEADER.match(header)
-    name, unit = (found["name"], found["unit"]) if found else (header, "")
-    return name_in(name.strip()), unit
-
-
 def _unreadable(path: Path, error: Exception) -> Problem:
     if isinstance(error, UnicodeDecodeError):
         found = (
@@ -596,13 +575,12 @@ def _unreadable(path: Path, error: Exception) -> Problem:
 def _read_rows(path: Path) -> xarray.Dataset:
     columns = _read_columns(path)
     names = [name for name, _, _ in columns]
-    problems = [
-        Problem(
-            f"{path}, column '{name}'", f"holds texts, not numbers, as '{_first_text(values)}'."
-        )
-        for name, _, values in columns
-        if values.dtype == object
-    ]
+    problems = []
+    for name, _, values in columns:
+        if values.dtype == object:
+            text = next(str(value) for value in values if value is not None)[:40]
+            found = f"holds texts, not numbers, as '{text}'."
+            problems.append(Problem(f"{path}, column '{name}'", found))
     problems += _repeated(path, names)
     if "time" not in names:
         problems.append(_no_time(path, names))
@@ -611,10 +589,6 @@ def _read_rows(path: Path) -> xarray.Dataset:
     signals = {name: (name, values, unit, "") for name, unit, values in columns}
     _, time, unit, _ = signals.pop("time")
     return make_table(time * _seconds_in(unit, path), signals.values())
-
-
-def _first_text(values: np.ndarray) -> str:
-    return next(str(value) for value in values if value is not None)[:40]
 
 
 def _seconds_in(unit: str, path: Path) -> float:

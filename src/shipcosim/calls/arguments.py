@@ -401,21 +401,17 @@ def check_inputs(
 ) -> None:
     """Raise ShipcosimError where a file or folder that was given is not there."""
     problems = []
-    for path, what in (
-        *((log, "file of measured data") for log in logs),
-        (channels, "channel file"),
-    ):
-        is_log = what == "file of measured data"
-        if isinstance(path, (str, os.PathLike)) and not (
-            Path(path).is_file() or is_log and Path(path).is_dir()
-        ):
-            names = library.names("example") if is_log else ()
-            remedy = suggestion(str(path), names) if names else "Give the path of one."
-            problems.append(Problem(str(path), f"There is no such {what}.", remedy))
+    remedy = "Give the path of one."
+    for log in logs:
+        is_path = isinstance(log, (str, os.PathLike))
+        if is_path and not Path(log).is_file() and not Path(log).is_dir():
+            names = library.names("example")
+            known = suggestion(str(log), names) if names else remedy
+            problems.append(Problem(str(log), "There is no such file of measured data.", known))
+    if isinstance(channels, (str, os.PathLike)) and not Path(channels).is_file():
+        problems.append(Problem(str(channels), "There is no such channel file.", remedy))
     if causes is not None and not Path(causes).is_dir():
-        problems.append(
-            Problem(str(causes), "There is no such folder of causes.", "Give the path of one.")
-        )
+        problems.append(Problem(str(causes), "There is no such folder of causes.", remedy))
     if problems:
         raise ShipcosimError(problems)
 

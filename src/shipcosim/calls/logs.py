@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 EXTENDED = ("extended.ssp", "extended.ssv", "craft.toml", "craft_open.ssp")
 CALIBRATED = ("calibrated.ssv", "reference.json", "craft.toml", "craft_open.ssp")
 """Files that an earlier diagnosis or calibration may have left, and a later one does not always write."""
-Saved = TypeVar("Saved", bound=DiagnosisOfLog | DiagnosisOfLogs | SeaTrials)
+Saved = TypeVar("Saved", bound=DiagnosisOfLog | DiagnosisOfLogs | SeaTrials | Calibration)
 
 
 @with_known_keywords
@@ -205,8 +205,6 @@ def diagnose(
     several = isinstance(log, Sequence) and not isinstance(log, str)
     sources, channels = sources_of(log if several else [log], channels)
     check_inputs(sources, channels, causes)
-    if out is not None:
-        check_targets(Path(out))
     if learn or length is not None:
         given = {"system": system, "reference": reference, "causes": causes}
         check_learning(learn, length, several=several, **given)
@@ -423,14 +421,7 @@ def calibrate(
             )
         return Calibration(**parts_of(found))
 
-    if out is None:
-        return result_in(None)
-    check_targets(Path(out))
-    with staged(Path(out), CALIBRATED, force=force) as stage:
-        result = result_in(stage)
-        _say(progress, WRITING)
-        result.write(stage)
-    return result
+    return _written(result_in, out, force, progress, CALIBRATED)
 
 
 @with_known_keywords
@@ -474,8 +465,6 @@ def sea_trials(
 
     source, channels = source_of(log, channels)
     check_inputs([source], channels, causes)
-    if out is not None:
-        check_targets(Path(out))
     given = ship_of(system)
     ship = given if isinstance(given, System) else given.checked()
 
@@ -503,6 +492,7 @@ def _written(
     out: AnyPath | None,
     force: bool,
     progress: Progress | None,
+    left: Sequence[str] = EXTENDED,
 ) -> Saved:
     """A result, and its files where a folder is given: all of them, or none.
 
@@ -510,12 +500,16 @@ def _written(
     ----------
     result_in : callable
         Makes the result, and writes an extended system into the folder that it gets.
+    left : sequence of str
+        Files that an earlier result may have left.
     """
     if out is None:
         return result_in(None)
-    with staged(Path(out), EXTENDED, force=force) as stage:
+    check_targets(Path(out))
+    with staged(Path(out), left, force=force) as stage:
         result = result_in(stage)
-        _say(progress, WRITING)
+        if progress is not None:
+            progress(WRITING)
         result.write(stage)
     extension = getattr(result, "extension", None)
     if extension is None:
@@ -523,8 +517,3 @@ def _written(
     # The extended system was made in the stage, and has moved.
     at_home = {kind: Path(out) / f"extended.{kind}" for kind in ("ssp", "ssv")}
     return replace(result, extension=replace(extension, **at_home))  # pyright: ignore[reportCallIssue]
-
-
-def _say(progress: Progress | None, step: str) -> None:
-    if progress is not None:
-        progress(step)

@@ -98,8 +98,8 @@ class PreparedRun:
             On Ctrl-C, with the rows so far.
         """
         # A long run must not end with results that cannot be written.
-        state = self.options.store if isinstance(self.options.store, (str, os.PathLike)) else None
-        state_file = None if state is None else Path(state)
+        state = self.options.store
+        state_file = Path(state) if isinstance(state, (str, os.PathLike)) else None
         if out is not None or state_file is not None:
             check_targets(None if out is None else Path(out), state_file)
 
@@ -146,7 +146,11 @@ class PreparedRun:
         table = table.assign_attrs(
             remarks=json.dumps([*said, *during]), changed=json.dumps(list(self.changed))
         )
-        table = table.assign_attrs(self._part_judged(table))
+        # A whole run needs no words on what part of it is judged.
+        first, last = table["time"].values[[0, -1]]
+        planned = max(self.planned, self.scenario.stop_time)
+        if first != 0.0 or last < planned - 1e-9:
+            table = table.assign_attrs(judged_on=f"{first:g} to {last:g} s of {planned:g} s")
         reached, late = within_run(self.scenario, table, self.planned)
         in_numbers = with_numbers(
             self.scenario.model_copy(update={"expect": reached}), units_of(self.system)
@@ -166,13 +170,6 @@ class PreparedRun:
         there = {signal for expect in self.scenario.expect for signal in expect.signals}
         wanted = {*chosen(names, self.scenario.record.signals), *there}
         return table[[name for name in names if name in wanted]]
-
-    def _part_judged(self, table: xarray.Dataset) -> dict[str, str]:
-        """What part of the planned run a table is; nothing of a whole one, which needs no words."""
-        first, last = table["time"].values[[0, -1]]
-        planned = max(self.planned, self.scenario.stop_time)
-        is_whole = first == 0.0 and last >= planned - 1e-9
-        return {} if is_whole else {"judged_on": f"{first:g} to {last:g} s of {planned:g} s"}
 
     def part(self, stop: Interrupted | RunError) -> Run:
         """The part of a run that did not get to its end; nothing is judged."""

@@ -17,7 +17,7 @@ from shipcosim.errors import Problem, worth_showing
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from shipcosim.report.theme.views import Outcome
+    from shipcosim.report.theme.views import Block, Outcome
     from shipcosim.results.check import CheckedFiles
     from shipcosim.results.run import Run
 
@@ -30,11 +30,8 @@ VERDICTS = {
     "named": "bold blue",
     "partial": "bold yellow",
 }
-
-
-def style_of(verdict: str) -> str:
-    """Style of a verdict on the terminal; red is what failed or was not understood."""
-    return VERDICTS.get(verdict, "bold red")
+LINES = {"Remarks": ("yellow", ""), "What to do next": ("", "- ")}
+"""Style of the lines below a heading, and what stands before each."""
 
 
 def print_problems(problems: Iterable[Problem]) -> None:
@@ -136,6 +133,26 @@ def print_overview(outcome: Outcome, rows: Iterable[tuple[str, Outcome]], page: 
     ]
     print_table(console, listed, ("", "scenario", ""))
     say_outcome(console, outcome)
+    say_page(console, page)
+
+
+def print_found(outcome: Outcome, blocks: Iterable[Block], page: Path) -> None:
+    """What was found, in the blocks that its card in a notebook has, and where the page is."""
+    console = make_console(soft_wrap=True)
+    # Red is what failed or was not understood.
+    style = VERDICTS.get(outcome.kind, "bold red")
+    console.print(Text(outcome.word, style=style), Text(outcome.sentence))
+    for block in filter(None, blocks):
+        # A table that a notebook folds is left to the page.
+        if block.folded and block.table.rows:
+            continue
+        console.print()
+        console.print(Text(block.heading, style="bold"))
+        style, mark = LINES.get(block.heading, ("", ""))
+        for line in block.lines:
+            console.print(Text(f"{mark}{line}", style=style))
+        print_table(console, block.table.rows, block.table.head)
+    console.print()
     say_page(console, page)
 
 

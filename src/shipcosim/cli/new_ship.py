@@ -6,6 +6,7 @@ import re
 import shutil
 import sys
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -140,17 +141,17 @@ def make(name: str, origin: Path | None, answers: Answers | None, force: bool) -
     ship = describe(source, read_file(source) if answers is None else file_from(text, target))
     found = check_described(ship)
     raise_errors(found)
-    named = _renamed(ship, name, target)
+    named = ship if ship.name == name else replace(ship, name=name)
     with temporary_folder() as folder:
         stage = Path(folder)
-        systems = make_systems(ship if named is None else named, stage / "ssp", library.fmus())
+        systems = make_systems(named, stage / "ssp", library.fmus())
         files = {f"ssp/{path.name}": path for path in systems}
-        (stage / "scenario.toml").write_text(
-            _scenario(named or ship, len(systems) > 1), encoding="utf-8"
-        )
+        has_dp = len(systems) > 1
+        scenario = _scenario(named, has_dp)
+        (stage / "scenario.toml").write_text(scenario, encoding="utf-8")
         files[f"scenarios/{name}.toml"] = stage / "scenario.toml"
-        if len(systems) > 1:
-            (stage / "study.toml").write_text(_study(named or ship), encoding="utf-8")
+        if has_dp:
+            (stage / "study.toml").write_text(_study(named), encoding="utf-8")
             files[f"studies/{name}_failures.toml"] = stage / "study.toml"
         again = source.resolve() == target.resolve() and origin is not None
         if not again:
@@ -158,18 +159,8 @@ def make(name: str, origin: Path | None, answers: Answers | None, force: bool) -
             files[f"ships/{name}/ship.toml"] = stage / "ship.toml"
             files |= {f"ships/{name}/{table}": source.parent / table for table in _tables(ship)}
         written = _put(project, files, force or again)
-    _say(
-        written,
-        [problem for problem in found if problem.severity == "remark"],
-        name,
-        len(systems) > 1,
-    )
-
-
-def _renamed(ship: Described, name: str, target: Path) -> Described | None:
-    from dataclasses import replace
-
-    return None if ship.name == name else replace(ship, name=name)
+    remarks = [problem for problem in found if problem.severity == "remark"]
+    _say(written, remarks, name, has_dp)
 
 
 def _tables(ship: Described) -> list[str]:

@@ -28,7 +28,10 @@ def parsed_settings(settings: Iterable[str]) -> dict[str, Any]:
                 )
             )
         problems += _of_twice("--set", name.strip(), values)
-        values[name.strip()] = _parsed(text.strip())
+        try:
+            values[name.strip()] = tomllib.loads(f"value = {text.strip()}")["value"]
+        except (ValueError, RecursionError):
+            values[name.strip()] = text.strip()
     if problems:
         raise ShipcosimError(problems)
     return values
@@ -67,10 +70,3 @@ def _of_twice(option: str, name: str, given: Mapping[str, Any]) -> list[Problem]
 def isolation(isolate: bool, timeout: float | None) -> dict[str, Any]:
     """Options of a run that --isolate and --timeout stand for."""
     return {"isolate": isolate} | ({} if timeout is None else {"timeout": timeout})
-
-
-def _parsed(text: str) -> Any:
-    try:
-        return tomllib.loads(f"value = {text}")["value"]
-    except (ValueError, RecursionError):
-        return text

@@ -82,7 +82,7 @@ def run_folder(
         print_run(runs[key], out / key)
     found = ScenarioRuns(name, runs)
     found.save(out)
-    rows = [(row.name, row.outcome) for row in found.rows]
+    rows = [(row.name, row.digest.outcome) for row in found.rows]
     return Conclusion(
         name, found, lambda: print_overview(found.outcome, rows, out / "report.html"), out
     )

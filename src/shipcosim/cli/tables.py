@@ -40,7 +40,11 @@ def print_table(console: Console, rows: Iterable[Sequence[Cell]], head: Sequence
         return
     columns = list(zip(*lines, strict=True))
     natural = [max(cell_len(cell.plain) for cell in column) for column in columns]
-    least = [_least(column, width) for column, width in zip(columns, natural, strict=True)]
+    # A column keeps its width, or that of its longest word where it holds words.
+    least = []
+    for column, width in zip(columns, natural, strict=True):
+        words = [word for cell in column for word in cell.plain.split(" ")]
+        least.append(width if width <= OF_WORDS else max(NARROWEST, *map(cell_len, words)))
 
     # Leave out columns at the end, but not the first two, until the words wrap into the rest.
     is_wide = console.is_terminal or "COLUMNS" in os.environ
@@ -54,14 +58,6 @@ def print_table(console: Console, rows: Iterable[Sequence[Cell]], head: Sequence
     if shown < len(columns):
         names = ", ".join(filter(None, head[shown:]))
         console.print(Text(f"In a wider terminal also: {names}.", style="dim"))
-
-
-def _least(cells: Iterable[Text], natural: int) -> int:
-    """Width that a column keeps: all of it, or that of the longest word where it holds words."""
-    if natural <= OF_WORDS:
-        return natural
-    words = [word for cell in cells for word in cell.plain.split(" ")]
-    return max(NARROWEST, *map(cell_len, words))
 
 
 def _total(widths: Sequence[int]) -> int:

@@ -83,12 +83,12 @@ class _Dispatch:
                 self._submit(self._suspects.popleft(), alone=True)
             return True
         # Each worker has a chunk in reserve, so that it does not wait for this process.
-        while len(self._in_flight) < AHEAD * self._workers.n and (chunk := self._next()):
+        while len(self._in_flight) < AHEAD * self._workers.n:
+            chunk = list(islice(self._numbers, self._size))
+            if not chunk:
+                break
             self._submit(chunk)
         return bool(self._in_flight)
-
-    def _next(self) -> list[int]:
-        return list(islice(self._numbers, self._size))
 
     def _submit(self, numbers: list[int], alone: bool = False) -> None:
         runs = [self._plan.run(number) for number in numbers]

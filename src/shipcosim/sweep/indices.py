@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from shipcosim.sweep.plan import Plan
 from shipcosim.sweep.sampling import salib_problem
-from shipcosim.sweep.summary import CONFIDENCE
+from shipcosim.sweep.summary import CONFIDENCE, by_levels
 
 if TYPE_CHECKING:
     import pandas
@@ -58,7 +58,7 @@ def indices_of(plan: Plan, runs: pandas.DataFrame) -> tuple[pandas.DataFrame, li
     rows = []
     said = []
     # The indices hold for one combination of the other factors at a time.
-    for levels, part in _parts(runs, factors):
+    for levels, part in by_levels(runs, factors):
         for measure in plan.measures:
             # Saltelli's design: blocks of (parameters + 2) samples. An index needs the whole block.
             values = np.full(plan.shape[-1], np.nan)
@@ -88,13 +88,6 @@ def indices_of(plan: Plan, runs: pandas.DataFrame) -> tuple[pandas.DataFrame, li
     return pandas.DataFrame(
         rows, columns=[*head, "total", "total_low", "total_high", "blocks"]
     ), said
-
-
-def _parts(runs: Any, factors: Sequence[str]) -> Iterator[tuple[dict[str, Any], Any]]:
-    """Runs that differ only in their samples, with the levels of their factors."""
-    grouped = runs.groupby(list(factors), sort=False, dropna=False) if factors else [((), runs)]
-    for key, part in grouped:
-        yield dict(zip(factors, key, strict=True)), part
 
 
 def _rows(

@@ -190,15 +190,19 @@ class Plan:
     def _common_input(self) -> dict[str, Any]:
         """The part that the inputs of all runs share."""
         scenario = self.scenario
+        # Parameter sets by name where the system has them, else by path.
+        of_system = scenario.system_path / "resources"
+        pairs = zip(scenario.parameters, scenario.parameter_paths, strict=True)
+        sets = [name if path.parent == of_system else str(path.resolve()) for name, path in pairs]
         return {
             "system": _portable(scenario, scenario.system, "system", scenario.system_path),
-            "parameters": self._named_parameters,
+            "parameters": sets,
             "components": self._portable_components({}),
             "set": {},
-            "events": [event.model_dump(exclude_defaults=True) for event in self.scenario.events],
-            "stop_time": self.scenario.stop_time,
-            "step_size": self.scenario.step_size,
-            "output_interval": self.scenario.output_interval,
+            "events": [event.model_dump(exclude_defaults=True) for event in scenario.events],
+            "stop_time": scenario.stop_time,
+            "step_size": scenario.step_size,
+            "output_interval": scenario.output_interval,
         }
 
     def _portable_components(self, swapped: Mapping[str, str]) -> dict[str, str]:
@@ -250,6 +254,10 @@ class Plan:
             for key, system in self.systems.items()
         ]
         of_inputs = {name: signal.start for name, signal in self.system.inputs.items()}
+
+        def plain(value: Any) -> Any:
+            return value.model_dump() if isinstance(value, Event) else str(value)
+
         # Versions, study, scenario, FMUs and wiring: if any of them changes, old results are not
         # used.
         facts = [
@@ -262,9 +270,7 @@ class Plan:
             of_systems,
             of_inputs,
         ]
-        return hashlib.sha256(
-            json.dumps(facts, default=_plain, sort_keys=True).encode()
-        ).hexdigest()
+        return hashlib.sha256(json.dumps(facts, default=plain, sort_keys=True).encode()).hexdigest()
 
     @property
     def rows_per_track_row(self) -> int:
@@ -273,13 +279,6 @@ class Plan:
         tracks = self.study.tracks
         return max(1, round(tracks.interval / row)) if tracks is not None and tracks.interval else 1
 
-    @property
-    def _named_parameters(self) -> list[str]:
-        """Parameter sets by name where the system has them, else by path."""
-        of_system = self.scenario.system_path / "resources"
-        pairs = zip(self.scenario.parameters, self.scenario.parameter_paths, strict=True)
-        return [name if path.parent == of_system else str(path.resolve()) for name, path in pairs]
-
 
 def _portable(scenario: Scenario, name: str, kind: str = "fmu", path: Path | None = None) -> str:
     """A name known anywhere in the project, else the absolute path."""
@@ -287,10 +286,3 @@ def _portable(scenario: Scenario, name: str, kind: str = "fmu", path: Path | Non
         return name
     found = path or Path(name)
     return str(found.resolve()) if found.exists() else name
-
-
-def _plain(value: Any) -> Any:
-    """A comparable form of values that JSON does not know."""
-    if isinstance(value, Event):
-        return value.model_dump()
-    return str(value)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -97,7 +96,11 @@ def study_of(source: Source) -> Study:
         raise ShipcosimError(list(problems.values())) from None
     study._path = source.files[0][0]
     study._source = source
-    if problems := [*_repeated(study), *_drawn_twice(study)]:
+    problems = _repeated(study)
+    if study.sample is not None and study.tune is not None:
+        found = "A study has either [sample] or [tune]."
+        problems.append(problem_of(study, ("tune",), found, "Take one out."))
+    if problems:
         raise ShipcosimError(problems)
     return study
 
@@ -126,11 +129,9 @@ def _read(path: Path, before: tuple[Path, ...]) -> Source:
         raise error_at(
             where, f"extends = {base!r}.", "Give the name or path of a study, in quotes."
         )
-    beside = path.resolve().parent / base
+    beside = resolved.parent / base
     try:
-        found = (
-            beside if beside.is_file() else library.find("study", base, near=path.resolve().parent)
-        )
+        found = beside if beside.is_file() else library.find("study", base, near=resolved.parent)
     except ShipcosimError as error:
         raise error_at(where, f"There is no study '{base}'.", error.problems[0].remedy) from None
     # Studies that extend each other in a circle would never end.
@@ -193,24 +194,15 @@ def _merged(base: dict[str, Any], own: dict[str, Any]) -> dict[str, Any]:
     return {**base, **own, **both}
 
 
-def _drawn_twice(study: Study) -> Iterator[Problem]:
-    """Problem of a study that both samples and searches."""
-    if study.sample is not None and study.tune is not None:
-        yield problem_of(
-            study, ("tune",), "A study has either [sample] or [tune].", "Take one out."
-        )
-
-
 def _repeated(study: Study) -> list[Problem]:
     """Problems of repeated column names and repeated labels of cases."""
     seen = {}
     problems = []
-    of_sample = [] if study.sample is None else list(study.sample.of.items())
     # Factors, samples, searches, quantities and summaries share the columns of the tables.
     columns = [(("factor", i, "name"), one.name) for i, one in enumerate(study.factor)]
-    columns += [(("sample", "of", signal), one.name or signal) for signal, one in of_sample]
-    of_search = [] if study.tune is None else list(study.tune.of.items())
-    columns += [(("tune", "of", signal), one.name or signal) for signal, one in of_search]
+    for part, drawn in (("sample", study.sample), ("tune", study.tune)):
+        of = drawn.of if drawn is not None else {}
+        columns += [((part, "of", signal), one.name or signal) for signal, one in of.items()]
     columns += [(("quantity", i, "name"), one.name) for i, one in enumerate(study.quantity)]
     columns += [(("summary", i, "name"), one.name) for i, one in enumerate(study.summary)]
     for keys, name in columns:

@@ -110,17 +110,13 @@ class Store:
         """Write the waiting rows."""
         if not self._rows:
             return
-        import pyarrow.parquet as parquet
-
         rows = self._rows
         self._rows = []
         name = f"{min(row.number for row in rows)}-{len(rows)}-{max(row.number for row in rows)}.parquet"
         # Tracks first: a part of runs without its tracks would count as done.
         written = {f"tracks-{name}": self._tracks(rows)} if self._plan.study.tracks else {}
         for file, table in (written | {f"runs-{name}": self._part(rows)}).items():
-            content = io.BytesIO()
-            parquet.write_table(table, content)
-            write_file(self._parts / file, content.getvalue())
+            _write(table, self._parts / file)
         self._written = monotonic()
 
     def finish(self) -> None:
@@ -199,9 +195,8 @@ class Store:
         }
         for measure in self._plan.measures:
             kind = pyarrow.bool_() if measure.is_truth else pyarrow.float64()
-            columns[measure.name] = pyarrow.array(
-                [row.quantities.get(measure.name) for row in rows], kind
-            )
+            values = [row.quantities.get(measure.name) for row in rows]
+            columns[measure.name] = pyarrow.array(values, kind)
         return pyarrow.table(columns)
 
     def _tracks(self, rows: list[Row]) -> pyarrow.Table:
@@ -228,13 +223,8 @@ class Store:
         if self._plan.study.tracks is None or not parts:
             return
         table = pyarrow.concat_tables([parquet.read_table(path) for path in parts])
-        content = io.BytesIO()
-        parquet.write_table(
-            table.sort_by([("run", "ascending"), ("time", "ascending")]),
-            content,
-            compression="zstd",
-        )
-        write_file(self.folder / "tracks.parquet", content.getvalue())
+        ordered = table.sort_by([("run", "ascending"), ("time", "ascending")])
+        _write(ordered, self.folder / "tracks.parquet", compression="zstd")
 
     def _collected(self) -> pyarrow.Table:
         """Rows of all parts and of the existing table, each once, in the order of the plan."""
@@ -249,9 +239,8 @@ class Store:
                 tables.append(parquet.read_table(path, columns=names).select(names))
             except (OSError, pyarrow.ArrowException, KeyError):
                 continue  # not there, or cut off: its runs are done again
-        table = pyarrow.concat_tables(
-            [one.select(names).cast(tables[0].select(names).schema) for one in tables]
-        )
+        schema = tables[0].select(names).schema
+        table = pyarrow.concat_tables([one.select(names).cast(schema) for one in tables])
         # A run may be in the table and in a part: take the first. `unique` also sorts by number.
         _, first = np.unique(table["run"].to_numpy(), return_index=True)
         return table.take(first)
@@ -294,11 +283,8 @@ class Store:
         found = {factor.name: _kind([level.label for level in levels]) for factor, levels in pairs}
         if self._plan.samples is not None:
             found["sample"] = pyarrow.int64()
-            whole = {one.name: one.is_whole for one in self._plan.samples.columns}
-            found |= {
-                name: pyarrow.int64() if is_whole else pyarrow.float64()
-                for name, is_whole in whole.items()
-            }
+            for one in self._plan.samples.columns:
+                found[one.name] = pyarrow.int64() if one.is_whole else pyarrow.float64()
         return found
 
     def _group(self, done: pyarrow.Table, kinds: dict[str, Any]) -> pyarrow.Table:
@@ -310,13 +296,22 @@ class Store:
         inputs = [json.dumps(self._plan.input_of(run), ensure_ascii=False) for run in runs]
         columns: dict[str, Any] = {"run": done["run"]}
         for name, kind in kinds.items():
-            values = [run.columns[name] for run in runs]
-            columns[name] = pyarrow.array(
-                [str(v) for v in values] if kind == pyarrow.string() else values, kind
-            )
+            values: list[Any] = [run.columns[name] for run in runs]
+            if kind == pyarrow.string():
+                values = list(map(str, values))
+            columns[name] = pyarrow.array(values, kind)
         columns |= {measure.name: done[measure.name] for measure in self._plan.measures}
         columns |= {"error": done["error"], "input": pyarrow.array(inputs, pyarrow.string())}
         return pyarrow.table(columns)
+
+
+def _write(table: pyarrow.Table, path: Path, **options: Any) -> None:
+    """Write a table as Parquet; it is there completely or not at all."""
+    import pyarrow.parquet as parquet
+
+    content = io.BytesIO()
+    parquet.write_table(table, content, **options)
+    write_file(path, content.getvalue())
 
 
 @contextmanager

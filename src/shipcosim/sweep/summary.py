@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from math import sqrt
 from typing import TYPE_CHECKING, Any
 
@@ -55,13 +55,18 @@ def summarised(plan: Plan, runs: pandas.DataFrame) -> pandas.DataFrame:
     return pandas.DataFrame(rows, columns=list(dict.fromkeys(name for row in rows for name in row)))
 
 
+def by_levels(runs: Any, factors: Sequence[str]) -> Iterator[tuple[dict[str, Any], Any]]:
+    """Levels of some factors, and the runs that have them."""
+    grouped = runs.groupby(list(factors), sort=False, dropna=False) if factors else [((), runs)]
+    for key, part in grouped:
+        yield dict(zip(factors, key, strict=True)), part
+
+
 def _rows(
     plan: Plan, runs: Any, remaining: tuple[str, ...], summaries: list[Summary]
 ) -> list[dict]:
-    grouped = runs.groupby(list(remaining), sort=False, dropna=False) if remaining else [((), runs)]
     rows = []
-    for key, part in grouped:
-        row: dict[str, Any] = dict(zip(remaining, key, strict=True))
+    for row, part in by_levels(runs, remaining):
         # Failed runs are counted, but their values are not used.
         row |= {"runs": len(part), "failed": int((part["error"] != "").sum())}
         for one in summaries:

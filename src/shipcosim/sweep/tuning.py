@@ -44,7 +44,7 @@ def ranges_of(study: Study, levels: Levels, system: System) -> Samples | None:
     with imported("tune", "The search comes from Optuna, which is missing."):
         import optuna
     made = [_range(study, levels, system, key, one) for key, one in study.tune.of.items()]
-    columns = [one[0] for one in made if one is not None]
+    usable = [one for one in made if one is not None]
     names = [one.name for one in study.quantity]
     # Objectives are quantities of the study.
     for number, one in enumerate(study.tune.objective):
@@ -52,18 +52,13 @@ def ranges_of(study: Study, levels: Levels, system: System) -> Samples | None:
             keys = ("tune", "objective", number, "quantity")
             found = f"There is no quantity '{one.quantity}'."
             levels.problems.append(problem_of(study, keys, found, suggestion(one.quantity, names)))
-    if len(columns) < len(made):
+    if len(usable) < len(made):
         return None
-    bounds = np.array(
-        [one[1] for one in made if one is not None]
-    )  # proposals depend on the version of Optuna, too
+    columns, bounds = zip(*usable, strict=True)
     # All trials are reserved as NaN; each generation fills its own.
-    return Samples(
-        tuple(columns),
-        np.full((study.tune.trials, len(columns)), np.nan),
-        bounds,
-        optuna.__version__,
-    )
+    numbers = np.full((study.tune.trials, len(columns)), np.nan)
+    # Proposals depend on the version of Optuna, too.
+    return Samples(columns, numbers, np.array(bounds), optuna.__version__)
 
 
 def _range(
@@ -128,19 +123,13 @@ class Search:
         self._tune = plan.study.tune
         self._samples = plan.samples
         # Whole numbers stay whole in the proposals.
-        kinds = [
-            IntDistribution if one.is_whole else FloatDistribution for one in plan.samples.columns
-        ]
-        every = zip(
-            plan.samples.columns,
-            kinds,
-            plan.samples.bounds.tolist(),
-            self._tune.of.values(),
-            strict=True,
-        )
-        self._among: dict[str, Any] = {
-            c.name: kind(low, high, log=one.log) for c, kind, (low, high, _), one in every
-        }
+        self._among: dict[str, Any] = {}
+        now = {}
+        ranges = zip(plan.samples.columns, plan.samples.bounds.tolist(), strict=True)
+        for (column, (low, high, value)), one in zip(ranges, self._tune.of.values(), strict=True):
+            kind = IntDistribution if column.is_whole else FloatDistribution
+            self._among[column.name] = kind(low, high, log=one.log)
+            now[column.name] = round(value) if column.is_whole else value
         # The seed makes the search reproducible.
         sampler = optuna.samplers.NSGAIISampler(
             population_size=self._tune.population, seed=plan.study.seed
@@ -154,10 +143,7 @@ class Search:
         finally:
             optuna.logging.set_verbosity(verbosity)
         # The first trial has the present values, so that the result shows what is gained.
-        now = zip(plan.samples.columns, plan.samples.bounds[:, 2].tolist(), strict=True)
-        self._search.enqueue_trial(
-            {one.name: round(value) if one.is_whole else value for one, value in now}
-        )
+        self._search.enqueue_trial(now)
 
     def generations(self) -> Iterator[range]:
         """Trial numbers of each generation, proposed; its results must be told before the next."""

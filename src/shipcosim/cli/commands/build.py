@@ -5,7 +5,6 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import Debug
 from shipcosim.cli.terminal import say
 from shipcosim.errors import error_at
 
@@ -32,7 +31,6 @@ def build(
             help="With --native: linux, windows, macos, linux-arm, windows-arm, by commas. [default: this one]",
         ),
     ] = "",
-    debug: Debug = False,
 ) -> None:
     """Build the FMUs in fmus/ and pack each system in ssp/.
 

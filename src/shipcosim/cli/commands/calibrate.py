@@ -8,7 +8,6 @@ import typer
 from shipcosim.cli.options import (
     AsJson,
     Channels,
-    Debug,
     Effects,
     Force,
     Junit,
@@ -44,7 +43,6 @@ def calibrate(
     junit: Junit = None,
     quiet: Quiet = False,
     force: Force = False,
-    debug: Debug = False,
 ) -> Conclusion:
     """Fit a ship's numbers to logs in which she is known to be well: her own parameter set, and a reference.
 

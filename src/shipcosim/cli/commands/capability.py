@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import AsJson, Debug, Force, Junit, Out, Quiet
+from shipcosim.cli.options import AsJson, Force, Junit, Out, Quiet
 from shipcosim.cli.outcomes.exits import Conclusion
 from shipcosim.cli.start.completion import names_of
 
@@ -48,7 +48,6 @@ def capability(
     junit: Junit = None,
     quiet: Quiet = False,
     force: Force = False,
-    debug: Debug = False,
 ) -> Conclusion:
     """Static DP capability of a ship: the weather that her thrusters balance, intact and after each single failure.
 

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import Channels, Debug, Ship
+from shipcosim.cli.options import Channels, Ship
 
 
 def channels(
@@ -28,7 +28,6 @@ def channels(
     force: Annotated[
         bool, typer.Option("--force", help="Write it over a file that is there.")
     ] = False,
-    debug: Debug = False,
 ) -> None:
     """Say what each column of a log is, and propose a channel file with a guess for each and its reason.
 

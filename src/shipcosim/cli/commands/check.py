@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import AsJson, Debug, Junit, Quiet, Strict
+from shipcosim.cli.options import AsJson, Junit, Quiet, Strict
 from shipcosim.cli.outcomes.exits import Conclusion
 from shipcosim.cli.start.completion import names_of
 
@@ -35,7 +35,6 @@ def check(
     as_json: AsJson = False,
     junit: Junit = None,
     quiet: Quiet = False,
-    debug: Debug = False,
 ) -> Conclusion:
     """Validate files: schema, then meaning. Loads no binary and runs nothing. Of an FMU it lists the variables,
     of a ship file what is estimated.

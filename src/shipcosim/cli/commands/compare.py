@@ -7,7 +7,6 @@ import typer
 from shipcosim.cli.options import (
     AsJson,
     Components,
-    Debug,
     Fmus,
     Junit,
     OspEvents,
@@ -46,7 +45,6 @@ def compare(
     as_json: AsJson = False,
     junit: Junit = None,
     quiet: Quiet = False,
-    debug: Debug = False,
 ) -> Conclusion:
     """Run on every engine that is installed, and on ours with half the step; show by how much each signal differs.
 

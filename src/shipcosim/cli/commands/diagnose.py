@@ -8,7 +8,6 @@ import typer
 from shipcosim.cli.options import (
     AsJson,
     Channels,
-    Debug,
     Effects,
     Force,
     Junit,
@@ -51,7 +50,6 @@ def diagnose(
     junit: Junit = None,
     quiet: Quiet = False,
     force: Force = False,
-    debug: Debug = False,
 ) -> Conclusion:
     """Say what a simulation gets wrong of a measured log, and why: causes by name, with size and probability.
 

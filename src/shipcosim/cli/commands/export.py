@@ -10,7 +10,6 @@ import typer
 
 from shipcosim.cli.options import (
     Components,
-    Debug,
     Fmus,
     Force,
     OspEvents,
@@ -52,7 +51,6 @@ def fmu(
     ] = False,
     strict: Strict = False,
     force: Force = False,
-    debug: Debug = False,
 ) -> None:
     """Make one FMU of a whole system, a block in anyone's tool. FMPy's container FMU does the work in it.
 
@@ -99,7 +97,6 @@ def page(
     fmus: Fmus = None,
     strict: Strict = False,
     force: Force = False,
-    debug: Debug = False,
 ) -> None:
     """Make one HTML file that runs the system itself: a desk to steer the ship and fail her units, without a network.
 
@@ -133,7 +130,6 @@ def live(
     no_open: Annotated[
         bool, typer.Option("--no-open", help="Write the page, but do not open the browser.")
     ] = False,
-    debug: Debug = False,
 ) -> None:
     """Steer a ship live: open the page that runs the system itself, as `export page` writes it.
 
@@ -244,7 +240,6 @@ def osp(
     events: OspEvents = None,
     strict: Strict = False,
     force: Force = False,
-    debug: Debug = False,
 ) -> None:
     """Write OspSystemStructure.xml, the FMUs and scenario.json, which libcosim runs as they are.
 

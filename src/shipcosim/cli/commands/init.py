@@ -5,7 +5,6 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import Debug
 from shipcosim.cli.terminal import say
 
 
@@ -13,7 +12,6 @@ def init(
     folder: Annotated[
         Path, typer.Argument(metavar="DIR", help="Folder of the project; made if needed.")
     ],
-    debug: Debug = False,
 ) -> None:
     """Lay out a project of your own that runs as it is: system, scenarios, parameter set, CI, notebook.
 

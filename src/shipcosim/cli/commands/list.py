@@ -5,7 +5,6 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import Debug
 from shipcosim.cli.start.completion import LISTED, words_of
 from shipcosim.cli.terminal import make_console, say
 from shipcosim.errors import Problem, ShipcosimError, suggestion
@@ -20,7 +19,6 @@ def list_(
             autocompletion=words_of(*LISTED),
         ),
     ] = None,
-    debug: Debug = False,
 ) -> None:
     """Show what has a name, a line each: of the project around, and of what came with shipcosim.
 
@@ -40,7 +38,6 @@ def docs(
         str | None,
         typer.Argument(metavar="[PAGE]", help="Name of a page; without, the pages, a line each."),
     ] = None,
-    debug: Debug = False,
 ) -> None:
     """Read the documentation in the terminal.
 

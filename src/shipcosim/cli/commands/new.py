@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from shipcosim.cli.options import Debug
 from shipcosim.cli.start.completion import names_of
 from shipcosim.cli.terminal import say
 
@@ -15,7 +14,7 @@ if TYPE_CHECKING:
 Name = Annotated[str, typer.Argument(metavar="NAME", help="Its name.")]
 
 
-def fmu(name: Name, debug: Debug = False) -> None:
+def fmu(name: Name) -> None:
     """Make the source of an FMU in fmus/NAME: one Python file that can be built as it is.
 
     Example: shipcosim new fmu winch
@@ -41,7 +40,6 @@ def parameters(
             autocompletion=names_of("system"),
         ),
     ] = "gunnerus_dp",
-    debug: Debug = False,
 ) -> None:
     """Make NAME.ssv and NAME.ssm: every parameter of a system or an FMU with its value, to change.
 
@@ -69,7 +67,6 @@ def scenario(
             autocompletion=names_of("system"),
         ),
     ] = None,
-    debug: Debug = False,
 ) -> None:
     """Make a scenario in scenarios/NAME.toml: what happens in a run, and what must hold.
 
@@ -92,7 +89,6 @@ def system(
             "--from", metavar="SSP", help="The system to copy.", autocompletion=names_of("system")
         ),
     ] = "gunnerus_dp",
-    debug: Debug = False,
 ) -> None:
     """Make a system in ssp/NAME: a copy of another one, with its numbers, to change.
 

@@ -5,8 +5,6 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import Debug
-
 
 def ship(
     name: Annotated[
@@ -47,7 +45,6 @@ def ship(
     force: Annotated[
         bool, typer.Option("--force", help="Write over files that are there.")
     ] = False,
-    debug: Debug = False,
 ) -> None:
     """Describe a ship of one's own in ships/NAME/ship.toml, and make the systems that run her.
 

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import Channels, Debug, Force, time_option
+from shipcosim.cli.options import Channels, Force, time_option
 from shipcosim.cli.outcomes.exits import Conclusion
 
 
@@ -52,7 +52,6 @@ def replay(
         ),
     ] = None,
     force: Force = False,
-    debug: Debug = False,
 ) -> Conclusion:
     """Draw a log and what a system makes of it, before and after a diagnosis: track, heading and speeds, errors.
 

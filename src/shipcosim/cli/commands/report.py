@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import Debug, Force, Out
+from shipcosim.cli.options import Force, Out
 from shipcosim.cli.terminal import say
 
 
@@ -17,7 +17,6 @@ def report(
     second: Annotated[Path, typer.Argument(metavar="B", help="Those of another.")],
     out: Out = None,
     force: Force = False,
-    debug: Debug = False,
 ) -> None:
     """Lay two runs over each other: both ships in one scene, both runs in every plot, and by how much they differ.
 
@@ -55,15 +54,14 @@ def _table(given: Path) -> Path:
 
 def _names(first: Path, second: Path) -> tuple[str, str]:
     """What tells the two apart in few letters: names of their folders or files, else A and B."""
+    ways = []
+    for path in (first.resolve(), second.resolve()):
+        parts = list(path.parts[1:]) if path.is_dir() else [*path.parts[1:-1], path.stem]
+        if len(parts) > 1 and parts[-1] in ("result", "result-partial"):
+            parts.pop()
+        ways.append(parts)
     for depth in (1, 2, 3):
-        names = [_said(path.resolve(), depth) for path in (first, second)]
-        if names[0] != names[1]:
-            return names[0], names[1]
+        a, b = ("-".join(parts[-depth:]) for parts in ways)
+        if a != b:
+            return a, b
     return "A", "B"
-
-
-def _said(path: Path, depth: int) -> str:
-    parts = list(path.parts[1:]) if path.is_dir() else [*path.parts[1:-1], path.stem]
-    if len(parts) > 1 and parts[-1] in ("result", "result-partial"):
-        parts.pop()
-    return "-".join(parts[-depth:])

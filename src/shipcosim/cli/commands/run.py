@@ -9,7 +9,6 @@ from shipcosim import library
 from shipcosim.cli.options import (
     AsJson,
     Components,
-    Debug,
     Engine,
     Every,
     Fmus,
@@ -63,7 +62,6 @@ def run(
     junit: Junit = None,
     quiet: Quiet = False,
     force: Force = False,
-    debug: Debug = False,
 ) -> Conclusion:
     """Run a scenario and check what it expects. Leaves result.nc, result.csv, report.html, verdict.json and, where
     something predicts, predictions.csv in results/SCENARIO.

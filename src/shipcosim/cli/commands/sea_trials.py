@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import AsJson, Channels, Debug, Effects, Force, Junit, Quiet, Ship
+from shipcosim.cli.options import AsJson, Channels, Effects, Force, Junit, Quiet, Ship
 from shipcosim.cli.outcomes.exits import Conclusion
 
 
@@ -32,7 +32,6 @@ def sea_trials(
     junit: Junit = None,
     quiet: Quiet = False,
     force: Force = False,
-    debug: Debug = False,
 ) -> Conclusion:
     """Say what a simulation gets wrong of a ship's manoeuvring trials: straight runs, turning circles, zig-zags.
 

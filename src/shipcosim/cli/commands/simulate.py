@@ -8,7 +8,6 @@ import typer
 from shipcosim.cli.options import (
     AsJson,
     Components,
-    Debug,
     Engine,
     Every,
     Force,
@@ -97,7 +96,6 @@ def simulate(
     junit: Junit = None,
     quiet: Quiet = False,
     force: Force = False,
-    debug: Debug = False,
 ) -> Conclusion:
     """Run a system, anybody's FMUs. Leaves result.nc, result.csv, report.html and verdict.json in results/SSP, and
     predictions.csv where something predicts.

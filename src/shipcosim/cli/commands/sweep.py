@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import AsJson, Debug, Force, Junit, Out, Quiet, Settings
+from shipcosim.cli.options import AsJson, Force, Junit, Out, Quiet, Settings
 from shipcosim.cli.outcomes.exits import Conclusion
 from shipcosim.cli.start.completion import names_of, words_of
 
@@ -75,7 +75,6 @@ def sweep(
     junit: Junit = None,
     quiet: Quiet = False,
     force: Force = False,
-    debug: Debug = False,
 ) -> Conclusion:
     """Run a study: a scenario many times, with other weather, events, parameters. Leaves runs.parquet, a row a run,
     runs.csv, summary.csv, study.json, verdict.json and report.html in results/STUDY.

@@ -1,18 +1,14 @@
 """The commands `shipcosim train ...`: from the name of a component to its weights and the training report."""
 
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import Debug, Force
-from shipcosim.cli.terminal import make_console, say
+from shipcosim.cli.options import Force
+from shipcosim.cli.terminal import say
 from shipcosim.errors import error_at, suggestion
 
-EVERY = 30.0  # s between lines that say how far it is, where there is no terminal
 DEFAULT_KIND = "paper-v"
 Kind = Annotated[
     str, typer.Option("--kind", metavar="NAME", help="Which; an unknown name lists them all.")
@@ -29,7 +25,6 @@ def allocator(
     kind: Kind = DEFAULT_KIND,
     out: Out = None,
     force: Force = False,
-    debug: Debug = False,
 ) -> None:
     """Train a neural allocator from scratch, with a fixed seed: a second training gives the same weights.
 
@@ -45,7 +40,6 @@ def drift(
     kind: Annotated[str, typer.Option("--kind", metavar="NAME", help="ours or paper-iv.")] = "ours",
     out: Out = None,
     force: Force = False,
-    debug: Debug = False,
 ) -> None:
     """Train a predictor of the drift after a loss of thrust, from simulated worlds, with fixed seeds.
 
@@ -61,7 +55,6 @@ def dead_reckoning(
     kind: Kind = "motion-filter",
     out: Out = None,
     force: Force = False,
-    debug: Debug = False,
 ) -> None:
     """Train dead reckoning of the 82.7 m vessel from scratch, its records by co-simulation included.
 
@@ -79,7 +72,6 @@ def docking(
     ] = "ours",
     out: Out = None,
     force: Force = False,
-    debug: Debug = False,
 ) -> None:
     """Train a predictor of dockings by hand, from simulated dockings, with fixed seeds.
 
@@ -93,7 +85,7 @@ def docking(
 
 def _train(component: str, kind: str, out: Path | None, force: bool) -> None:
     """Train a component, write weights and report, and say where. Nothing is written where something is wrong."""
-    from shipcosim.cli.console import shown_path
+    from shipcosim.cli.console import progress_of, shown_path
     from shipcosim.staging import check_targets, staged
 
     try:
@@ -108,29 +100,7 @@ def _train(component: str, kind: str, out: Path | None, force: bool) -> None:
         raise error_at("--kind", f"There is no '{kind}'.", suggestion(kind, kinds))
     folder = out or Path("results") / f"train-{kind}"
     check_targets(folder)
-    with staged(folder, force=force) as stage, _progress(kind) as progress:
+    with staged(folder, force=force) as stage, progress_of(kind) as progress:
         written = learn.train(component, kind, stage, progress)
     for file in written:
         say(shown_path(folder / file.name))
-
-
-@contextmanager
-def _progress(kind: str) -> Iterator[Callable[[int, int], None]]:
-    """A bar of the epochs on a terminal, else a line now and then."""
-
-    from shipcosim.cli.console import progress_of
-
-    console = make_console(stderr=True, highlight=True)
-    told = time.monotonic()
-    with progress_of(kind) as report:
-
-        def tell(done: int, total: int) -> None:
-            nonlocal told
-            report(done, total)
-            if not console.is_terminal and time.monotonic() - told > EVERY:
-                told = time.monotonic()
-                console.print(
-                    f"{kind}: {100 * done // total} % of the longest training", highlight=False
-                )
-
-        yield tell

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import inspect
 import io
 import os
 import sys
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from shipcosim.cli.options import Debug
 from shipcosim.cli.terminal import say, say_json
 from shipcosim.errors import Problem, ShipcosimError, error_at
 
@@ -122,7 +124,10 @@ def add_to_summary(heading: str, checks: Sequence[Check], page: str = "") -> Non
 
 
 def guarded(function: Callable[..., Conclusion | None]) -> Callable[..., None]:
-    """A command that says what it found, and whose errors become a readable block on stderr and an exit code."""
+    """A command that says what it found, and whose errors become a readable block on stderr and an exit code.
+
+    It has the option --debug after its own.
+    """
 
     @functools.wraps(function)
     def wrapper(*args: Any, debug: bool = False, **kwargs: Any) -> None:
@@ -130,7 +135,7 @@ def guarded(function: Callable[..., Conclusion | None]) -> Callable[..., None]:
         output = Output(**asked)
         try:
             with output.working():
-                found = function(*args, debug=debug, **kwargs)
+                found = function(*args, **kwargs)
             if found is not None:
                 output.conclude(found)
             return
@@ -159,6 +164,13 @@ def guarded(function: Callable[..., Conclusion | None]) -> Callable[..., None]:
         _publish_errors(function.__name__, problems, output)
         raise typer.Exit(code)
 
+    # typer reads the options of a command from its signature.
+    own = inspect.signature(function, eval_str=True)
+    debug = inspect.Parameter(
+        "debug", inspect.Parameter.KEYWORD_ONLY, default=False, annotation=Debug
+    )
+    parameters = [*own.parameters.values(), debug]
+    wrapper.__signature__ = own.replace(parameters=parameters)  # pyright: ignore[reportAttributeAccessIssue]
     return wrapper
 
 

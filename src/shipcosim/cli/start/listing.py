@@ -45,7 +45,10 @@ def listed(kinds: Sequence[str]) -> str:
 
 def _section(kind: str) -> str:
     if kind == "causes":
-        return _table("causes (what `diagnose` can name)", _causes())
+        from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
+
+        causes = [(cause.cause, cause.sentence) for cause in read_catalogue().values()]
+        return _table("causes (what `diagnose` can name)", causes)
     if kind == "engines":
         return _table("engines (--engine of `run` and `simulate`)", _engines())
     project = library.project_of()
@@ -58,12 +61,6 @@ def _section(kind: str) -> str:
     return "\n\n".join(
         _table(heading, ((e.name, e.line) for e in found)) for heading, found in tables
     )
-
-
-def _causes() -> list[Row]:
-    from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
-
-    return [(cause.cause, cause.sentence) for cause in read_catalogue().values()]
 
 
 def _engines() -> list[Row]:

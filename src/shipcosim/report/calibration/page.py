@@ -9,11 +9,10 @@ from shipcosim.report.calibration.words import (
     moved,
     moved_rows,
     outcome,
-    untold,
 )
 from shipcosim.report.diagnosis.by_log import error_figures, error_table
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.figures import rounded
+from shipcosim.report.theme.figures import rounded, shade
 from shipcosim.report.theme.numbers import metres
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import (
@@ -85,7 +84,7 @@ def _page(ship: CalibratedShip) -> CalibrationPage:
             log_rows(ship),
             ("Log", "Faults, repaired", "Weather fitted", "Unmodelled errors left"),
         ),
-        untold=untold(ship),
+        untold=", ".join(number.name for number in ship.untold),
     )
 
 
@@ -130,9 +129,8 @@ def _moved_figure(ship: CalibratedShip) -> Figure:
         "error_x": {"type": "data", "array": spread} | look,
         "hovertemplate": "%{x:.2f} ± %{error_x.array:.2f} tolerances",
     }
-    band = {"type": "rect", "x0": -1, "x1": 1, "y0": 0, "y1": 1, "yref": "paper", "layer": "below"}
     layout = {
-        "shapes": [band | {"fillcolor": palette.BAND, "line": {"width": 0}}],
+        "shapes": [shade(palette.BAND, x=(-1, 1))],
         "xaxis": {"title": {"text": "tolerances"}, "zeroline": True},
         "yaxis": {"automargin": True, "tickfont": {"size": 12}, "dtick": 1},
         "hovermode": "closest",

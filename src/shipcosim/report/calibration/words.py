@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from shipcosim.diagnose.calibration_pipeline import CalibratedLog, CalibratedShip
+from shipcosim.diagnose.calibration_pipeline import CalibratedShip
 from shipcosim.diagnose.reference.log_errors import LogErrors
 from shipcosim.diagnose.reference.reference import KnownNumber
+from shipcosim.report.diagnosis.by_log import error_table
 from shipcosim.report.theme.numbers import metres, plain
-from shipcosim.report.theme.views import Outcome
+from shipcosim.report.theme.views import Block, Outcome, Table
+
+MOST_ROWS = 12
+"""Numbers that terminal and notebook show; the page has all."""
 
 
 def outcome(ship: CalibratedShip) -> Outcome:
@@ -35,6 +39,17 @@ def sentence(ship: CalibratedShip) -> str:
     return text
 
 
+def blocks(ship: CalibratedShip) -> tuple[Block, ...]:
+    """Numbers that moved most and the errors that remain, for terminal and notebook."""
+    moved = Table(moved_rows(ship)[:MOST_ROWS], ("", "before", "calibrated", "by tolerances"))
+    return (
+        Block("Why", lines=ship.refusals),
+        Block("Moved most", moved),
+        Block("Errors by log", error_table(errors_by_log(ship), "calibrated")),
+        Block("Remarks", lines=ship.remarks),
+    )
+
+
 def moved(number: KnownNumber) -> float:
     """By how many tolerances a number is moved."""
     return (number.estimate - number.nominal) / number.tolerance
@@ -42,18 +57,13 @@ def moved(number: KnownNumber) -> float:
 
 def moved_rows(ship: CalibratedShip) -> list[tuple[str, ...]]:
     """Numbers of the ship, those moved by most tolerances first: name, before, after, tolerances."""
-    ranked = sorted(ship.reference.numbers, key=lambda number: -abs(moved(number)))
-    return [_row(number) for number in ranked]
-
-
-def _row(number: KnownNumber) -> tuple[str, ...]:
-    unit = "" if number.unit == "1" else f" {number.unit}"
-    return (
-        number.name,
-        f"{plain(number.nominal, 4)} ± {plain(number.tolerance, 2)}{unit}",
-        f"{plain(number.estimate, 4)} ± {plain(number.std, 2)}{unit}",
-        f"{moved(number):+.1f}".replace("-", "−"),
-    )
+    rows = []
+    for number in sorted(ship.reference.numbers, key=lambda number: -abs(moved(number))):
+        unit = "" if number.unit == "1" else f" {number.unit}"
+        before = f"{plain(number.nominal, 4)} ± {plain(number.tolerance, 2)}{unit}"
+        after = f"{plain(number.estimate, 4)} ± {plain(number.std, 2)}{unit}"
+        rows.append((number.name, before, after, f"{moved(number):+.1f}".replace("-", "−")))
+    return rows
 
 
 def errors_by_log(ship: CalibratedShip) -> dict[str, LogErrors]:
@@ -63,30 +73,14 @@ def errors_by_log(ship: CalibratedShip) -> dict[str, LogErrors]:
 
 def log_rows(ship: CalibratedShip) -> list[tuple[str, ...]]:
     """Logs: name, faults that were repaired, weather fitted beside the ship, unmodelled errors that are left."""
-    return [
-        (
-            log.name,
-            (", ".join(fault.label for fault in log.faults) or "none"),
-            _weather(log),
-            _left(log),
+    rows = []
+    for log in ship.logs:
+        faults = ", ".join(fault.label for fault in log.faults)
+        weather = ", ".join(
+            f"{path.removeprefix('water.').replace('_', ' ')} {plain(value, 2)}"
+            for path, value in log.weather.items()
         )
-        for log in ship.logs
-    ]
-
-
-def _weather(log: CalibratedLog) -> str:
-    parts = (
-        f"{path.removeprefix('water.').replace('_', ' ')} {plain(value, 2)}"
-        for path, value in log.weather.items()
-    )
-    return ", ".join(parts) or "as logged"
-
-
-def _left(log: CalibratedLog) -> str:
-    parts = (f"{kind} {gain:.0f} nats" for kind, gain in log.unmodelled.items() if gain > 0.5)
-    return ", ".join(parts) or "none"
-
-
-def untold(ship: CalibratedShip) -> str:
-    """Numbers of which the logs say next to nothing, as a list."""
-    return ", ".join(number.name for number in ship.untold)
+        left = [f"{kind} {gain:.0f} nats" for kind, gain in log.unmodelled.items() if gain > 0.5]
+        cells = (faults or "none", weather or "as logged", ", ".join(left) or "none")
+        rows.append((log.name, *cells))
+    return rows

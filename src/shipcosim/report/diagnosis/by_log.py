@@ -39,14 +39,13 @@ def error_table(errors: Mapping[str, LogErrors], after: str = WITH_CAUSES) -> Ta
     rows = []
     for log, one in errors.items():
         horizons = " / ".join(f"{horizon:.2g}" for horizon in one.horizon)
-        cells = [
-            _by_horizon(sizes.get(label), unit)
-            for sizes, unit in zip((one.position, one.heading), CHANNELS.values(), strict=True)
-            for label in looks
-        ]
-        rows.append(
-            (log, f"{horizons} s", *cells, _fitted_on(one) if "after" in one.position else "")
-        )
+        cells = []
+        for sizes, unit in zip((one.position, one.heading), CHANNELS.values(), strict=True):
+            for label in looks:
+                by_horizon = " / ".join(plain(value, 2) for value in sizes.get(label, ()))
+                cells.append(f"{by_horizon} {unit}".replace(" °", "°") if by_horizon else "–")
+        fitted_on = _fitted_on(one) if "after" in one.position else ""
+        rows.append((log, f"{horizons} s", *cells, fitted_on))
     return Table(rows, ("Log", "After", *head, "Numbers by"), tuple(range(2 + len(head))))
 
 
@@ -58,11 +57,6 @@ def _looks(errors: Mapping[str, LogErrors], after: str) -> dict[str, tuple[str, 
         for label, (name, colour) in LOOKS.items()
         if label in found
     }
-
-
-def _by_horizon(values: tuple[float, ...] | None, unit: str) -> str:
-    text = "–" if values is None else " / ".join(plain(value, 2) for value in values) + f" {unit}"
-    return text.replace(" °", "°")
 
 
 def _fitted_on(one: LogErrors) -> str:
@@ -84,16 +78,8 @@ def log_table(found: Diagnosis) -> Table:
         faults = [fault.sentence or told(fault) for fault in found.own_faults(name)]
         causes = [told(finding, found.causes) for finding in one.physics]
         first = one.discrepancies[0].what if one.discrepancies else "none"
-        rows.append(
-            (
-                name,
-                one.verdict,
-                "; ".join(faults) or "none",
-                "; ".join(causes) or "none",
-                first,
-                error_after(one),
-            )
-        )
+        said = ("; ".join(texts) or "none" for texts in (faults, causes))
+        rows.append((name, one.verdict, *said, first, error_after(one)))
     head = ("Log", "Verdict", "Faults of its own", "Causes", "Largest discrepancy", "Error")
     return Table(rows, head, (0, 5))
 
@@ -113,11 +99,9 @@ def error_figures(errors: Mapping[str, LogErrors], after: str = WITH_CAUSES) -> 
     names = [f"{log}, {one.horizon[-1]:.2g} s" for log, one in errors.items()]
     for channel, unit in CHANNELS.items() if errors else ():
         traces = []
+        every = [getattr(one, channel.lower()) for one in errors.values()]
         for label, (name, colour) in _looks(errors, after).items():
-            by_label = [
-                one.position if channel == "Position" else one.heading for one in errors.values()
-            ]
-            last = [sizes.get(label, (math.nan,))[-1] for sizes in by_label]
+            last = [sizes.get(label, (math.nan,))[-1] for sizes in every]
             traces.append(bars(name, names, last, colour, unit))
         figures.append(Figure(f"{channel} error by log", unit, tuple(traces), layout))
     return tuple(figures)

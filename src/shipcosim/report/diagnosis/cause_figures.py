@@ -11,7 +11,7 @@ from shipcosim.diagnose.inference.thresholds import ENOUGH, UNMODELLED
 from shipcosim.report.diagnosis.estimates import shown_unit
 from shipcosim.report.diagnosis.words import course_of, title, title_of
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.figures import TIME, limit, line, rounded
+from shipcosim.report.theme.figures import TIME, limit, line, rounded, shade
 from shipcosim.report.theme.views import Figure, PlotlyDict
 
 CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw rate")
@@ -186,15 +186,8 @@ def _whiteness_figure(
         if np.isfinite(correlation[:, i]).any()
     ]
     # White noise of n rows stays within 2 / sqrt(n).
-    band = {
-        "type": "rect",
-        "x0": 0,
-        "x1": 1,
-        "xref": "paper",
-        "y0": -2 / np.sqrt(rows),
-        "y1": 2 / np.sqrt(rows),
-    }
-    shape = {**band, "layer": "below", "fillcolor": palette.BAND, "line": {"width": 0}}
+    width = 2 / np.sqrt(rows)
+    shape = shade(palette.BAND, y=(-width, width))
     note = (
         "Autocorrelation of the whitened innovations; inside the band they are as white as noise."
     )

@@ -139,8 +139,9 @@ def _estimates(diagnosis: Diagnosis) -> Table:
         )
     rows = []
     for finding in physics:
-        alone = [(f"{log} alone", one, "") for log, one in by_log(finding)]
-        for name, one, sure in ((title_of(finding), finding, percent(finding.probability)), *alone):
+        named = [(title_of(finding), finding, percent(finding.probability))]
+        named += [(f"{log} alone", one, "") for log, one in by_log(finding)]
+        for name, one, sure in named:
             for parameter, value, std, unit in estimate_rows(one):
                 rows.append((name, parameter, value, f"± {std}", unit, sure))
     head = ("Cause", "Parameter", "Estimate", "Std", "Unit", "Probability")

@@ -78,7 +78,9 @@ def gain_section(diagnosis: Diagnosis) -> GainSection:
     models = models_to_show(tuple(MODELS), diagnosis)
     if diagnosis.extension is None or gain is None:
         models = [model for model in models if not model.startswith("extended")]
-    found = _found(gain, diagnosis.verdict)
+    found = "nothing to gain" if diagnosis.verdict == "consistent" else "none"
+    if gain and gain["share_of_explainable"] is not None:
+        found = f"{percent(gain['share_of_explainable'])} of the explainable error"
     is_extended = "extended" in models
     if errors is None:
         logs = gain["logs"] if gain and "logs" in gain else ()
@@ -120,12 +122,6 @@ def _of_craft(gain: Mapping[str, Any], diagnosis: Diagnosis) -> GainSection:
         table,
         numbers=craft_table(craft),
     )
-
-
-def _found(gain: Mapping[str, Any] | None, verdict: str) -> str:
-    if gain and gain["share_of_explainable"] is not None:
-        return f"{percent(gain['share_of_explainable'])} of the explainable error"
-    return "nothing to gain" if verdict == "consistent" else "none"
 
 
 def _errors(gain: Mapping[str, Any] | None) -> Table:

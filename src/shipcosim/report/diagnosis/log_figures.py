@@ -1,17 +1,16 @@
 """Figures of the log: channels as logged and as used, faulty stretches shaded; the track."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from xarray import Dataset
+from xarray import DataArray, Dataset
 
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.hypotheses.catalogue import read_faults
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.display import as_variable, thinned
-from shipcosim.report.theme.figures import TIME, line, rounded
+from shipcosim.report.theme.figures import TIME, line, rounded, shade
 from shipcosim.report.theme.views import Figure, PlotlyDict
 
 GROUPS = (  # title, channels, unit
@@ -43,8 +42,7 @@ def log_figures(log: Dataset, clean: Dataset, findings: Sequence[Finding]) -> li
     # The rows in the order of their times; rows without a time are left out.
     time = log["time"].values
     rows = np.flatnonzero(np.isfinite(time))
-    ordered = _shown(log.isel(time=rows[np.argsort(time[rows], kind="stable")]))
-    raw = ordered
+    raw = _shown(log.isel(time=rows[np.argsort(time[rows], kind="stable")]))
     # The repaired log over the logged times, so that both can be compared.
     used = _on_log_time(clean)
     faults = [f for f in findings if f.kind == "data"]
@@ -63,9 +61,11 @@ def log_figures(log: Dataset, clean: Dataset, findings: Sequence[Finding]) -> li
         ]
         traces = [trace for pair in pairs for trace in pair[:-1]] + [pair[-1] for pair in pairs]
         # Shade only faults that concern a channel of this figure.
-        shapes = [
-            shape for fault in faults if _concerns(fault, there) for shape in _shades(fault, raw)
-        ]
+        shapes = []
+        for fault in faults:
+            everywhere = not fault.channels or read_faults()[fault.cause].in_every_channel
+            if everywhere or not set(fault.channels).isdisjoint(there):
+                shapes += _shades(fault, raw)
         figures.append(Figure(title, unit, tuple(traces), {"shapes": shapes, "xaxis": TIME}))
     return figures
 
@@ -139,12 +139,8 @@ def _thrusters(names: Sequence[str], log: Dataset) -> list[tuple[str, tuple[str,
         top = {name: np.nanmax(np.abs(log[name].values), initial=0.0) for name in mine}
         large = [name for name in mine if top[name] > 5.0 * min(top.values())]
         for group in ([name for name in mine if name not in large], large):
-            shaft = (
-                title
-                if len(group) > 1 or not group
-                else f"{title}, {group[0].removesuffix(suffix)}"
-            )
-            found.append((shaft, tuple(group), unit))
+            heading = f"{title}, {group[0].removesuffix(suffix)}" if len(group) == 1 else title
+            found.append((heading, tuple(group), unit))
     return found
 
 
@@ -157,26 +153,17 @@ def _traces(raw: Dataset, used: Dataset, channel: str, colour: str, unit: str) -
     new, _ = thinned(used[[channel]], MOST_ROWS["channel"]) if channel in used else (None, 1)
     # The logged curve is wide and pale under the used one.
     if new is None or not np.array_equal(raw[channel], used[channel], equal_nan=True):
-        traces.append(
-            _curve(
-                f"{label}, logged",
-                old["time"].values,
-                old[channel].values,
-                palette.FAINT,
-                unit,
-                width=3.0,
-                showlegend=False,
-            )
-        )
+        look = {"width": 3.0, "showlegend": False}
+        traces.append(_curve(f"{label}, logged", old[channel], palette.FAINT, unit, **look))
     if new is not None:
-        traces.append(_curve(label, new["time"].values, new[channel].values, colour, unit))
+        traces.append(_curve(label, new[channel], colour, unit))
     return traces
 
 
-def _curve(
-    name: str, time: NDArray, values: NDArray, colour: str, unit: str, **look: Any
-) -> PlotlyDict:
+def _curve(name: str, drawn: DataArray, colour: str, unit: str, **look: Any) -> PlotlyDict:
     """A channel over time; angles are interrupted where they wrap."""
+    time = drawn["time"].values
+    values = drawn.values
     # A gap at each wrap, instead of a line across the figure.
     if unit == "deg":
         turns = np.flatnonzero(np.abs(np.diff(values)) > 180.0) + 1
@@ -185,23 +172,10 @@ def _curve(
     return line(name, time, values, colour, hovertemplate=f"%{{y:.4~g}} {unit}", **look)
 
 
-def _concerns(fault: Finding, channels: Sequence[str]) -> bool:
-    everywhere = not fault.channels or read_faults()[fault.cause].in_every_channel
-    return everywhere or not set(fault.channels).isdisjoint(channels)
-
-
-def _shades(fault: Finding, raw: Dataset) -> Iterator[PlotlyDict]:
+def _shades(fault: Finding, raw: Dataset) -> list[PlotlyDict]:
     # A fault without segments concerns the whole log.
     time = raw["time"].values
-    for start, end in fault.segments or ((time[0], time[-1]),):
-        yield {
-            "type": "rect",
-            "x0": float(start),
-            "x1": float(end),
-            "y0": 0,
-            "y1": 1,
-            "yref": "paper",
-            "layer": "below",
-            "fillcolor": palette.FAULT,
-            "line": {"width": 0},
-        }
+    return [
+        shade(palette.FAULT, x=(float(start), float(end)))
+        for start, end in fault.segments or ((time[0], time[-1]),)
+    ]

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 
-from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.hypotheses.catalogue import read_faults
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.by_log import log_table
@@ -41,16 +40,15 @@ def log_section(diagnosis: Diagnosis) -> LogSection:
     log = diagnosis.log
     faults = [f for f in findings if f.kind == "data"]
     # Each fault with its channels, place, and what was done about it.
-    rows = [
-        (
-            title(f.cause),
-            ", ".join(f.channels) or "all",
-            where(f),
-            f.sentence or told(f),
-            "nothing" if f.alternatives else _repair(f),
-        )
-        for f in faults
-    ]
+    rows = []
+    for fault in faults:
+        # Other logs than those that show it may be corrected too.
+        done = read_faults()[fault.cause].repair if not fault.alternatives else "nothing"
+        if fault.put_right and not fault.alternatives:
+            done += f"; in {', '.join(fault.put_right)} too"
+        channels = ", ".join(fault.channels) or "all"
+        said = fault.sentence or told(fault)
+        rows.append((title(fault.cause), channels, where(fault), said, done))
     track = track_figure(log.repaired) if log else None
     channels = log_figures(log.measured, log.repaired, findings) if log else ()
     return LogSection(
@@ -61,9 +59,3 @@ def log_section(diagnosis: Diagnosis) -> LogSection:
         handled=log.handled if log else (),
         logs=log_table(diagnosis),
     )
-
-
-def _repair(fault: Finding) -> str:
-    """What was done about a fault, and in which logs besides those that show it."""
-    also = f"; in {', '.join(fault.put_right)} too" if fault.put_right else ""
-    return read_faults()[fault.cause].repair + also

@@ -52,13 +52,8 @@ def not_testable_rows(
         if name in faults and faults[name].why_not_testable:
             reason = faults[name].why_not_testable
         # Meaning of the cause, or of the fault.
-        sentence = (
-            cause.sentence
-            if cause
-            else faults[name].statement.capitalize()
-            if name in faults
-            else ""
-        )
+        sentence = faults[name].statement.capitalize() if name in faults else ""
+        sentence = cause.sentence if cause else sentence
         rows.append((title(name), sentence, reason))
     return rows
 
@@ -76,7 +71,7 @@ def visible_rows(sizes: Sequence[VisibleSize]) -> list[tuple[str, str]]:
     rows: dict[str, list[str]] = {}
     for one in sizes:
         # A ratio as a percentage, any other number with its unit.
-        unit, factor = _scaled(one.unit, one.size)
+        unit, factor = shown_unit(one.unit, one.size) if one.unit not in ("1", "") else ("%", 100.0)
         size = f"{plain(factor * one.size, 2)} {unit}".replace(" °", "°").rstrip()
         place = [one.component] if one.component else []
         # The parameter's name only where the cause has several.
@@ -86,13 +81,6 @@ def visible_rows(sizes: Sequence[VisibleSize]) -> list[tuple[str, str]]:
         name = [one.parameter.replace("_", " ")] if one.parameter and several > 1 else []
         rows.setdefault(title(one.cause), []).append(" ".join([*place, *name, size]))
     return [(cause, ", ".join(texts)) for cause, texts in rows.items()]
-
-
-def _scaled(unit: str, size: float) -> tuple[str, float]:
-    """Unit for readers, and the factor to it: a ratio in per cent, large forces in kN."""
-    if unit in ("1", ""):
-        return "%", 100.0
-    return shown_unit(unit, size)
 
 
 def _texts(facts: Mapping[str, float | None]) -> dict[str, str | None]:

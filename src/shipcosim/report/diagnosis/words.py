@@ -60,7 +60,9 @@ def told(finding: Finding, causes: Mapping[str, Cause] | None = None) -> str:
     cause = (read_catalogue() if causes is None else causes).get(finding.cause)
     # Since when, and what it was at the reference.
     since = f", {course_of(finding)}" if finding.onset is not None else ""
-    since += f" (at the reference: {_at_reference(finding)})" if finding.at_reference else ""
+    if finding.at_reference:
+        before = (f"{n.replace('_', ' ')} {plus_minus(e)}" for n, e in finding.at_reference.items())
+        since += f" (at the reference: {', '.join(before)})"
     try:
         if cause and cause.statement:
             return filled(cause.statement, finding.parameters, finding.component) + since
@@ -88,14 +90,6 @@ def course_of(finding: Finding) -> str:
         return f"from {finding.onset or 0.0:.0f} s on"
     before = {"ramp": "growing ", "switching": "coming and going, "}
     return before.get(finding.course, "") + listed(spells)
-
-
-def _at_reference(finding: Finding) -> str:
-    """Size of a cause at the time of the reference, by parameter."""
-    return ", ".join(
-        f"{name.replace('_', ' ')} {plus_minus(size)}"
-        for name, size in finding.at_reference.items()
-    )
 
 
 def _fault(finding: Finding) -> str:
@@ -415,13 +409,11 @@ def size_rows(finding: Finding) -> list[tuple[str, str]]:
     [('loss', '0.03 ± 0.02 → 0.152 ± 0.012')]
     """
     before = {
-        name.replace("_", " "): plus_minus(size) for name, size in finding.at_reference.items()
+        name.replace("_", " "): f"{plus_minus(size)} → "
+        for name, size in finding.at_reference.items()
     }
     return [
-        (
-            name,
-            (f"{before[name]} → " if name in before else "") + f"{value} ± {std} {unit}".rstrip(),
-        )
+        (name, before.get(name, "") + f"{value} ± {std} {unit}".rstrip())
         for name, value, std, unit in estimate_rows(finding)
     ]
 

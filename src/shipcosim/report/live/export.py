@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from shipcosim.cosim import simulate
 from shipcosim.cosim.interactive import changeable_inputs
 from shipcosim.cosim.master.plan import Plan, make_plan
@@ -36,18 +38,12 @@ def live_page(system: System, scenario: Scenario, progress: CountProgress | None
     ShipcosimError
         There is no compiler; system and scenario do not fit; or nothing in it is a ship.
     """
-    system, numbers = prepared(system, scenario)
-    plan = make_plan(system, numbers, (), changeable_inputs(system))
-    # Compile first: a component without native code is reported before anything runs.
-    code = make_module(plan, numbers, progress)
-    return _rendered(plan, numbers, scenario, code)
+    return _rendered(system, scenario, lambda plan, numbers: make_module(plan, numbers, progress))
 
 
 def server_page(system: System, scenario: Scenario) -> str:
     """The page of a system that a server runs, as HTML. Arguments as of `live_page`; raises ShipcosimError."""
-    system, numbers = prepared(system, scenario)
-    plan = make_plan(system, numbers, (), changeable_inputs(system))
-    return _rendered(plan, numbers, scenario, b"")
+    return _rendered(system, scenario, lambda plan, numbers: b"")
 
 
 def prepared(system: System, scenario: Scenario) -> tuple[System, Scenario]:
@@ -57,7 +53,13 @@ def prepared(system: System, scenario: Scenario) -> tuple[System, Scenario]:
     return system, with_numbers(scenario, units_of(system))
 
 
-def _rendered(plan: Plan, numbers: Scenario, scenario: Scenario, code: bytes) -> str:
+def _rendered(
+    system: System, scenario: Scenario, compiled: Callable[[Plan, Scenario], bytes]
+) -> str:
+    system, numbers = prepared(system, scenario)
+    plan = make_plan(system, numbers, (), changeable_inputs(system))
+    # Compile first: a component without native code is reported before anything runs.
+    code = compiled(plan, numbers)
     interval = scenario.output_interval or scenario.step_size
     until = min(FIRST_ROWS * interval, scenario.stop_time)
     table = simulate(plan.system, scenario, RunOptions(until=until))

@@ -8,8 +8,7 @@ import numpy as np
 from xarray import Dataset
 
 from shipcosim.report.notebook.figures import Circle, Path, track_svg
-from shipcosim.report.run.roles import find_roles
-from shipcosim.report.run.track import ship_size
+from shipcosim.report.run.vessels import find_vessels, pose_of
 from shipcosim.report.theme import palette
 from shipcosim.scenario import Verdict
 
@@ -26,34 +25,18 @@ def run_track(table: Dataset, verdicts: Sequence[Verdict], name: str) -> str | N
     name : str
         What is drawn.
     """
-    roles = find_roles(table.data_vars)
-    pose = [
-        signal
-        for signal in (roles.signal(roles.ship, axis) for axis in ("x", "y", "psi"))
-        if signal
-    ]
-    if len(pose) < 3 or not np.isfinite(table[pose[0]].values + table[pose[1]].values).any():
+    vessel = next(iter(find_vessels(table)), None)
+    if vessel is None:
+        return None
+    north, east, heading = pose_of(table, vessel.pose)
+    if not np.isfinite(north + east).any():
         return None
     paths = []
-    wanted = [
-        signal
-        for signal in (roles.signal(roles.reference, axis) for axis in ("x_d", "y_d"))
-        if signal
-    ]
-    if len(wanted) == 2:
-        east = table[wanted[1]].values
-        north = table[wanted[0]].values
-        paths.append(Path("reference", north, east, colour=palette.REFERENCE, style="--"))
-    psi = np.degrees(table[pose[2]].values)
-    paths.append(
-        Path(
-            f"{roles.ship or 'ship'}, start dashed, end filled",
-            table[pose[0]].values,
-            table[pose[1]].values,
-            psi,
-        )
-    )
-    return track_svg(paths, name, ship_size(table, roles), _circles(verdicts, pose[:2]))
+    if reference := vessel.aims.get("reference"):
+        x, y = pose_of(table, reference[:2])
+        paths.append(Path("reference", x, y, colour=palette.REFERENCE, style="--"))
+    paths.append(Path(f"{vessel.name}, start dashed, end filled", north, east, heading))
+    return track_svg(paths, name, vessel.size, _circles(verdicts, list(vessel.pose[:2])))
 
 
 def _circles(verdicts: Sequence[Verdict], position: list[str]) -> list[Circle]:

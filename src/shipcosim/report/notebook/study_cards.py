@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 from shipcosim.capability import Capability
-from shipcosim.cosim.compare import OURS, Comparison
+from shipcosim.cosim.compare import OURS, Comparison, Difference
 from shipcosim.diagnose.calibration_pipeline import CalibratedShip
 from shipcosim.diagnose.replays import LogReplay
 from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
 from shipcosim.diagnose.validation.tracks import errors_of
 from shipcosim.report.calibration import words as calibration
 from shipcosim.report.capability.page import page_of as capability_page
-from shipcosim.report.diagnosis.by_log import error_table
 from shipcosim.report.diagnosis.track_figures import error_rows
 from shipcosim.report.notebook.card import Card
 from shipcosim.report.replay.page import replay_outcome
@@ -25,20 +25,8 @@ MOST_ROWS = 12
 def comparison_card(found: Comparison, name: str) -> Card:
     """Which engines ran, and the signals that differ most."""
     others = [engine for engine in found.seconds if engine != OURS]
-    head = ("signal", "unit", "range", *others, "half the step")
-    rows = tuple(
-        (
-            one.name,
-            one.unit,
-            f"{one.range:.4g}",
-            *(
-                f"{one.engines[engine].largest:.1e}" if engine in one.engines else "–"
-                for engine in others
-            ),
-            f"{one.step.largest:.1e}" if one.step else "not tried",
-        )
-        for one in found.signals[:MOST_ROWS]
-    )
+    table = comparison_table(found)
+    rows = table.rows[:MOST_ROWS]
     said = tuple(f"{engine}: {why}" for engine, why in found.left_out.items())
     said += tuple(
         f"{engine}: {remark}" for engine, remarks in found.remarks.items() for remark in remarks
@@ -50,11 +38,36 @@ def comparison_card(found: Comparison, name: str) -> Card:
         blocks=(
             Block(
                 f"Largest differences, {len(rows)} of {len(found.signals)} signals",
-                Table(rows, head),
+                Table(rows, table.head),
             ),
             Block("Remarks", lines=said),
         ),
     )
+
+
+def comparison_table(found: Comparison) -> Table:
+    """A row a signal: where engines differ most, which of them agree, and by how much each differs from ours."""
+    others = [engine for engine in found.seconds if engine != OURS]
+    rows = []
+    for signal in found.signals:
+        absent = Difference(math.nan, math.nan, math.nan)
+        differences = [signal.engines.get(engine, absent) for engine in others]
+        cells = [signal.name, signal.unit, "", ""]
+        if differences:
+            worst = max(
+                differences, key=lambda d: math.inf if math.isnan(d.relative) else d.relative
+            )
+            cells[2] = f"{worst.relative:.1e}"
+            cells[3] = f"{worst.time:.6g}" if worst.largest else ""
+        groups = " | ".join(" = ".join(group) for group in signal.agreeing)
+        cells.append("all" if len(signal.agreeing) == 1 else groups)
+        cells += [f"{difference.largest:.1e}" for difference in differences]
+        step = signal.step
+        cells += [f"{step.largest:.1e}", f"{step.relative:.1e}"] if step else ["not tried", ""]
+        rows.append((*cells, f"{signal.range:.4g}"))
+    # What decides stands first: columns that do not fit on a terminal are left out at the end.
+    head = ("signal", "unit", "of range", "at t [s]", "agree", *others)
+    return Table(rows, (*head, "half the step", "of range", "range"))
 
 
 def _agreement(found: Comparison, others: list[str]) -> Outcome:
@@ -96,17 +109,11 @@ def replay_card(found: LogReplay, name: str, draw: Callable[[], str]) -> Card:
 
 def calibration_card(found: CalibratedShip) -> Card:
     """Numbers that moved most, and the errors that remain."""
-    moved = tuple(calibration.moved_rows(found)[:MOST_ROWS])
     return Card(
         title=f"Calibration of {found.reference.system}",
         facts=(Fact("Logs", ", ".join(log.name for log in found.logs)),),
         outcome=calibration.outcome(found),
-        blocks=(
-            Block("Why", lines=found.refusals),
-            Block("Moved most", Table(moved, ("", "before", "calibrated", "by tolerances"))),
-            Block("Errors by log", error_table(calibration.errors_by_log(found), "calibrated")),
-            Block("Remarks", lines=found.remarks),
-        ),
+        blocks=calibration.blocks(found),
     )
 
 
@@ -128,11 +135,7 @@ def sea_trials_card(found: SeaTrialStudy, name: str) -> Card:
     """Sets of causes, and how they predict the side that was not fitted."""
     return Card(
         title=f"Sea trials of {name}",
-        facts=(Fact("Trials", f"{len(found.trials)}"),),
+        facts=(Fact("Trials", sea_trials.trials(found)),),
         outcome=sea_trials.outcome(found),
-        blocks=(
-            Block("Causes", sea_trials.sets_table(found)),
-            Block("Judged on the other side", sea_trials.held_out_table(found)),
-            Block("What to do next", lines=tuple(sea_trials.next_steps(found))),
-        ),
+        blocks=sea_trials.blocks(found),
     )

@@ -9,6 +9,7 @@ from xarray import Dataset
 
 from shipcosim.angles import wrap_series
 from shipcosim.scenario import Expectation, Verdict
+from shipcosim.scenario.judge import rows_of
 
 
 @dataclass(frozen=True)
@@ -27,13 +28,6 @@ class Band:
     lower: list[float]
     upper: list[float]
     passed: bool
-
-
-def window(time: NDArray, expect: Expectation) -> NDArray:
-    """Rows in the window of an expectation, (m,)."""
-    # Times are rounded in files: a row at the edge of the window belongs to it.
-    start, end = expect.during or (-np.inf, np.inf)
-    return np.flatnonzero((time >= start - 1e-6) & (time <= end + 1e-6))
 
 
 def bands_of(
@@ -59,7 +53,7 @@ def bands_of(
     found = []
     for verdict in verdicts:
         # An expectation whose window has no row is not drawn.
-        rows = window(shown["time"].values, verdict.expect)
+        rows = rows_of(shown, verdict.expect)
         if signal in verdict.expect.signal and len(rows):
             # Of the table only what the band is made of: cutting all of its signals takes long.
             targets = [one for one in verdict.expect.near or () if isinstance(one, str)]
@@ -74,7 +68,7 @@ def distance_bands(
     """Bands of the expectations that several signals together stay near a point."""
     found = []
     for verdict in verdicts:
-        time = shown["time"].values[window(shown["time"].values, verdict.expect)]
+        time = shown["time"].values[rows_of(shown, verdict.expect)]
         # One limit on the distance from the point, from zero up to the radius.
         if verdict.expect.signal == signals and verdict.expect.near is not None and len(time):
             limit = np.full(len(time), verdict.expect.within)

@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 from xarray import Dataset
 
 from shipcosim.angles import wrap_series
-from shipcosim.errors import Problem, ShipcosimError, shortened
+from shipcosim.errors import Problem, ShipcosimError, error_at, shortened
 from shipcosim.report.run.derived import ERRORS, FROM_REFERENCE
 from shipcosim.report.run.details import Detail, parsed
 from shipcosim.report.run.moments import Moment
 from shipcosim.report.run.page import RunPage, drawn_data, drawn_rows, links, shown_table
 from shipcosim.report.run.panels import Panel, Section, constants_as_words, make_sections
+from shipcosim.report.run.roles import Roles
 from shipcosim.report.run.scene import make_run
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.numbers import plain
@@ -59,6 +60,8 @@ class Pair:
         As they were given. [SI]
     shown : (Dataset, Dataset)
         In the units of the page, on common times; no number where a run has none.
+    roles : Roles
+        Of the first.
     shift : float
         Added to the times of the second. [s]
     """
@@ -66,6 +69,7 @@ class Pair:
     names: tuple[str, str]
     tables: tuple[Dataset, Dataset]
     shown: tuple[Dataset, Dataset]
+    roles: Roles
     shift: float
 
 
@@ -111,20 +115,13 @@ def lay_over(tables: tuple[Dataset, Dataset], names: tuple[str, str]) -> Pair:
     ShipcosimError
         If a run has no rows, or the two have no signal in common.
     """
-    # Collect what makes a comparison impossible before raising.
     empty = [name for name, table in zip(names, tables, strict=True) if not table.sizes["time"]]
-    problems = [Problem(name, "The run has no rows.", "Give one that has.") for name in empty]
-    if not problems and not set(tables[0].data_vars) & set(tables[1].data_vars):
-        found = "The two have no signal in common."
-        problems = [
-            Problem(
-                " and ".join(names),
-                found,
-                "Give two runs of one system, or of systems that are alike.",
-            )
-        ]
-    if problems:
-        raise ShipcosimError(problems)
+    if empty:
+        remedy = "Give one that has."
+        raise ShipcosimError([Problem(name, "The run has no rows.", remedy) for name in empty])
+    if not set(tables[0].data_vars) & set(tables[1].data_vars):
+        remedy = "Give two runs of one system, or of systems that are alike."
+        raise error_at(" and ".join(names), "The two have no signal in common.", remedy)
     # Where the runs have no time in common, move the second to the start of the first.
     times = [np.asarray(table["time"].values, float) for table in tables]
     apart = times[1][0] > times[0][-1] or times[1][-1] < times[0][0]
@@ -132,9 +129,11 @@ def lay_over(tables: tuple[Dataset, Dataset], names: tuple[str, str]) -> Pair:
     # All times of both runs; rounding makes equal times equal.
     common = np.union1d(np.round(times[0], 9), np.round(times[1] + shift, 9))
     # Both in the units of the first, interpolated to the common times.
-    first, second = (shown_table(table, ())[1] for table in tables)
+    roles, first = shown_table(tables[0], ())
+    second = shown_table(tables[1], ())[1]
     second = second.assign_coords(time=second["time"].values + shift)
-    return Pair(names, tables, (_on(first, common), _on(_like(second, first), common)), shift)
+    shown = (_on(first, common), _on(_like(second, first), common))
+    return Pair(names, tables, shown, roles, shift)
 
 
 def differences(pair: Pair) -> list[Difference]:
@@ -165,20 +164,15 @@ def differences(pair: Pair) -> list[Difference]:
         # Largest difference, and the range of the signal that scales it.
         size = np.abs(gap[both])
         most = int(np.argmax(size))
+        largest = float(size[most])
         # A constant signal has no range: use its size, else the difference.
-        span = (
-            max(float(np.ptp(v[both])) for v in (a, b))
-            or float(np.max(np.abs(a[both])))
-            or float(size[most])
-        )
+        span = max(float(np.ptp(v[both])) for v in (a, b))
+        span = span or float(np.max(np.abs(a[both]))) or largest
         # Smaller differences are rounding.
-        if size[most] > SAME * max(span, np.finfo(float).tiny):
+        if largest > SAME * max(span, np.finfo(float).tiny):
             rms = float(np.sqrt(np.mean(size**2)))
-            found.append(
-                Difference(
-                    name, unit, rms, float(size[most]), float(time[both][most]), float(rms / span)
-                )
-            )
+            when = float(time[both][most])
+            found.append(Difference(name, unit, rms, largest, when, rms / span))
     return sorted(found, key=lambda one: -one.share)
 
 
@@ -192,11 +186,8 @@ def _on(shown: Dataset, time: NDArray) -> Dataset:
     found = {}
     for name, v in shown.data_vars.items():
         values = v.values.astype(float)
-        read = (
-            values[rows]
-            if v.attrs.get("logical") or len(own) == 1
-            else np.interp(time, own, values)
-        )
+        steps = v.attrs.get("logical") or len(own) == 1
+        read = values[rows] if steps else np.interp(time, own, values)
         found[name] = ("time", np.where(inside, read, np.nan), v.attrs)
     return xr.Dataset(found, {"time": time})
 
@@ -232,10 +223,11 @@ def _page(pair: Pair, found: Sequence[Difference]) -> RunPage:
     ]
     sections = constants_as_words(_sections(pair), merged)
     choice = [str(name) for name in merged.data_vars]
-    facts = tuple(
-        Fact(name, f"{parsed(table.attrs.get('scenario', '')) or 'run'}, {_span(table)}")
-        for name, table in zip(pair.names, pair.tables, strict=True)
-    )
+    facts = []
+    for name, table in zip(pair.names, pair.tables, strict=True):
+        start, end = table["time"].values[[0, -1]]
+        scenario = parsed(table.attrs.get("scenario", "")) or "run"
+        facts.append(Fact(name, f"{scenario}, {start:g} to {end:g} s"))
     # Where the two differ most by what people compare runs by.
     moments = tuple(
         Moment(d.time, f"{d.signal}: {plain(d.largest)} {d.unit} at {d.time:g} s")
@@ -246,7 +238,7 @@ def _page(pair: Pair, found: Sequence[Difference]) -> RunPage:
         data["opens_at"] = moments[0].time
     return RunPage(
         title=f"{pair.names[0]} and {pair.names[1]}",
-        facts=facts,
+        facts=tuple(facts),
         outcome=_outcome(pair, found),
         links=links(runs, sections),
         data=data,
@@ -277,12 +269,10 @@ def _merged(pair: Pair) -> Dataset:
 
 def _sections(pair: Pair) -> tuple[Section, ...]:
     """Panels of the first run, with both runs in each."""
-    roles = shown_table(pair.tables[0], ())[0]
     made = []
-    for section in make_sections(pair.shown[0], roles, ()):
-        panels = tuple(
-            doubled for panel in section.panels if (doubled := _doubled(panel, pair)) is not None
-        )
+    for section in make_sections(pair.shown[0], pair.roles, ()):
+        doubled = [_doubled(panel, pair) for panel in section.panels]
+        panels = tuple(panel for panel in doubled if panel is not None)
         if panels:
             made.append(replace(section, panels=panels))
     return tuple(made)
@@ -296,25 +286,17 @@ def _doubled(panel: Panel, pair: Pair) -> Panel | None:
     if not own:
         return None
     # One curve each: the colour tells the runs apart.
-    if len(own) == 1:
-        pairs = zip(pair.names, COLOURS, strict=True)
-        both = [
-            replace(own[0], signal=f"{n}: {own[0].signal}", label=n, colour=c, dash="solid")
-            for n, c in pairs
-        ]
-    else:
-        # Several curves keep their colours; the line style tells the runs apart.
-        both = [
-            replace(line, signal=f"{name}: {line.signal}", label=f"{line.label}, {name}", dash=dash)
-            for line in own
-            for name, dash in zip(pair.names, ("solid", "dot"), strict=True)
-        ]
+    both = []
+    for line in own:
+        for name, colour, dash in zip(pair.names, COLOURS, ("solid", "dot"), strict=True):
+            signal = f"{name}: {line.signal}"
+            if len(own) == 1:
+                look = {"label": name, "colour": colour, "dash": "solid"}
+            else:
+                # Several curves keep their colours; the line style tells the runs apart.
+                look = {"label": f"{line.label}, {name}", "dash": dash}
+            both.append(replace(line, signal=signal, **look))
     return replace(panel, lines=tuple(both), bands=())
-
-
-def _span(table: Dataset) -> str:
-    time = table["time"].values
-    return f"{time[0]:g} to {time[-1]:g} s"
 
 
 def _outcome(pair: Pair, found: Sequence[Difference]) -> Outcome:
@@ -322,25 +304,21 @@ def _outcome(pair: Pair, found: Sequence[Difference]) -> Outcome:
     common = sum(1 for name in pair.shown[0].data_vars if name in pair.shown[1])
     if not found:
         return Outcome("passed", "SAME", f"All {common} signals that both have are the same.")
+    differ = f"{len(found)} of {common} signals differ"
     # Distance between the ships at each common time.
-    roles = shown_table(pair.tables[0], ())[0]
-    position = [roles.signal(roles.ship, axis) for axis in "xy"]
-    if all(name in pair.shown[1] and name in pair.shown[0] for name in position):
-        gap = np.hypot(
-            *(pair.shown[1][name].values - pair.shown[0][name].values for name in position)
-        )
+    first, second = pair.shown
+    position = [pair.roles.signal(pair.roles.ship, axis) for axis in "xy"]
+    if all(name in first and name in second for name in position):
+        gap = np.hypot(*(second[name].values - first[name].values for name in position))
         if np.isfinite(gap).any() and np.nanmax(gap) > 0.0:
-            when = pair.shown[0]["time"].values[int(np.nanargmax(gap))]
-            rms = np.sqrt(np.nanmean(gap**2))
+            when = first["time"].values[int(np.nanargmax(gap))]
             most = plain(float(np.nanmax(gap)))
-            usual = plain(float(rms))
-            text = f"The ships lie up to {most} m apart, at {when:g} s; {usual} m rms."
-            return Outcome("plain", "DIFFER", f"{text} {len(found)} of {common} signals differ.")
+            rms = plain(float(np.sqrt(np.nanmean(gap**2))))
+            text = f"The ships lie up to {most} m apart, at {when:g} s; {rms} m rms."
+            return Outcome("plain", "DIFFER", f"{text} {differ}.")
     # Without positions: the signal with the largest difference over its range.
     worst = max(found, key=lambda one: one.share)
-    return Outcome(
-        "plain", "DIFFER", f"{len(found)} of {common} signals differ, most of all {worst.signal}."
-    )
+    return Outcome("plain", "DIFFER", f"{differ}, most of all {worst.signal}.")
 
 
 def _remarks(pair: Pair) -> list[str]:
@@ -353,10 +331,10 @@ def _remarks(pair: Pair) -> list[str]:
         )
     # Differences cover only the time that both runs have.
     ends = [table["time"].values[[0, -1]] for table in pair.tables]
-    spans = [ends[0], ends[1] + pair.shift]
-    if not np.allclose(*spans):
-        start = max(span[0] for span in spans)
-        end = min(span[1] for span in spans)
+    ends[1] = ends[1] + pair.shift
+    if not np.allclose(ends[0], ends[1]):
+        start = max(ends[0][0], ends[1][0])
+        end = min(ends[0][1], ends[1][1])
         said.append(f"Differences are those between {start:g} and {end:g} s, where both runs are.")
     # Signals that only one run has: name the first five.
     for name, own, other in ((first, *pair.shown), (second, *pair.shown[::-1])):
@@ -367,14 +345,10 @@ def _remarks(pair: Pair) -> list[str]:
 
 def _ordered(pair: Pair, found: Sequence[Difference]) -> list[Difference]:
     """Differences of what people compare runs by, then the others as they come."""
-    roles = shown_table(pair.tables[0], ())[0]
-    pose = [roles.signal(roles.ship, axis) for axis in ("x", "y", "psi")]
-    wanted = [
-        *pose,
-        FROM_REFERENCE,
-        ERRORS["psi"],
-        *(roles.signal(unit, "thrust") for unit in roles.thrusters),
-    ]
+    roles = pair.roles
+    wanted = [roles.signal(roles.ship, axis) for axis in ("x", "y", "psi")]
+    wanted += [FROM_REFERENCE, ERRORS["psi"]]
+    wanted += [roles.signal(unit, "thrust") for unit in roles.thrusters]
     by_name = {one.signal: one for one in found}
     first = [by_name[name] for name in dict.fromkeys(wanted) if name in by_name]
     return [*first, *(one for one in found if one not in first)]
@@ -419,17 +393,13 @@ def _changed(pair: Pair) -> tuple[str, ...]:
 
 def _details(pair: Pair) -> tuple[Detail, ...]:
     """Entries that differ between the attributes of the runs: start values, events, versions."""
-    # Start values have a table of their own.
-    attributes = [
-        {str(key): parsed(value) for key, value in table.attrs.items()} for table in pair.tables
-    ]
-    found = [_start_values(pair)]
-    # Everything else that the tables say of their runs, without long lists.
+    # Start values have a table of their own; long lists are left out.
+    left_out = ("start_values", "remarks", "fmus")
     rest = [
-        {k: v for k, v in a.items() if k not in ("start_values", "remarks", "fmus")}
-        for a in attributes
+        {str(key): parsed(value) for key, value in table.attrs.items() if key not in left_out}
+        for table in pair.tables
     ]
-    found.append(_unlike("Runs that differ", pair, rest))
+    found = (_start_values(pair), _unlike("Runs that differ", pair, rest))
     return tuple(detail for detail in found if detail is not None)
 
 

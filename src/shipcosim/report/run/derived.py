@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 from xarray import Dataset, Variable
 
 from shipcosim.angles import wrap_series
-from shipcosim.report.run.bands import window
 from shipcosim.report.run.roles import Roles
 from shipcosim.report.theme.display import as_variable, unturned
 from shipcosim.scenario import Verdict
+from shipcosim.scenario.judge import rows_of
 
 ERRORS = {"x": "north error", "y": "east error", "psi": "heading error"}
 FROM_REFERENCE = "distance from reference"
@@ -82,15 +82,16 @@ def judged_distance(
     table: Dataset, signals: list[str | None], verdicts: Sequence[Verdict]
 ) -> NDArray:
     """Distance from the expected point within windows of expectations, NaN elsewhere, (n,)."""
-    time = table["time"].values
     distance = np.full(table.sizes["time"], np.nan)
-    for expect in (
-        v.expect for v in verdicts if v.expect.signal == signals and v.expect.near is not None
-    ):
+    for expect in (verdict.expect for verdict in verdicts):
+        if expect.signal != signals or expect.near is None:
+            continue
         # The target is a point, or signals that move.
-        rows = window(time, expect)
-        targets = [table[n].values[rows] if isinstance(n, str) else n for n in expect.near or ()]
-        gaps = [table[s].values[rows] - target for s, target in zip(signals, targets, strict=True)]
+        rows = rows_of(table, expect)
+        gaps = []
+        for signal, target in zip(expect.signal, expect.near, strict=True):
+            middle = table[target].values[rows] if isinstance(target, str) else target
+            gaps.append(table[signal].values[rows] - middle)
         distance[rows] = np.linalg.norm(gaps, axis=0)
     return distance
 

@@ -8,7 +8,7 @@ from typing import Any
 from xarray import Dataset
 
 from shipcosim.report.theme.views import Table
-from shipcosim.scenario import Event, Scenario
+from shipcosim.scenario import Scenario
 from shipcosim.ssp import System
 
 SHOWN_ELSEWHERE = ("events", "remarks", "changed", "not_reached", "judged_on")
@@ -42,11 +42,13 @@ def details(
     """
     found = []
     if scenario is not None and scenario.events:
-        found.append(
-            _detail(
-                "events", [(f"{event.time:g} s", _happening(event)) for event in scenario.events]
-            )
-        )
+        rows = []
+        for event in scenario.events:
+            changes = [f"{name} = {value}" for name, value in event.override.items()]
+            changes += [f"{name} + {value}" for name, value in event.bias.items()]
+            changes += [f"{name} released" for name in event.reset]
+            rows.append((f"{event.time:g} s", ", ".join(changes)))
+        found.append(_detail("events", rows))
     if scenario is not None and scenario.set:
         found.append(_detail("start values of the scenario", scenario.set.items()))
     return (
@@ -105,12 +107,6 @@ def _unit(system: System | None, component: str, name: str) -> str | None:
         system.components[component].variables if component in system.components else system.inputs
     )
     return variables[name].unit if name in variables else None
-
-
-def _happening(event: Event) -> str:
-    changes = [f"{name} = {value}" for name, value in event.override.items()]
-    changes += [f"{name} + {value}" for name, value in event.bias.items()]
-    return ", ".join(changes + [f"{name} released" for name in event.reset])
 
 
 def _detail(title: str, rows: Iterable[tuple[Any, Any]]) -> Detail:

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from shipcosim.report.run.expectations import Judged
 from shipcosim.report.run.page import Digest
 from shipcosim.report.theme.pages import render
 from shipcosim.report.theme.views import Fact, Outcome, Page
@@ -19,21 +18,6 @@ class ScenarioRow(NamedTuple):
     description: str
     page: str
     digest: Digest
-
-    @property
-    def outcome(self) -> Outcome:
-        """Verdict of the run."""
-        return self.digest.outcome
-
-    @property
-    def expectations(self) -> tuple[Judged, ...]:
-        """What must hold, with the worst value of each."""
-        return self.digest.expectations
-
-    @property
-    def remarks(self) -> list[str]:
-        """Remarks that must not be overlooked: failures, alarms and their times."""
-        return self.digest.remarks
 
 
 @dataclass(frozen=True)
@@ -50,7 +34,7 @@ class OverviewPage(Page):
 
 def overview_outcome(rows: Sequence[ScenarioRow]) -> Outcome:
     """Verdict of all scenarios together."""
-    missed = [row.name for row in rows if row.outcome.kind not in ("passed", "plain")]
+    missed = [row.name for row in rows if row.digest.outcome.kind not in ("passed", "plain")]
     if missed:
         return Outcome(
             "failed",

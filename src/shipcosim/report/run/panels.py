@@ -73,14 +73,11 @@ def make_sections(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> 
     motion = _motion(shown, roles, verdicts)
     # A panel for every signal with an expectation that no other panel shows with its limits.
     drawn = {line.signal for panel in motion for line in panel.lines}
-    signals = dict.fromkeys(
-        s for v in verdicts for s in v.expect.signal if s in shown and s not in drawn
-    )
-    expected = [
-        p
-        for s in signals
-        for p in _panel(shown, s, [Line(s, s, palette.SHIP)], bands_of(shown, s, verdicts))
-    ]
+    expected = []
+    for signal in dict.fromkeys(name for one in verdicts for name in one.expect.signal):
+        if signal in shown and signal not in drawn:
+            line = Line(signal, signal, palette.SHIP)
+            expected += _panel(shown, signal, [line], bands_of(shown, signal, verdicts))
     made = {
         "Reference and error": motion,
         "Other expectations": expected,
@@ -166,20 +163,12 @@ def _motion(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> list[P
     for axis, title in AXES.items():
         if ship := roles.signal(roles.ship, axis):
             # Measured value, set point, reference and ship; the ship on top.
+            measured = _first(roles.anywhere(f"{axis}_meas", f"{axis}_1_meas"))
+            reference = roles.signal(roles.reference, f"{axis}_d")
             lines = [
-                Line(
-                    _first(roles.anywhere(f"{axis}_meas", f"{axis}_1_meas")),
-                    "measured",
-                    palette.MEASURED,
-                    width=1.0,
-                ),
+                Line(measured, "measured", palette.MEASURED, width=1.0),
                 Line(_first(roles.anywhere(f"{axis}_set")), "set point", palette.SET_POINT, "dot"),
-                Line(
-                    roles.signal(roles.reference, f"{axis}_d"),
-                    "reference",
-                    palette.REFERENCE,
-                    "dash",
-                ),
+                Line(reference, "reference", palette.REFERENCE, "dash"),
                 Line(ship, "ship", palette.SHIP, width=2.0),
             ]
             panels += _panel(shown, title, lines, bands_of(shown, ship, verdicts))
@@ -191,40 +180,29 @@ def _motion(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> list[P
                 else ()
             )
             panels += _panel(shown, f"{title} error", error, limits)
-    return panels + _distance(shown, roles, verdicts) + _speeds(shown, roles)
-
-
-def _distance(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> list[Panel]:
     lines = [
         Line(FROM_REFERENCE, "from the reference", palette.SHIP),
         Line(FROM_EXPECTED, "from the expected point", palette.EXPECTED, width=2.0),
     ]
     position = [roles.signal(roles.ship, axis) for axis in "xy"]
-    return _panel(shown, "Position error", lines, distance_bands(shown, position, verdicts))
-
-
-def _speeds(shown: Dataset, roles: Roles) -> list[Panel]:
+    panels += _panel(shown, "Position error", lines, distance_bands(shown, position, verdicts))
     ahead, sideways, turn = (roles.signal(roles.ship, connector) for connector in "uvr")
-    speeds = _panel(
-        shown, "Speed over ground", _coloured({ahead: "ahead", sideways: "to starboard"})
-    )
-    return speeds + _panel(shown, "Rate of turn", _coloured({turn: "to starboard"}))
+    speeds = _coloured({ahead: "ahead", sideways: "to starboard"})
+    panels += _panel(shown, "Speed over ground", speeds)
+    return panels + _panel(shown, "Rate of turn", _coloured({turn: "to starboard"}))
 
 
 def _loads(shown: Dataset, roles: Roles) -> list[Panel]:
     """Forces and moment by source, and the command of the controller."""
     panels = []
     for axis, title in LOADS.items():
-        lines = [
-            Line(
-                roles.signal(roles.ship, f"tau_{source}_{axis}"), source, palette.source(source, k)
-            )
-            for k, source in enumerate(roles.sources())
-        ]
-        asked = Line(
-            _first(roles.anywhere(f"tau_{axis}_cmd")), "commanded", palette.COMMAND, "dot", 1.0
-        )
-        panels += _panel(shown, title, [*lines, asked])
+        lines = []
+        for k, source in enumerate(roles.sources()):
+            signal = roles.signal(roles.ship, f"tau_{source}_{axis}")
+            lines.append(Line(signal, source, palette.source(source, k)))
+        asked = _first(roles.anywhere(f"tau_{axis}_cmd"))
+        lines.append(Line(asked, "commanded", palette.COMMAND, "dot", 1.0))
+        panels += _panel(shown, title, lines)
     return panels
 
 
@@ -316,25 +294,15 @@ def _angles(units: Sequence[DrawnThruster]) -> list[Line]:
 
 def _environment(shown: Dataset, roles: Roles) -> list[Panel]:
     """Wind, current and waves as speed and direction."""
-    at = lambda connector: roles.signal(roles.environment, connector)  # noqa: E731
-    # Wind and current at the ship, with the mean at sea for comparison.
-    flow = {
-        "Wind speed": ["wind speed", at("wind_speed_mean")],
-        "Wind from": ["wind from", at("wind_from_mean")],
-        "Current speed": ["current speed"],
-        "Current to": ["current to"],
-    }
     panels = []
-    for title, signals in flow.items():
-        looks = [
-            ("with gusts", palette.SKY, "solid"),
-            ("mean at sea" if roles.harbour else "mean", palette.INK, "dash"),
-        ]
-        lines = [Line(s, *look) for s, look in zip(signals, looks, strict=False)]
-        panels += _panel(
-            shown,
-            title,
-            [Line(lines[0].signal, "current", palette.BLUE)] if len(lines) == 1 else lines,
-        )
-    waves = {at("elevation"): "surface"}
+    # Wind at the ship, with the mean at sea for comparison.
+    label = "mean at sea" if roles.harbour else "mean"
+    for part in ("speed", "from"):
+        mean = roles.signal(roles.environment, f"wind_{part}_mean")
+        gusts = Line(f"wind {part}", "with gusts", palette.SKY)
+        panels += _panel(shown, f"Wind {part}", [gusts, Line(mean, label, palette.INK, "dash")])
+    for part in ("speed", "to"):
+        line = Line(f"current {part}", "current", palette.BLUE)
+        panels += _panel(shown, f"Current {part}", [line])
+    waves = {roles.signal(roles.environment, "elevation"): "surface"}
     return panels + _panel(shown, "Waves", _coloured(waves))

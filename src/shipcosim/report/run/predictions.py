@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -208,9 +208,8 @@ def predicted_tracks(table: Dataset, shift: float = 0.0) -> list[dict[str, Any]]
     for component, horizons in find_predictors(find_roles(table.data_vars)).items():
         # Evenly fewer predictions where there are more than the scene can draw.
         rows = first_rows(table, component)
-        rows = rows[
-            np.unique(np.linspace(0, len(rows) - 1, min(len(rows), MOST_DRAWN)).round().astype(int))
-        ]
+        drawn = np.linspace(0, len(rows) - 1, min(len(rows), MOST_DRAWN)).round().astype(int)
+        rows = rows[np.unique(drawn)]
 
         def packed(connector, resolution, rows=rows, component=component):
             values = _values_at(table, rows, join(component, connector))
@@ -278,22 +277,19 @@ def summarise(predictions: pandas.DataFrame) -> list[PredictionSummary]:
 
 def texts(summaries: Iterable[PredictionSummary]) -> list[tuple[str, str, str, str]]:
     """Summaries in words: predictor and horizon, errors, share within the regions."""
-    return [
-        (
-            f"{one.component}, {one.horizon:g} s ahead",
-            f"{one.position:.2f} m rms",
-            f"{np.degrees(one.heading):.1f} deg rms",
-            _shares({"places": one.in_position_region, "headings": one.in_heading_region}),
+    rows = []
+    for one in summaries:
+        shares = {"places": one.in_position_region, "headings": one.in_heading_region}
+        within = [f"{100.0 * x:.0f} % of {what}" for what, x in shares.items() if np.isfinite(x)]
+        rows.append(
+            (
+                f"{one.component}, {one.horizon:g} s ahead",
+                f"{one.position:.2f} m rms",
+                f"{np.degrees(one.heading):.1f} deg rms",
+                f"{' and '.join(within)} within the regions" if within else "no regions",
+            )
         )
-        for one in summaries
-    ]
-
-
-def _shares(shares: Mapping[str, float]) -> str:
-    said = [
-        f"{100.0 * share:.0f} % of {what}" for what, share in shares.items() if np.isfinite(share)
-    ]
-    return f"{' and '.join(said)} within the regions" if said else "no regions"
+    return rows
 
 
 def write_predictions(predictions: pandas.DataFrame, path: AnyPath) -> None:

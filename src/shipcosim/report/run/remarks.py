@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 from xarray import Dataset
 
 from shipcosim.errors import shortened
@@ -40,7 +39,10 @@ def remarks(table: Dataset, shown: Dataset, roles: Roles) -> list[str]:
     not_reached = [f"Not reached: {claim}. {went}" for claim in missed]
     # FMU warnings and unreached expectations first, then what the signals show.
     said = [*parsed(table.attrs.get("remarks", "[]")), *not_reached, *_not_finite(shown)]
-    said += _failures(shown, roles) + _alarms(shown, roles)
+    # Components that fail at the same time share a sentence.
+    failed = _first_times(shown, roles.flagged("failed"))
+    said += [f"Failed from {time:g} s on: {', '.join(names)}." for time, names in failed.items()]
+    said += _alarms(shown, roles)
     return said + _rejected(shown, roles) + _reckoned(shown, roles) + _lost_hold(shown, roles)
 
 
@@ -60,15 +62,6 @@ def _not_finite(shown: Dataset) -> list[str]:
     if not names:
         return []
     return [f"Not finite from {begin[names[0]]:g} s on: {shortened(names, 3)}."]
-
-
-def _failures(shown: Dataset, roles: Roles) -> list[str]:
-    """Failures during the run, with their times."""
-    # Components that fail at the same time share a sentence.
-    begin = _first_times(shown, roles.flagged("failed"))
-    return [
-        f"Failed from {time:g} s on: {', '.join(components)}." for time, components in begin.items()
-    ]
 
 
 def _first_times(shown: Dataset, flags: Mapping[str, str]) -> dict[float, list[str]]:
@@ -138,7 +131,11 @@ def _lost_hold(shown: Dataset, roles: Roles) -> list[str]:
     ends = np.searchsorted(time, time[starts] + STRETCH, side="right") - 1
     error = shown[FROM_REFERENCE].values
     # The ship loses her position if the error grows while a component is at its limit.
-    shares = {c: _share(flags, starts, ends) for c, flags in limits.items()}
+    shares = {}
+    for component, flags in limits.items():
+        # Cumulative count: the share of any stretch is then one difference.
+        count = np.concatenate([[0.0], np.cumsum(flags)])
+        shares[component] = (count[ends + 1] - count[starts]) / (ends + 1 - starts)
     lost = (error[ends] - error[starts] > GROWTH) & (
         np.max(list(shares.values()), axis=0) > AT_LIMIT
     )
@@ -153,10 +150,3 @@ def _lost_hold(shown: Dataset, roles: Roles) -> list[str]:
         f"{drift}: from {time[begin]:g} s on the thrust is at its limit ({', '.join(limited)}) while the "
         f"position error grows to {error[ends[k]]:.1f} m within a minute, and to {np.nanmax(error):.1f} m at most."
     ]
-
-
-def _share(flags: NDArray, starts: NDArray, ends: NDArray) -> NDArray:
-    """Share of set flags between each start and end."""
-    # Cumulative count: the share of any stretch is then one difference.
-    count = np.concatenate([[0.0], np.cumsum(flags)])
-    return (count[ends + 1] - count[starts]) / (ends + 1 - starts)

@@ -1,7 +1,7 @@
 """Roles of signals, found by their names alone, so that any system's table makes a page."""
 
 import re
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Hashable, Iterable
 from dataclasses import dataclass, field
 
 LOAD = re.compile(r"tau_([A-Za-z]\w*)_([XYN])")
@@ -113,8 +113,12 @@ def find_roles(names: Iterable[Hashable]) -> Roles:
     def having(*wanted: str) -> list[str]:
         return [c for c, has in connectors.items() if set(wanted) <= set(has)]
 
-    # Sensors and predictors also have x, y and psi: the component most like a ship comes first.
-    ships = sorted(having("x", "y", "psi"), key=lambda c: _likeness(c, connectors[c]), reverse=True)
+    def likeness(component: str) -> tuple[bool, int]:
+        loads = sum(LOAD.fullmatch(connector) is not None for connector in connectors[component])
+        return component.endswith(("vessel", "ship", "hull")), loads
+
+    # Sensors and predictors also have x, y and psi: what is called a ship comes first, then by number of loads.
+    ships = sorted(having("x", "y", "psi"), key=likeness, reverse=True)
     # Wind at sea; a ship may repeat it as its input, so others come first.
     winds = having("wind_speed_mean") or having("wind_north", "wind_east")
     environment = next(iter([c for c in winds if c not in ships] or winds), None)
@@ -135,11 +139,4 @@ def find_roles(names: Iterable[Hashable]) -> Roles:
         environment=environment,
         harbour=next((c for c in local if c not in ships), None),
         connectors=connectors,
-    )
-
-
-def _likeness(component: str, connectors: Sequence[str]) -> tuple[bool, int]:
-    """Likeness to a ship: its name, and its loads; sensors and predictors have x, y, psi too."""
-    return component.endswith(("vessel", "ship", "hull")), sum(
-        1 for c in connectors if LOAD.fullmatch(c)
     )

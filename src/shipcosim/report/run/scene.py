@@ -14,11 +14,13 @@ from shipcosim.report.run.predictions import predicted_tracks
 from shipcosim.report.run.roles import find_roles
 from shipcosim.report.run.track import hull_outline, outline_rows, symbol_size
 from shipcosim.report.run.vessels import (
+    POSE_UNITS,
     DrawnThruster,
     Vessel,
     conversion_to,
     find_vessels,
     in_unit,
+    pose_of,
     start_values,
 )
 from shipcosim.report.theme.display import is_constant
@@ -173,32 +175,29 @@ def make_run(
     # Collect columns while the vessels are made: each signal is stored once.
     vessels = find_vessels(table) if table.sizes["time"] else ()
     time = np.asarray(table["time"].values, float) + shift
-    columns = _Columns(table, _rows(len(time)))
+    # Every row, or evenly fewer, first and last among them.
+    shown = np.linspace(0, len(time) - 1, min(len(time), MOST_ROWS)).round().astype(int)
+    columns = _Columns(table, np.unique(shown))
     drawn = [made for vessel in vessels if (made := _vessel(vessel, columns)) is not None]
     if not drawn:
         return None
     flows = _flows(table, columns, goes_on)
     # The page says how names were read, and which units were assumed.
-    supposed = [
-        f"{names[0]} north, {names[1]} east, {names[2]} heading"
-        for names in (v.pose for v in vessels)
-    ]
+    supposed = ["{} north, {} east, {} heading".format(*vessel.pose) for vessel in vessels]
     if columns.without_unit:
-        supposed.append(
-            f"without a unit in the table: {', '.join(dict.fromkeys(columns.without_unit))}"
-        )
+        without = ", ".join(dict.fromkeys(columns.without_unit))
+        supposed.append(f"without a unit in the table: {without}")
+    circles = []
+    for verdict in verdicts:
+        for vessel in vessels:
+            circles += _circle(verdict, vessel, shift)
     return Run(
         label,
         packed_series(time[columns.rows], EXACT),
         columns.packed,
         drawn,
         flows,
-        [
-            circle
-            for verdict in verdicts
-            for vessel in vessels
-            for circle in _circle(verdict, vessel, shift)
-        ],
+        circles,
         _watch(table),
         supposed,
         predicted_tracks(table, shift),
@@ -208,10 +207,7 @@ def make_run(
 
 def unwrap_degrees(values: NDArray) -> NDArray:
     """Angles without jumps at half turns. [deg]"""
-    finite = np.isfinite(values)
-    answer = values.copy()
-    answer[finite] = np.degrees(unwrap_series(np.radians(values[finite])))
-    return answer
+    return np.degrees(unwrap_series(np.radians(values)))
 
 
 def _packed(values: NDArray, resolution: float) -> float | JsonObject | list[float | None]:
@@ -224,30 +220,17 @@ def _packed(values: NDArray, resolution: float) -> float | JsonObject | list[flo
     return packed_series(values, max(LEVELS, span / resolution))
 
 
-def _rows(count: int) -> NDArray:
-    """Rows of the scene's table: every one, or evenly fewer, first and last among them."""
-    return np.unique(np.linspace(0, count - 1, min(count, MOST_ROWS)).round().astype(int))
-
-
 def _vessel(vessel: Vessel, columns: _Columns) -> JsonObject | None:
     """Data of a vessel for the display."""
     # Pose with the resolution of a screen.
-    units = ("m", "m", "deg")
-    pose = [
-        columns.add(n, u, r)
-        for n, u, r in zip(vessel.pose, units, (METRES, METRES, DEGREES), strict=True)
-    ]
+    looks = zip(vessel.pose, POSE_UNITS, (METRES, METRES, DEGREES), strict=True)
+    pose = [columns.add(*look) for look in looks]
     if None in pose:
         return None
     # Outlines along the way need the pose as numbers, where all of it is finite.
-    north, east, heading = (
-        in_unit(columns.table, n, u) for n, u in zip(vessel.pose, units, strict=True)
-    )
-    assert north is not None and east is not None and heading is not None
+    north, east, heading = pose_of(columns.table, vessel.pose)
     shown = columns.rows
-    known = shown[
-        np.isfinite(north[shown]) & np.isfinite(east[shown]) & np.isfinite(heading[shown])
-    ]
+    known = shown[np.isfinite(north + east + heading)[shown]]
     if not len(known):
         return None
     # Without a known size: a symbol as large as the track suggests.

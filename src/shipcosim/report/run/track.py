@@ -1,12 +1,8 @@
 """The outline of a ship, and where on her track to draw it."""
 
-import json
-
 import numpy as np
 from numpy.typing import NDArray
-from xarray import Dataset
 
-from shipcosim.report.run.roles import Roles, join
 from shipcosim.report.run.vessels import Pair
 
 HULL = (  # outline over length and breadth from amidships, starboard side from stern to bow; drawn, not measured
@@ -22,13 +18,6 @@ TURN = 20.0
 MOST = 40
 SYMBOL = 0.08  # length of the outline of a ship of unknown size, over the extent of the track
 SLENDERNESS = 3.5  # length over breadth of that outline
-
-
-def ship_size(table: Dataset, roles: Roles) -> Pair | None:
-    """Length and breadth of the ship, where the start values in the table's attributes have both. [m, m]"""
-    known = json.loads(table.attrs.get("start_values", "{}"))
-    length, breadth = (known.get(join(roles.ship or "", name)) for name in ("length", "breadth"))
-    return None if length is None or breadth is None else (float(length), float(breadth))
 
 
 def hull_outline(length: float, breadth: float) -> tuple[NDArray, NDArray]:

@@ -25,6 +25,7 @@ AXES = {
     "y": ("y", "east", "easting"),
     "psi": ("psi", "heading", "yaw", "hdg"),
 }
+POSE_UNITS = ("m", "m", "deg")
 AROUND = ("", "position", "pos", "displacement", "ned")  # words that may stand beside an axis
 AIMS = {
     "set point": ("set", "setpoint", "sp"),
@@ -32,6 +33,7 @@ AIMS = {
 }
 SAME_PLACE = 3.0  # m: what stays nearer to a vessel all along is the same vessel, as a sensor or a predictor sees it
 COMMON_WORDS = {"vessel", "ship", "hull", "boat", "model", "fmu"}
+PLACE = ("{}", "position_{}", "{}_position", "rudder_{}", "propeller_{}")
 Pose = tuple[str, str, str]
 
 
@@ -109,13 +111,22 @@ def find_vessels(table: Dataset) -> tuple[Vessel, ...]:
     """
     names = list(series_in(table))
     main = find_roles(names).ship
+
     # The main ship first, then by number of loads: sensors have none.
-    poses = sorted(
-        _poses(table, names), key=lambda pose: (_owner(pose) != main, -_loads(pose, names))
-    )
-    # A pose that never moves is an unconnected input, unless it is called a ship.
+    def rank(pose: Pose) -> tuple[bool, int]:
+        loads = f"{_owner(pose)}.tau_"
+        return _owner(pose) != main, -sum(name.startswith(loads) for name in names)
+
+    # A pose that never moves is an unconnected input, unless it is called a ship, which may lie still.
+    poses = sorted(_poses(table, names), key=rank)
+    called_ship = tuple(COMMON_WORDS - {"model", "fmu"})
+    moving = []
+    for pose in poses:
+        values = [table[name].values.astype(float) for name in pose]
+        moves = table.sizes["time"] > 0 and any(np.ptp(one) > 0.0 for one in values)
+        if moves or _owner(pose).lower().endswith(called_ship):
+            moving.append(pose)
     apart: list[Pose] = []
-    moving = [pose for pose in poses if _moves(table, pose) or _says_ship(pose)]
     for pose in moving or poses[:1]:
         # A pose near another one is a sensor or a predictor of the same vessel.
         if all(_apart(table, pose, other) for other in apart):
@@ -140,6 +151,12 @@ def in_unit(table: Dataset, name: str, unit: str) -> NDArray | None:
         return None
     factor, offset = found
     return factor * np.asarray(table[name].values, float) + offset
+
+
+def pose_of(table: Dataset, signals: Iterable[str]) -> list[NDArray]:
+    """North, east and heading of a vessel, whose units have been checked. [m, m, deg]"""
+    values = [in_unit(table, *each) for each in zip(signals, POSE_UNITS, strict=False)]
+    return [one for one in values if one is not None]
 
 
 def conversion_to(table: Dataset, name: str, unit: str) -> tuple[float, float] | None:
@@ -170,18 +187,6 @@ def _poses(table: Dataset, names: list[str]) -> list[Pose]:
     return found
 
 
-def _says_ship(pose: Pose) -> bool:
-    """True if its component is called a ship, which may lie still."""
-    return _owner(pose).lower().endswith(tuple(COMMON_WORDS - {"model", "fmu"}))
-
-
-def _moves(table: Dataset, pose: Pose) -> bool:
-    """True if any of the pose changes: an unconnected input never does."""
-    return any(
-        np.ptp(table[name].values.astype(float)) > 0.0 for name in pose if table.sizes["time"]
-    )
-
-
 def _is(name: str, axis: str, endings: Iterable[str] = ("",)) -> bool:
     # Names, as `_plain` gives them, under which an axis is known.
     words = [a + word + b for word in AXES[axis] for a in AROUND for b in AROUND if not (a and b)]
@@ -209,17 +214,11 @@ def _nearest(north: str, headings: list[str]) -> str | None:
     path = north.split(".")[:-1]
     shared = {name: len(commonprefix([path, name.split(".")[:-1]])) for name in headings}
     best = max(headings, key=lambda name: (shared[name], -name.count(".")), default=None)
+    if best is None or best.split(".")[:-1] == path:
+        return best
     # A bare x of another component may be anything: then no heading is taken.
-    if best is None or (
-        best.split(".")[:-1] != path and (shared[best] == 0 or _plain(north.split(".")[-1]) == "x")
-    ):
-        return None
-    return best
-
-
-def _loads(pose: Pose, names: list[str]) -> int:
-    """Number of loads on the component: many on ships, none on sensors."""
-    return sum(name.startswith(f"{_owner(pose)}.tau_") for name in names)
+    is_bare = shared[best] == 0 or _plain(north.split(".")[-1]) == "x"
+    return None if is_bare else best
 
 
 def _owner(pose: Pose) -> str:
@@ -322,35 +321,35 @@ def find_units(names: Iterable[Hashable], known: Mapping[str, Any]) -> tuple[Dra
     """
     # Forces on the ship, where a thruster puts out both.
     roles = find_roles(names)
-    force = {unit: [roles.signal(unit, f"tau_{axis}") for axis in "XY"] for unit in roles.thrusters}
-    return tuple(
-        DrawnThruster(
-            name=unit,
-            thrust=join(unit, "thrust"),
-            force=(force[unit][0] or "", force[unit][1] or "") if all(force[unit]) else None,
-            azimuth=roles.signal(unit, "azimuth"),
-            thrust_command=roles.command(unit, "thrust"),
-            azimuth_command=roles.command(unit, "azimuth"),
-            saturated=roles.signal(unit, "saturated"),
-            failed=roles.signal(unit, "failed"),
-            available=roles.signal(unit, "available"),
-            place=_place(unit, known),
-            limits=_limits(unit, known),
-            sectors=_sectors(
-                unit, roles.signal(unit, "azimuth"), _place(unit, known), roles.allocators(), known
-            ),
+    found = []
+    for unit in roles.thrusters:
+        x, y = (roles.signal(unit, f"tau_{axis}") for axis in "XY")
+        azimuth = roles.signal(unit, "azimuth")
+        place = _place(unit, known)
+        found.append(
+            DrawnThruster(
+                name=unit,
+                thrust=join(unit, "thrust"),
+                force=(x, y) if x and y else None,
+                azimuth=azimuth,
+                thrust_command=roles.command(unit, "thrust"),
+                azimuth_command=roles.command(unit, "azimuth"),
+                saturated=roles.signal(unit, "saturated"),
+                failed=roles.signal(unit, "failed"),
+                available=roles.signal(unit, "available"),
+                place=place,
+                limits=_limits(unit, known),
+                # Only what turns has angles that it is not given.
+                sectors=_sectors(unit, place, roles.allocators(), known) if azimuth else (),
+            )
         )
-        for unit in roles.thrusters
-    )
+    return tuple(found)
 
 
 def _place(unit: str, known: Mapping[str, Any]) -> Pair | None:
     """Place of a thruster, forward and to starboard; the latter is 0 where missing. [m, m]"""
-    forward = _first_number(
-        known, unit, ("x", "position_x", "x_position", "rudder_x", "propeller_x")
-    )
-    starboard = _first_number(
-        known, unit, ("y", "position_y", "y_position", "rudder_y", "propeller_y")
+    forward, starboard = (
+        _first_number(known, unit, [word.format(axis) for word in PLACE]) for axis in "xy"
     )
     return None if forward is None else (forward, starboard or 0.0)
 
@@ -377,7 +376,6 @@ def _ends_of_map(table: Any) -> Pair | tuple[None, None]:
 
 def _sectors(
     unit: str,
-    azimuth: str | None,
     place: Pair | None,
     allocators: Iterable[str],
     known: Mapping[str, Any],
@@ -387,8 +385,6 @@ def _sectors(
     The unit is found by its name in that of the range, `port_azimuth_first`, or by the place of `azimuth_first_1`.
     """
     # The range is in the allocator's parameters, by the thruster's name or number.
-    if azimuth is None:
-        return ()
     for allocator in allocators:
         for before, after in (
             (f"{unit.rpartition('.')[2]}_", ""),
@@ -400,13 +396,10 @@ def _sectors(
             there = before or place == tuple(
                 _first_number(known, allocator, (axis + after,)) for axis in "xy"
             )
+            if not there or first is None or last is None:
+                continue
             # The forbidden sector is the rest of the turn.
-            if (
-                there
-                and first is not None
-                and last is not None
-                and 0.0 < last - first < 2.0 * np.pi
-            ):
+            if 0.0 < last - first < 2.0 * np.pi:
                 return ((last, first + 2.0 * np.pi),)
     return ()
 

@@ -1,6 +1,5 @@
 """The page of sea trials: tracks, features before and after, causes, and what would tell them apart."""
 
-from collections import Counter
 from dataclasses import dataclass
 
 from shipcosim.diagnose.sea_trials.study import SeaTrialStudy, motions_of
@@ -12,6 +11,7 @@ from shipcosim.report.sea_trials.words import (
     outcome,
     separation_table,
     sets_table,
+    trials,
 )
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import (
@@ -70,10 +70,7 @@ def _page(found: SeaTrialStudy, facts: dict[str, str]) -> SeaTrialPage:
     tracks = (track_figure(found, *motions_of(found)),) if circles else ()
     errors = (error_figure(found),)
     manoeuvres = (separation_figure(found),) if found.separations else ()
-    counts = Counter(trial.kind for trial in found.trials)
-    facts = facts | {
-        "Trials": ", ".join(f"{count} {kind}{'s' * (count > 1)}" for kind, count in counts.items())
-    }
+    facts = facts | {"Trials": trials(found)}
     figures = (*tracks, *errors, *manoeuvres)
     there = {"tracks": circles, "judged": bool(found.held_out), "next": bool(found.separations)}
     return SeaTrialPage(

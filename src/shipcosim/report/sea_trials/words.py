@@ -1,5 +1,7 @@
 """What sea trials say in words and rows."""
 
+from collections import Counter
+
 import numpy as np
 
 from shipcosim.diagnose.experiment.design import Separation
@@ -7,7 +9,7 @@ from shipcosim.diagnose.sea_trials.evidence import SetOfCauses
 from shipcosim.diagnose.sea_trials.features import FEATURES
 from shipcosim.diagnose.sea_trials.study import SeaTrialStudy, estimates
 from shipcosim.report.theme.numbers import plain
-from shipcosim.report.theme.views import Outcome, Table
+from shipcosim.report.theme.views import Block, Outcome, Table
 
 _SETS = 8  # in the table
 
@@ -33,6 +35,21 @@ def sentence(found: SeaTrialStudy) -> str:
 def said(label: str) -> str:
     """Names of causes as people read them."""
     return label.replace("_", " ")
+
+
+def trials(found: SeaTrialStudy) -> str:
+    """How many trials there are of each kind."""
+    counts = Counter(trial.kind for trial in found.trials)
+    return ", ".join(f"{count} {kind}{'s' * (count > 1)}" for kind, count in counts.items())
+
+
+def blocks(found: SeaTrialStudy) -> tuple[Block, ...]:
+    """Sets of causes, how they predict the side that was not fitted, and what to sail, for terminal and notebook."""
+    return (
+        Block("Causes", sets_table(found)),
+        Block("Judged on the other side", held_out_table(found)),
+        Block("What to do next", lines=next_steps(found)),
+    )
 
 
 def sets_table(found: SeaTrialStudy) -> Table:
@@ -62,13 +79,15 @@ def held_out_table(found: SeaTrialStudy) -> Table:
     """Errors on trials that were not fitted, by feature and by the side that was."""
     sides = list(found.held_out.items())
     names = list(dict.fromkeys(name for _, one in sides for name in one.before))
-    rows = [(name, *(_errors(one, name) for _, one in sides)) for name in names]
+    rows = []
+    for name in names:
+        unit = "°" if name.endswith("drift") else " %"
+        errors = [
+            f"{one.before[name]:.1f} → {one.after[name]:.1f}{unit}" if name in one.before else "–"
+            for _, one in sides
+        ]
+        rows.append((name, *errors))
     return Table(rows, ("Feature", *(f"Fitted on circles to {side}" for side, _ in sides)))
-
-
-def _errors(one, name):
-    unit = "°" if name.endswith("drift") else " %"
-    return f"{one.before[name]:.1f} → {one.after[name]:.1f}{unit}" if name in one.before else "–"
 
 
 def features_table(found: SeaTrialStudy) -> Table:
@@ -79,14 +98,10 @@ def features_table(found: SeaTrialStudy) -> Table:
     for trial in found.trials:
         for name in FEATURES[trial.kind]:
             values = (found.evidence.measured[at], found.evidence.predicted[at], found.after[at])
-            rows.append(
-                (
-                    trial.name,
-                    name,
-                    *(_read(name, value) for value in values),
-                    _spread(name, spread[at]),
-                )
-            )
+            repeats = f"{100.0 * spread[at]:.1f} %"
+            if name == "drift":
+                repeats = f"{np.degrees(spread[at]):.1f}°"
+            rows.append((trial.name, name, *(_read(name, value) for value in values), repeats))
             at += 1
     return Table(rows, ("Trial", "Feature", "Measured", "As modelled", "With causes", "Repeats to"))
 
@@ -95,43 +110,36 @@ def _read(name, value):
     """A feature in the unit that people read."""
     if name == "drift":
         return f"{np.degrees(value):.1f}°"
-    factor, unit = {"r": (np.degrees(1.0), "°/s"), "s": (np.degrees(1.0), "°")}.get(
-        _kind(name), (1.0, _kind(name))
-    )
-    return f"{plain(factor * float(np.exp(value)))} {unit}".replace(" °", "°")
-
-
-def _kind(name):
-    if name.startswith("speed"):
-        return "m/s"
+    # All others are logarithms of a size.
+    size = float(np.exp(value))
     if name in ("rate", "peak rate"):
-        return "r"
+        return f"{plain(np.degrees(size))}°/s"
     if name == "swing":
-        return "s"
-    return "s " if name.startswith("t") and name[1:].isdigit() else "m"
-
-
-def _spread(name, value):
-    return f"{np.degrees(value):.1f}°" if name == "drift" else f"{100.0 * value:.1f} %"
+        return f"{plain(np.degrees(size))}°"
+    if name.startswith("speed"):
+        return f"{plain(size)} m/s"
+    is_time = name.startswith("t") and name[1:].isdigit()
+    return f"{plain(size)} {'s' if is_time else 'm'}"
 
 
 def next_steps(found: SeaTrialStudy) -> tuple[str, ...]:
     """What to sail, and what stays open."""
-    steps = [_step(found, one) for one in found.prescriptions]
+    steps = []
+    for one in found.prescriptions:
+        record = next(each for each in found.separations if each.manoeuvre == one.manoeuvre)
+        pairs = [
+            f"{said(a)} from {said(b)} ({_telling(found, record, (a, b))})"
+            for a, b in one.separates
+        ]
+        manoeuvre = f"{one.manoeuvre[0].upper()}{one.manoeuvre[1:]}"
+        tells = f"It tells {', '.join(pairs)}."
+        steps.append(f"{manoeuvre}, to both sides, {one.minutes:.0f} minutes. {tells}")
     told_apart = {pair for one in found.prescriptions for pair in one.separates}
     left = [pair for pair in found.pairs if pair not in told_apart]
     return (
         *steps,
         *(f"No manoeuvre of the catalogue tells {said(a)} from {said(b)}." for a, b in left),
     )
-
-
-def _step(found, one):
-    record = next(each for each in found.separations if each.manoeuvre == one.manoeuvre)
-    pairs = ", ".join(
-        f"{said(a)} from {said(b)} ({_telling(found, record, (a, b))})" for a, b in one.separates
-    )
-    return f"{one.manoeuvre[0].upper()}{one.manoeuvre[1:]}, to both sides, {one.minutes:.0f} minutes. It tells {pairs}."
 
 
 def _telling(found, record: Separation, pair):
@@ -145,22 +153,14 @@ def _telling(found, record: Separation, pair):
 
 def separation_table(found: SeaTrialStudy) -> Table:
     """Every manoeuvre: minutes, and by pair the nats and the feature that tells most."""
-    rows = [
-        (
-            one.manoeuvre,
-            f"{one.minutes:.0f}",
-            *(f"{one.nats[pair]:.1f}: {_short(one.telling[pair])}" for pair in one.nats),
-        )
-        for one in found.separations
-    ]
+    rows = []
+    for one in found.separations:
+        cells = []
+        for pair, nats in one.nats.items():
+            telling = one.telling[pair]
+            size = f"{telling.difference:+.1f} ± {telling.spread:.1f} {telling.unit}"
+            cells.append(f"{nats:.1f}: {telling.name} {size}".replace("-", "−"))
+        rows.append((one.manoeuvre, f"{one.minutes:.0f}", *cells))
     return Table(
         rows, ("Manoeuvre", "Min", *(f"{said(a)} / {said(b)}" for a, b in found.pairs)), (1,)
-    )
-
-
-def _short(telling):
-    return (
-        f"{telling.name} {telling.difference:+.1f} ± {telling.spread:.1f} {telling.unit}".replace(
-            "-", "−"
-        )
     )

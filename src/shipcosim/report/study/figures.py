@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from shipcosim.report.study.frames import (
     RUNS,
     Frame,
-    Lacking,
     SeriesOfRows,
     frame_of,
     gathered,
@@ -19,12 +18,12 @@ from shipcosim.report.study.frames import (
     left_out,
     series_of,
 )
-from shipcosim.report.study.static import NAMES, bases_of
 from shipcosim.report.study.statistics import distribution, pareto_front
 from shipcosim.report.study.tables import Column, StudyTables
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import evenly, line, polar_axes, rounded
 from shipcosim.report.theme.views import Figure, PlotlyDict
+from shipcosim.sweep.study_model import View
 
 TALL = 380  # px
 POLAR = 420
@@ -35,21 +34,19 @@ MOST_DOTS = 2500
 """Dots of a figure; the table and the scatter plot beside it hold more."""
 
 
-def polar(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
+def polar(tables: StudyTables, view: View) -> Figure:
     """A value over the direction that weather comes from, bow up."""
-    angle = str(view.get("angle"))
-    radius = str(view.get("radius"))
-    frame = frame_of(tables, view, [angle, radius])
-    around = frame.column(angle)
-    size = frame.column(radius)
-    series = series_of(frame, view, [angle])
+    frame = frame_of(tables, view.table, [view.angle, view.radius])
+    around = frame.column(view.angle)
+    size = frame.column(view.radius)
+    series = series_of(frame, view.series, [around.name])
     traces = []
     groups = []
     # Each series of directions: rows of the same direction are gathered into one point.
     for k, one in enumerate(series):
         degrees = np.unique(around.values[one.rows][np.isfinite(around.values[one.rows])])
         alike = [one.rows[around.values[one.rows] == at] for at in degrees]
-        points = np.array([gathered(frame, radius, rows) for rows in alike]).reshape(-1, 3)
+        points = np.array([gathered(frame, size, rows) for rows in alike]).reshape(-1, 3)
         groups += alike
         traces += _around(
             one, degrees, points, with_band=len(series) <= 3, fill=0.14 if k == 0 else None
@@ -58,8 +55,8 @@ def polar(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
     traces += _beside(tables, view, series)
     note = "Bow up; angle: where the weather comes from, 90° from starboard."
     notes = [
-        str(view.get("note") or note),
-        how_gathered(frame, radius, groups),
+        view.note or note,
+        how_gathered(frame, size, groups),
         left_out(frame, series),
         in_part(size),
     ]
@@ -120,20 +117,14 @@ def _around(
     ]
 
 
-def _beside(
-    tables: StudyTables, view: Mapping[str, Any], series: Sequence[SeriesOfRows]
-) -> list[PlotlyDict]:
+def _beside(tables: StudyTables, view: View, series: Sequence[SeriesOfRows]) -> list[PlotlyDict]:
     """Curves from `about` for the same quantity and series, such as static capability."""
-    # Only curves of the bases that the view asks for.
     colours = {one.label: one.colour for one in series}
-    bases = bases_of(view)
-    if unknown := {*bases} - {*NAMES}:
-        raise Lacking(f"static: '{unknown.pop()}' is none of {', '.join(NAMES)}.")
     found = []
     for one in tables.about.get("beside") or ():
         # Same quantity, same basis, and a series that is drawn.
-        is_asked = one.get("radius") == view.get("radius") and (
-            "basis" not in one or one["basis"] in bases
+        is_asked = one.get("radius") == view.radius and (
+            "basis" not in one or one["basis"] in view.static
         )
         if is_asked and str(one["series"]) in colours:
             degrees = np.degrees(np.asarray(one["angle"], float))
@@ -155,13 +146,12 @@ def _beside(
     return found
 
 
-def curves(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
+def curves(tables: StudyTables, view: View) -> Figure:
     """Empirical distribution of a quantity, with its simultaneous 95 % band."""
-    name = str(view.get("quantity"))
     # Failed runs say nothing about the distribution.
-    frame = frame_of(tables, {"table": "runs"} | dict(view), [name])
-    quantity = frame.column(name)
-    series = series_of(frame, view, [name])
+    frame = frame_of(tables, view.table or "runs", [view.quantity])
+    quantity = frame.column(view.quantity)
+    series = series_of(frame, view.series, [quantity.name])
     done = (
         np.array([not str(error or "") for error in tables.runs["error"]])
         if "error" in tables.runs
@@ -180,7 +170,7 @@ def curves(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
         widths.append(half)
         traces += _steps(one, reached, share, half, largest, with_band=len(series) <= 4)
     notes = [
-        str(view.get("note") or "Share of runs up to each value."),
+        view.note or "Share of runs up to each value.",
         f"Band: 95 %, for the whole curve at once (Dvoretzky-Kiefer-Wolfowitz), ± {max(widths):.2g}."
         if widths
         else "",
@@ -229,58 +219,56 @@ def _steps(
     return [low, high | {"fill": "tonexty", "fillcolor": palette.faded(one.colour, 0.15)}, curve]
 
 
-def bars(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
+def bars(tables: StudyTables, view: View) -> Figure:
     """Values by category, with their intervals."""
     # One or several values, each with its bars in the same categories.
-    asked = view.get("value")
-    by = str(view.get("category"))
-    values = [str(asked)] if isinstance(asked, str) else [str(one) for one in asked or ()]
-    frame = frame_of(tables, view, [by, *values])
-    category = frame.column(by)
+    frame = frame_of(tables, view.table, [view.category, *view.value])
+    category = frame.column(view.category)
+    values = [frame.column(name) for name in view.value]
     # Levels of a factor, else the different numbers.
     every = category.levels or tuple(
         np.unique(category.values[np.isfinite(category.values)]).tolist()
     )
-    levels = every[: int(view.get("most") or len(every))]
+    levels = every[: view.most]
     # With several values the colours tell these apart, not series.
-    series = series_of(frame, {"series": False} | dict(view) if len(values) > 1 else view, [by])
+    has_several = len(values) > 1
+    asked = [] if has_several and view.series is None else view.series
+    series = series_of(frame, asked, [category.name])
     names = [category.text(at) for at in levels]
     # Long names need horizontal bars.
     is_upright = sum(map(len, names)) <= MOST_LETTERS
     traces = []
     groups = []
     colours = iter(palette.CYCLE)
-    for name in values:
+    for value in values:
         for one in series:
             # Gather the rows of each category into a value with interval.
             alike = [one.rows[category.values[one.rows] == level] for level in levels]
             points = np.array(
-                [gathered(frame, name, rows) if len(rows) else (np.nan,) * 3 for rows in alike]
+                [gathered(frame, value, rows) if len(rows) else (np.nan,) * 3 for rows in alike]
             )
             groups += alike
-            label = ", ".join(filter(None, (name if len(values) > 1 else "", one.label)))
+            label = ", ".join(filter(None, (value.name if has_several else "", one.label)))
             traces.append(
-                _bar(label or name, names, points, next(colours, palette.INK), is_upright)
+                _bar(label or value.name, names, points, next(colours, palette.INK), is_upright)
             )
     # Tell the reader what is left out, and what the interval is.
-    unit = frame.column(values[0]).unit if values else ""
     fewer = f"The first {len(levels)} of {len(every)}." if len(levels) < len(every) else ""
     notes = [
-        str(view.get("note") or ""),
+        view.note,
         fewer,
         how_gathered(frame, values[0], groups),
         left_out(frame, series),
     ]
-    title = f"{', '.join(values)} by {by}"
+    title = f"{', '.join(view.value)} by {category.name}"
     height = TALL if is_upright else max(TALL, BAR * len(levels) * len(traces))
-    return _figure(view, title, unit, traces, _bar_axes(is_upright), notes, height)
-
-
-def _bar_axes(is_upright: bool) -> PlotlyDict:
-    """Axes: long names stand next to horizontal bars, the first one on top."""
+    # Long names stand next to horizontal bars, the first one on top.
+    axes: PlotlyDict = {"barmode": "group"}
     if is_upright:
-        return {"barmode": "group", "xaxis": {"type": "category"}}
-    return {"barmode": "group", "yaxis": {"type": "category", "autorange": "reversed"}}
+        axes["xaxis"] = {"type": "category"}
+    else:
+        axes["yaxis"] = {"type": "category", "autorange": "reversed"}
+    return _figure(view, title, values[0].unit, traces, axes, notes, height)
 
 
 def _bar(
@@ -304,16 +292,12 @@ def _bar(
     return made | {f"error_{along}": ends | {"color": palette.INK, "thickness": 1.4, "width": 4}}
 
 
-def pareto(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
+def pareto(tables: StudyTables, view: View) -> Figure:
     """Two or three quantities against each other; runs on the Pareto front are marked."""
+    frame = frame_of(tables, view.table, view.quantities)
+    columns = [frame.column(name) for name in view.quantities]
     # Smaller is better, unless the view says larger.
-    names = [str(name) for name in view.get("quantities") or ()]
-    if len(names) not in (2, 3):
-        raise Lacking(f"A Pareto plot has two or three quantities, not {len(names)}.")
-    frame = frame_of(tables, view, names)
-    columns = [frame.column(name) for name in names]
-    larger = {str(name) for name in view.get("largest") or ()}
-    front = pareto_front([-c.values if c.name in larger else c.values for c in columns])
+    front = pareto_front([-c.values if c.name in view.largest else c.values for c in columns])
     # Sort the front by the first quantity, so that a line can join it.
     rows = {"others": np.flatnonzero(~front), "front": np.flatnonzero(front)}
     rows["front"] = rows["front"][np.argsort(columns[0].values[rows["front"]])]
@@ -344,7 +328,7 @@ def pareto(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
             "line": {"color": palette.VERMILLION, "width": 1, "dash": "dot"},
         }
     # A run that the view marks, such as the shipped gains.
-    if name := view.get("marked"):
+    if name := view.marked:
         rows["marked"] = np.flatnonzero(frame.column(name).values == 1.0)
         mark = {
             "size": 14,
@@ -353,39 +337,29 @@ def pareto(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
             "line": {"color": palette.INK, "width": 1},
         }
         traces.append(
-            _dots(str(name).replace("_", " "), frame, tables, columns, rows["marked"], None, mark)
+            _dots(name.replace("_", " "), frame, tables, columns, rows["marked"], None, mark)
         )
     # The note says which direction is better.
-    better = ", ".join(f"{c.name} {'large' if c.name in larger else 'small'}" for c in columns)
-    notes = [
-        str(
-            view.get("note")
-            or f"Wanted: {better}. Marked: the {front.sum()} of {frame.rows} that no other beats."
-        ),
-        _sizes(third),
-    ]
-    title = " against ".join(names)
+    better = ", ".join(
+        f"{c.name} {'large' if c.name in view.largest else 'small'}" for c in columns
+    )
+    wanted = f"Wanted: {better}. Marked: the {front.sum()} of {frame.rows} that no other beats."
+    notes = [view.note or wanted]
+    if third is not None and len(known := third.values[np.isfinite(third.values)]):
+        ends = f"{third.text(known.min())} to {third.text(known.max())}"
+        notes.append(f"Size of a dot: {third.name}, {ends}.")
+    title = " against ".join(view.quantities)
     return _figure(view, title, "", traces, _axes(*columns[:2]), notes, TALL)
 
 
-def _sizes(third: Column | None) -> str:
-    """Meaning of the dot sizes."""
-    known = np.zeros(0) if third is None else third.values[np.isfinite(third.values)]
-    if third is None or not known.size:
-        return ""
-    return f"Size of a dot: {third.name}, {third.text(known.min())} to {third.text(known.max())}."
-
-
-def scatter(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
+def scatter(tables: StudyTables, view: View) -> Figure:
     """One column against another, by series."""
-    names = [str(view.get("x")), str(view.get("y"))]
-    frame = frame_of(tables, view, names)
-    columns = [frame.column(name) for name in names]
+    frame = frame_of(tables, view.table, [view.x, view.y])
+    columns = [frame.column(name) for name in (view.x, view.y)]
     # Colour by a factor, if it has few enough levels.
-    asked = view.get("series") or []
-    chosen = [asked] if isinstance(asked, str) else asked
+    chosen = view.series or []
     has_levels = all(frame.column(name).levels for name in chosen)
-    series = series_of(frame, {**view, "series": chosen if has_levels else False}, names)
+    series = series_of(frame, chosen if has_levels else [], ())
     # Evenly fewer dots, by the same share in each series.
     share = min(MOST_DOTS / max(frame.rows, 1), 1.0)
     traces = [
@@ -401,13 +375,13 @@ def scatter(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
         for one in series
     ]
     notes = [
-        str(view.get("note") or ""),
+        view.note,
         left_out(frame, series),
         f"Drawn are {sum(len(t['x']) for t in traces)} of {frame.rows} rows."
         if share < 1.0
         else "",
     ]
-    title = f"{names[1]} against {names[0]}"
+    title = f"{view.y} against {view.x}"
     return _figure(view, title, "", traces, _axes(*columns), notes, TALL)
 
 
@@ -459,7 +433,7 @@ def _axes(x: Column, y: Column) -> PlotlyDict:
 
 
 def _figure(
-    view: Mapping[str, Any],
+    view: View,
     title: str,
     unit: str,
     traces: Sequence[PlotlyDict],
@@ -468,7 +442,7 @@ def _figure(
     height: int,
 ) -> Figure:
     return Figure(
-        str(view.get("title") or title),
+        view.title or title,
         unit,
         tuple(traces),
         dict(layout),

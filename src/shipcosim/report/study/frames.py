@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from shipcosim.report.study.statistics import mean_interval
 from shipcosim.report.study.tables import FACTOR, Column, Columns, StudyTables, columns_of, label
 from shipcosim.report.theme import palette
+from shipcosim.sweep.study_model import View
 from shipcosim.sweep.summary import wilson
 
 if TYPE_CHECKING:
@@ -49,13 +50,13 @@ class Frame:
     name: str
     columns: Columns
 
-    def column(self, name: object) -> Column:
+    def column(self, name: str | None) -> Column:
         """A column; if missing, the error lists the columns."""
-        if name not in self.columns:
+        if name is None or name not in self.columns:
             raise Lacking(
                 f"There is no column '{name}' in {self.name}. There is: {', '.join(self.columns)}."
             )
-        return self.columns[str(name)]
+        return self.columns[name]
 
     @cached_property
     def rows(self) -> int:
@@ -72,7 +73,7 @@ class SeriesOfRows:
     rows: NDArray
 
 
-def narrowed(tables: StudyTables, view: Mapping[str, Any]) -> StudyTables:
+def narrowed(tables: StudyTables, view: View) -> StudyTables:
     """Tables with the rows of a view: all, or those with the values of its `only`.
 
     Raises
@@ -80,26 +81,24 @@ def narrowed(tables: StudyTables, view: Mapping[str, Any]) -> StudyTables:
     Lacking
         If no table has such a column, or none such a value.
     """
-    # A single value counts as a list of one.
-    asked = (view.get("only") or {}).items()
-    only = {str(name): value if isinstance(value, list) else [value] for name, value in asked}
     runs = tables.runs
     summary = tables.summary
     others = dict(tables.tables)
     # A misspelt column or value must not give an empty figure.
-    for name, values in only.items():
+    for name, values in view.only.items():
         having = [table for table in (runs, summary, *others.values()) if name in table]
         if not having:
             raise Lacking(
                 f"only: there is no column '{name}'. There is: {', '.join(map(str, runs.columns))}."
             )
-        wanted = {label(value) for value in values}
+        # A single value counts as a list of one.
+        wanted = {label(value) for value in (values if isinstance(values, list) else [values])}
         if missing := wanted - {label(value) for table in having for value in table[name]}:
             raise Lacking(f"only: no row has {name} = {', '.join(sorted(missing))}.")
         # Every table that has the column is narrowed.
         runs, summary = (_with(table, name, wanted) for table in (runs, summary))
         others = {key: _with(table, name, wanted) for key, table in others.items()}
-    return replace(tables, runs=runs, summary=summary, tables=others) if only else tables
+    return replace(tables, runs=runs, summary=summary, tables=others) if view.only else tables
 
 
 def _with(table: DataFrame, name: str, wanted: set[str]) -> DataFrame:
@@ -110,8 +109,8 @@ def _with(table: DataFrame, name: str, wanted: set[str]) -> DataFrame:
     )
 
 
-def frame_of(tables: StudyTables, view: Mapping[str, Any], needed: Sequence[str]) -> Frame:
-    """Table of a view: the named one, else the summary if it has all columns, else the runs.
+def frame_of(tables: StudyTables, name: str | None, needed: Sequence[str | None]) -> Frame:
+    """Table of a view: the one of a name, else the summary if it has all columns, else the runs.
 
     Raises
     ------
@@ -119,8 +118,7 @@ def frame_of(tables: StudyTables, view: Mapping[str, Any], needed: Sequence[str]
         If the table that it names is not there.
     """
     said = tables.about.get("columns", ())
-    # A table named by the view.
-    if name := view.get("table"):
+    if name:
         every = {"runs": tables.runs, "summary": tables.summary, **tables.tables}
         if name not in every:
             raise Lacking(f"There is no table '{name}'. There is: {', '.join(every)}.")
@@ -135,14 +133,16 @@ def frame_of(tables: StudyTables, view: Mapping[str, Any], needed: Sequence[str]
     return Frame("the summary", columns_of(rows.dropna(axis="columns", how="all"), said))
 
 
-def series_of(frame: Frame, view: Mapping[str, Any], taken: Sequence[str]) -> list[SeriesOfRows]:
+def series_of(
+    frame: Frame, asked: Sequence[str] | None, taken: Sequence[str]
+) -> list[SeriesOfRows]:
     """Series of a view: levels of the named factors; else of unused factors, unless it shows runs.
 
     Parameters
     ----------
     frame : Frame
-    view : mapping
-        `series`: name or names; false for a single one.
+    asked : sequence of str, optional
+        Names of the factors; empty for a single series.
     taken : sequence of str
         Columns that are axes of the view.
 
@@ -152,7 +152,6 @@ def series_of(frame: Frame, view: Mapping[str, Any], taken: Sequence[str]) -> li
         At most eight, in the order of their levels.
     """
     # Without a choice, all factors that are no axis; runs are then one series.
-    asked = view.get("series")
     if asked is None:
         free = [
             c.name
@@ -161,23 +160,18 @@ def series_of(frame: Frame, view: Mapping[str, Any], taken: Sequence[str]) -> li
         ]
         asked = free if frame.name != RUNS else []
     # Series are the combinations of levels that occur.
-    names = [asked] if isinstance(asked, str) else list(asked or ())
-    columns = [frame.column(name) for name in names]
-    keys = (
-        np.column_stack([column.values for column in columns])
-        if columns
-        else np.zeros((frame.rows, 0))
-    )
-    found, place = (
-        np.unique(keys, axis=0, return_inverse=True)
-        if columns
-        else (keys[:1], np.zeros(frame.rows, int))
-    )
+    columns = [frame.column(name) for name in asked]
+    keys = np.array([column.values for column in columns]).reshape(len(columns), frame.rows).T
+    found, place = keys[:1], np.zeros(frame.rows, int)
+    if columns:
+        found, place = np.unique(keys, axis=0, return_inverse=True)
     # At most as many series as colours.
-    return [
-        SeriesOfRows(_label(columns, key), palette.CYCLE[k], np.flatnonzero(place.ravel() == k))
-        for k, key in enumerate(found[:MOST_SERIES])
-    ]
+    series = []
+    for k, key in enumerate(found[:MOST_SERIES]):
+        texts = [c.text(v, with_name=not c.labels) for c, v in zip(columns, key, strict=True)]
+        rows = np.flatnonzero(place.ravel() == k)
+        series.append(SeriesOfRows(", ".join(texts), palette.CYCLE[k], rows))
+    return series
 
 
 def left_out(frame: Frame, drawn: Sequence[SeriesOfRows]) -> str:
@@ -190,22 +184,13 @@ def left_out(frame: Frame, drawn: Sequence[SeriesOfRows]) -> str:
     )
 
 
-def _label(columns: Sequence[Column], key: Sequence[float]) -> str:
-    return ", ".join(c.text(v, with_name=not c.labels) for c, v in zip(columns, key, strict=True))
-
-
-def gathered(frame: Frame, value: str, rows: NDArray) -> Point:
+def gathered(frame: Frame, column: Column, rows: NDArray) -> Point:
     """Value of similar rows: of a single row with its interval, else mean or share over them."""
-    column = frame.column(value)
     # A single row may have its interval in columns of its own.
     if len(rows) == 1:
-        ends = [
-            frame.columns[f"{value}_{end}"].values[rows[0]]
-            if f"{value}_{end}" in frame.columns
-            else np.nan
-            for end in ("low", "high")
-        ]
-        return Point(float(column.values[rows[0]]), float(ends[0]), float(ends[1]))
+        limits = [frame.columns.get(f"{column.name}_{end}") for end in ("low", "high")]
+        ends = [np.nan if limit is None else float(limit.values[rows[0]]) for limit in limits]
+        return Point(float(column.values[rows[0]]), *ends)
     # Several rows: share with Wilson's interval, or mean with a normal one.
     known = column.values[rows]
     known = known[np.isfinite(known)]
@@ -214,12 +199,12 @@ def gathered(frame: Frame, value: str, rows: NDArray) -> Point:
     return Point(*mean_interval(known))
 
 
-def how_gathered(frame: Frame, value: str, groups: Sequence[NDArray]) -> str:
+def how_gathered(frame: Frame, column: Column, groups: Sequence[NDArray]) -> str:
     """Sentence on what a value and its interval are; empty if neither needs one."""
-    column = frame.column(value)
     # Single rows: the interval of the table.
     if all(len(rows) <= 1 for rows in groups):
-        return f"Interval: as in {frame.name}, 95 %." if f"{value}_low" in frame.columns else ""
+        has_interval = f"{column.name}_low" in frame.columns
+        return f"Interval: as in {frame.name}, 95 %." if has_interval else ""
     # Otherwise tell how many runs a value is gathered from.
     counts = [len(rows) for rows in groups if len(rows)]
     of = f"{min(counts)}" if min(counts) == max(counts) else f"{min(counts)} to {max(counts)}"

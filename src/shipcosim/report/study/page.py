@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import ValidationError
 
 from shipcosim.report.study import figures, words
 from shipcosim.report.study.frames import Lacking, narrowed
@@ -27,6 +28,7 @@ from shipcosim.report.theme.views import (
     Page,
     Table,
 )
+from shipcosim.sweep.study_model import View
 
 BYTES_FOR_RUNS = 800_000  # of a page that shall stay below 1.6 MB
 EXACT = 1e9  # steps of the numbers of runs
@@ -37,7 +39,7 @@ SECTIONS = {
     "summary": "Summary",
     "study": "How it was made",
 }
-VIEWS: Mapping[str, Callable[[StudyTables, Mapping[str, Any]], Figure]] = {
+VIEWS: Mapping[str, Callable[[StudyTables, View], Figure]] = {
     "polar": figures.polar,
     "curves": figures.curves,
     "bars": figures.bars,
@@ -130,12 +132,9 @@ def page_of(tables: StudyTables) -> StudyPage:
     errors = tuple(
         ErrorOfRuns(text, len(numbers), numbers[:20]) for text, numbers in words.errors(tables)
     )
-    has_views = bool(tracks or plots)
-    has_errors = bool(errors)
-    has_summary = len(tables.summary) > 0
-    absent = {"views": not has_views, "failed": not has_errors, "summary": not has_summary}
+    there = {"views": tracks or plots, "failed": errors, "summary": len(tables.summary)}
     links = tuple(
-        Link(anchor, title) for anchor, title in SECTIONS.items() if not absent.get(anchor)
+        Link(anchor, title) for anchor, title in SECTIONS.items() if there.get(anchor, True)
     )
     return StudyPage(
         title=str(tables.study.get("description") or tables.name),
@@ -168,19 +167,17 @@ def _views(
     tracks = []
     plots = []
     undrawn = []
-    for view in tables.study.get("view") or ():
-        kind = str(view.get("kind"))
+    for content in tables.study.get("view") or ():
         # Each view with its own rows; what is missing is told in its place.
         try:
+            view = View.model_validate(content)
             shown = narrowed(tables, view)
-            if kind == "tracks":
+            if view.kind == "tracks":
                 tracks.append(tracks_view(shown, view))
-            elif kind in VIEWS:
-                plots.append(VIEWS[kind](shown, view))
             else:
-                raise Lacking(f"There is no such kind. There is: {', '.join([*VIEWS, 'tracks'])}.")
-        except Lacking as lack:
-            undrawn.append(f"View '{kind}' is not drawn. {lack}")
+                plots.append(VIEWS[view.kind](shown, view))
+        except (Lacking, ValidationError) as lack:
+            undrawn.append(f"View '{content.get('kind')}' is not drawn. {lack}")
     return tuple(tracks), tuple(plots), tuple(undrawn)
 
 
@@ -242,11 +239,7 @@ def _packed(column: Column, rows: NDArray) -> JsonObject:
     """A column for the script: levels by their places, numbers as they are."""
     # Description of the column, then its values.
     values = column.values[rows]
-    made = {
-        name: value
-        for name, value in asdict(column).items()
-        if name in ("name", "role", "description", "unit")
-    }
+    made = {name: getattr(column, name) for name in ("name", "role", "description", "unit")}
     made |= {"labels": column.labels, "truth": column.is_truth}
     # Few levels: small integers instead of numbers.
     if column.levels and column.is_number:
@@ -268,17 +261,12 @@ def _choices(columns: Columns) -> tuple[Choice, ...]:
     chosen = [
         c for c in columns.values() if len(c.levels) > 1 and (c.role == "factor" or c.is_truth)
     ]
-    return tuple(
-        Choice(c.name, c.titled, tuple((level, _level(c, level)) for level in c.levels))
-        for c in chosen
-    )
-
-
-def _level(column: Column, level: float) -> str:
-    """A level without its unit, which the column's title has."""
-    if column.is_truth:
-        return "yes" if level else "no"
-    return column.text(level) if column.labels else signed(level, 6)
+    choices = []
+    for column in chosen:
+        # Levels are written without their unit, which the column's title has.
+        levels = [(level, _cell(column, level, 6)) for level in column.levels]
+        choices.append(Choice(column.name, column.titled, tuple(levels)))
+    return tuple(choices)
 
 
 def summary_table(columns: Columns) -> Table:
@@ -299,27 +287,22 @@ def _with_interval(columns: Columns, column: Column, row: int) -> str:
         return column.text_at(row)
     # Value first, then both ends in brackets.
     cell = _cell(column, column.values[row])
-    ends = [
-        columns[f"{column.name}_{end}"].values[row]
-        for end in ("low", "high")
-        if f"{column.name}_{end}" in columns
-    ]
+    limits = [columns.get(f"{column.name}_{end}") for end in ("low", "high")]
+    ends = [limit.values[row] for limit in limits if limit is not None]
     if len(ends) < 2 or np.isnan(ends).all():
         return cell
-    return (
-        f"{cell} ({' to '.join(signed(e, 3) if np.isfinite(e) else column.text(e) for e in ends)})"
-    )
+    texts = [signed(end, 3) if np.isfinite(end) else column.text(end) for end in ends]
+    return f"{cell} ({' to '.join(texts)})"
 
 
 MOST_SUMMARY = 400
 """Rows of the summary on the page; summary.csv holds all."""
 
 
-def _cell(column: Column, value: float) -> str:
-    if column.is_number and np.isfinite(value):
-        return signed(value)
-    return (
-        column.text(value)
-        if column.labels or not np.isfinite(value)
-        else ("yes" if value else "no")
-    )
+def _cell(column: Column, value: float, digits: int = 4) -> str:
+    """A value without its unit and its name."""
+    if column.labels or not np.isfinite(value):
+        return column.text(value)
+    if column.is_truth:
+        return "yes" if value else "no"
+    return signed(value, digits)

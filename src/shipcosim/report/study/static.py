@@ -3,26 +3,21 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from shipcosim.capability import capability_of, vessel_of
 from shipcosim.capability.conditions import DIRECTIONS
 from shipcosim.capability.result import LEVEL_1, SIMULATOR
 from shipcosim.errors import ShipcosimError
+from shipcosim.sweep.study_model import View
 
 NAMES = {SIMULATOR: "static, simulator's models", LEVEL_1: "static, Level 1"}
 DASHES = {SIMULATOR: "dash", LEVEL_1: "dot"}
 
 
-def bases_of(view: Mapping[str, Any]) -> list[str]:
-    """Bases of the static capability numbers that a view asks for."""
-    asked = view.get("static") or []
-    return [str(one) for one in asked] if isinstance(asked, list) else [str(asked)]
-
-
 def static_curves(
-    views: Sequence[Mapping[str, Any]],
+    views: Sequence[View],
     system: os.PathLike[str],
     parameters: Sequence[os.PathLike[str]],
 ) -> tuple[list[dict[str, Any]], list[str]]:
@@ -30,8 +25,7 @@ def static_curves(
 
     Parameters
     ----------
-    views : sequence of mapping
-        `static`: ``"simulator"``, ``"level 1"`` or both.
+    views : sequence of View
     system : path
     parameters : sequence of path
         Parameter sets, the last of which names the ship.
@@ -41,10 +35,7 @@ def static_curves(
     (list of dict, list of str)
         Curves as `StudyTables.about` has them under `beside`, and why there are none.
     """
-    # Only polar views can show it.
-    asking = [
-        view for view in views if view.get("kind") == "polar" and {*NAMES} & {*bases_of(view)}
-    ]
+    asking = [view for view in views if view.static]
     if not asking:
         return [], []
     # A ship without the needed data is no error of the study.
@@ -63,7 +54,7 @@ def static_curves(
             "angle": DIRECTIONS.tolist(),
             "radius_values": numbers.tolist(),
         }
-        for radius in dict.fromkeys(str(view.get("radius")) for view in asking)
+        for radius in dict.fromkeys(view.radius for view in asking)
         for basis in NAMES
         for case, numbers in zip(capability.cases, capability.numbers(basis), strict=True)
     ]

@@ -85,9 +85,8 @@ def tables_of(swept: Swept, command: str) -> StudyTables:
     folder = swept.folder
     tracks = swept.folder / "tracks.parquet"
     scenario = swept.plan.scenario
-    views = swept.about["study"].get("view", ())
+    views = swept.plan.study.view
     beside, remarks = static_curves(views, scenario.system_path, scenario.parameter_paths)
-    remarks = [*swept.about.get("remarks", ()), *remarks]
     found = (
         re.fullmatch(r"run-([0-9]+)", page.parent.name) for page in folder.glob("run-*/report.html")
     )
@@ -193,12 +192,10 @@ class Column:
         if self.labels:
             return self.labels[int(value)]
         if self.is_truth:
-            return (
-                f"{self.name}: yes"
-                if with_name and value
-                else ("yes" if value else f"{self.name}: no")
-            )
-        number = f"{signed(value, 4 if self.role == FACTOR else 3)}{'' if self.unit in ('', '°') else ' '}{self.unit}"
+            answer = "yes" if value else "no"
+            return f"{self.name}: {answer}" if with_name or not value else answer
+        gap = "" if self.unit in ("", "°") else " "
+        number = f"{signed(value, 4 if self.role == FACTOR else 3)}{gap}{self.unit}"
         return f"{self.name} {number}" if with_name else number
 
 
@@ -240,16 +237,16 @@ def columns_of(frame: DataFrame, said: Iterable[Mapping[str, Any]]) -> dict[str,
     for name, one in list(known.items()):
         for end in ("low", "high"):
             known.setdefault(f"{name}_{end}", one)
-    there = [str(name) for name in frame.columns]
-    names = [name for name in there if name not in ("run", "error", "input")]
-    found = {
-        name: column_of(name, cast("Series", frame[name]), known.get(name, {}))
-        for name in names
-        if name.removesuffix(RANGE) == name or name.removesuffix(RANGE) not in there
-    }
-    for name, column in found.items():
-        if f"{name}{RANGE}" in there:
-            found[name] = replace(column, ranges=tuple(map(str, frame[f"{name}{RANGE}"])))
+    found = {}
+    for name in map(str, frame.columns):
+        # What is known of a value in part belongs to its column.
+        is_range = name.endswith(RANGE) and name.removesuffix(RANGE) in frame
+        if is_range or name in ("run", "error", "input"):
+            continue
+        column = column_of(name, cast("Series", frame[name]), known.get(name, {}))
+        if f"{name}{RANGE}" in frame:
+            column = replace(column, ranges=tuple(map(str, frame[f"{name}{RANGE}"])))
+        found[name] = column
     return found
 
 
@@ -270,15 +267,13 @@ def column_of(name: str, values: Series, said: Mapping[str, Any]) -> Column:
         return replace(made, values=shown, unit=unit)
     # Texts that are all numbers become numbers; others become labels.
     texts = [label(value) for value in values]
-    if all(map(_is_number, filter(None, texts))):
+    number = re.compile(r"[-+]?\d+(\.\d*)?", re.ASCII)
+    if all(map(number.fullmatch, filter(None, texts))):
         return column_of(name, values.map(lambda value: float(label(value) or "nan")), said)
     # Labels in the order of the study, then as they occur.
     order = [label(value) for value in said.get("labels") or ()]
-    labels = tuple(
-        dict.fromkeys(
-            [*(one for one in order if one in set(texts)), *(one for one in texts if one)]
-        )
-    )
+    there = dict.fromkeys(text for text in texts if text)
+    labels = tuple(dict.fromkeys([*(one for one in order if one in there), *there]))
     place = {label: float(k) for k, label in enumerate(labels)}
     return replace(
         made, values=np.array([place.get(text, np.nan) for text in texts]), labels=labels
@@ -312,10 +307,6 @@ def _numbers(values: Series) -> NDArray:
     return np.array(
         [float(v) if v is not None and v == v else np.nan for v in values.astype(object)], float
     )
-
-
-def _is_number(text: str) -> bool:
-    return bool(re.fullmatch(r"[-+]?\d+(\.\d*)?", text, re.ASCII))
 
 
 def label(value: object) -> str:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +15,7 @@ from shipcosim.report.study.tables import StudyTables, columns_of
 from shipcosim.report.theme.figures import evenly
 from shipcosim.report.theme.packing import packed_series
 from shipcosim.report.theme.views import Figure, JsonObject
+from shipcosim.sweep.study_model import View
 
 MOST_TRACKS = 150
 MOST_TIMES = 80
@@ -56,7 +56,7 @@ class _Tracks:
     heading: NDArray  # [deg]
 
 
-def tracks_view(tables: StudyTables, view: Mapping[str, Any]) -> TracksView:
+def tracks_view(tables: StudyTables, view: View) -> TracksView:
     """The chart of all recorded tracks.
 
     Raises
@@ -67,15 +67,14 @@ def tracks_view(tables: StudyTables, view: Mapping[str, Any]) -> TracksView:
     # Series of the runs that have a track.
     frame = Frame(RUNS, columns_of(tables.runs, tables.about.get("columns", ())))
     tracks = _read(tables)
-    series = series_of(frame, {"series": False} | dict(view), [])
-    known = [np.flatnonzero(np.isfinite(tracks.north[one.rows]).any(axis=1)) for one in series]
+    has_track = np.asarray(np.isfinite(tracks.north).any(axis=1))
     series = [
-        SeriesOfRows(one.label, one.colour, one.rows[some])
-        for one, some in zip(series, known, strict=True)
+        SeriesOfRows(one.label, one.colour, one.rows[has_track[one.rows]])
+        for one in series_of(frame, view.series or [], [])
     ]
     # Circles and figure use the distance from the start.
     distance = np.hypot(tracks.north, tracks.east)
-    circles = [float(radius) for radius in view.get("circles") or _circles(distance)]
+    circles = view.circles or _circles(distance)
     # Rows of the drawn tracks: equally many of each series.
     most = MOST_TRACKS // max(len(series), 1)
     drawn = [one.rows[evenly(len(one.rows), most)] if len(one.rows) else one.rows for one in series]
@@ -84,11 +83,18 @@ def tracks_view(tables: StudyTables, view: Mapping[str, Any]) -> TracksView:
     # Rows without a track, which do not count as left out.
     there = np.concatenate([one.rows for one in series]) if series else np.zeros(0, int)
     without = [SeriesOfRows("", "", np.setdiff1d(np.arange(frame.rows), there))]
-    said = [str(view.get("note") or note), left_out(frame, [*series, *without])]
-    # Quantiles over all tracks, not only over the drawn ones.
-    spread = [(one, _spread(distance[one.rows])) for one in series if len(one.rows)]
+    said = [view.note or note, left_out(frame, [*series, *without])]
+    # Quantiles over all tracks, not only over the drawn ones; NaN where no run is left.
+    spread = []
+    for one in series:
+        if len(one.rows):
+            quantiles = np.full((3, len(tracks.time)), np.nan)
+            some = np.isfinite(distance[one.rows]).any(axis=0)
+            left = distance[np.ix_(one.rows, some)]
+            quantiles[:, some] = np.nanquantile(left, [0.05, 0.5, 0.95], axis=0)
+            spread.append((one, quantiles))
     return TracksView(
-        title=str(view.get("title") or "Tracks"),
+        title=view.title or "Tracks",
         note=" ".join(filter(None, said)),
         series=tuple((one.label or "all runs", one.colour) for one in series),
         data=_data(tables, tracks, series, drawn, circles),
@@ -132,14 +138,6 @@ def _circles(distance: NDArray) -> list[float]:
     ]
 
 
-def _spread(distance: NDArray) -> NDArray:
-    """5 %, 50 % and 95 % at each time; NaN where no run is left. [m]"""
-    found = np.full((3, distance.shape[1]), np.nan)
-    some = np.isfinite(distance).any(axis=0)
-    found[:, some] = np.nanquantile(distance[:, some], [0.05, 0.5, 0.95], axis=0)
-    return found
-
-
 def _data(
     tables: StudyTables,
     tracks: _Tracks,
@@ -178,7 +176,15 @@ def _data(
                 "count": len(one.rows),
                 "cells": _density(tracks, one.rows, box),
                 "beyond": _beyond(tracks, one.rows, circles),
-                "tracks": [_track(tables, tracks, row) for row in rows],
+                "tracks": [
+                    {
+                        "run": int(tables.runs["run"].iloc[row]),
+                        "north": packed_series(tracks.north[row], LEVELS),
+                        "east": packed_series(tracks.east[row], LEVELS),
+                        "heading": packed_series(tracks.heading[row], LEVELS),
+                    }
+                    for row in rows
+                ],
             }
             for one, rows in zip(series, drawn, strict=True)
         ],
@@ -211,10 +217,3 @@ def _beyond(tracks: _Tracks, rows: NDArray, circles: Sequence[float]) -> list[li
         for radius in circles
     ]
     return [[round(float(share), 4) for share in one] for one in shares]
-
-
-def _track(tables: StudyTables, tracks: _Tracks, row: int) -> JsonObject:
-    parts = {"north": tracks.north[row], "east": tracks.east[row], "heading": tracks.heading[row]}
-    return {"run": int(tables.runs["run"].iloc[row])} | {
-        k: packed_series(v, LEVELS) for k, v in parts.items()
-    }

@@ -62,37 +62,36 @@ def outcome(tables: StudyTables, runs: Columns, summary: Columns) -> Outcome:
     return Outcome("failed" if failed == count else "partial" if failed else "named", word, said)
 
 
+def _first(columns: Columns, role: str) -> Column | None:
+    """The first column of a role that has a value."""
+    having = (c for c in columns.values() if c.role == role and np.isfinite(c.values).any())
+    return next(having, None)
+
+
 def _of_summary(summary: Columns) -> str:
     """Range of the first summary, and where its ends lie."""
-    # The first summary with a value.
-    found = next(
-        (c for c in summary.values() if c.role == SUMMARY and np.isfinite(c.values).any()), None
-    )
+    found = _first(summary, SUMMARY)
     if found is None:
         return ""
-    name = found.description or found.name.replace("_", " ")
+    name = _capital(found.description or found.name.replace("_", " "))
     # One row, one value everywhere, or a range with the factors of its ends.
     if len(found.values) == 1:
-        return f"{_capital(name)}: {found.text_at(0)}."
+        return f"{name}: {found.text_at(0)}."
     low = int(np.nanargmin(found.values))
     high = int(np.nanargmax(found.values))
     if found.values[low] == found.values[high]:
-        return f"{_capital(name)}: {found.text_at(low)} everywhere."
-    ends = [f"{found.text_at(row)} ({_where(summary, row)})" for row in (low, high)]
-    return f"{_capital(name)}: from {ends[0]} to {ends[1]}."
-
-
-def _where(columns: Columns, row: int) -> str:
-    """Factor levels of a row."""
-    factors = [c for c in columns.values() if c.role in (FACTOR, SAMPLE)]
-    return ", ".join(c.text(c.values[row], with_name=not c.labels) for c in factors) or "one row"
+        return f"{name}: {found.text_at(low)} everywhere."
+    factors = [c for c in summary.values() if c.role in (FACTOR, SAMPLE)]
+    ends = []
+    for row in (low, high):
+        where = ", ".join(c.text(c.values[row], with_name=not c.labels) for c in factors)
+        ends.append(f"{found.text_at(row)} ({where or 'one row'})")
+    return f"{name}: from {ends[0]} to {ends[1]}."
 
 
 def _of_runs(runs: Columns) -> str:
     """First quantity over all runs."""
-    found = next(
-        (c for c in runs.values() if c.role == QUANTITY and np.isfinite(c.values).any()), None
-    )
+    found = _first(runs, QUANTITY)
     if found is None:
         return ""
     # Share with Wilson's interval for true or false, else median, 90 % and largest value.
@@ -115,15 +114,12 @@ def key_figures(tables: StudyTables, runs: Columns, summary: Columns) -> tuple[K
     found = [KeyFigure(str(len(tables.runs)), f"runs, {int(is_failed(tables).sum())} failed")]
     # Summaries first: they are what the study asks for.
     for column in [*summary.values(), *runs.values()]:
-        known = column.values[
-            ~np.isnan(column.values) if column.role == SUMMARY else np.isfinite(column.values)
-        ]
+        has_value = np.isfinite if column.role == QUANTITY else lambda values: ~np.isnan(values)
+        known = column.values[has_value(column.values)]
         # Only numbers that a reader can compare; ends of intervals belong to their value.
-        if not len(known) or column.labels or (column.role not in (QUANTITY, SUMMARY)):
-            continue
-        if column.name.endswith(("_low", "_high")):
-            continue
-        found.append(_key_figure(column, known))
+        is_end = column.name.endswith(("_low", "_high"))
+        if len(known) and not column.labels and column.role in (QUANTITY, SUMMARY) and not is_end:
+            found.append(_key_figure(column, known))
     return tuple(found[:MOST_FIGURES])
 
 
@@ -177,14 +173,14 @@ def _varies_with(column: Column, causes: Sequence[Column]) -> str:
     """Factors that explain most of a quantity's variance, each alone."""
     if column.labels:
         return "–"
+    shares = {
+        cause.name: explained(column.values, cause.values, bool(cause.levels)) for cause in causes
+    }
     # Only factors with a share that matters, at most three.
-    shares = [
-        (explained(column.values, cause.values, bool(cause.levels)), cause.name) for cause in causes
+    named = [
+        name for name in sorted(shares, key=lambda name: -shares[name]) if shares[name] >= MATTERS
     ]
-    named = sorted(
-        ((share, name) for share, name in shares if share >= MATTERS), key=lambda one: -one[0]
-    )[:3]
-    return ", ".join(f"{name} ({percent(share)})" for share, name in named) or "–"
+    return ", ".join(f"{name} ({percent(shares[name])})" for name in named[:3]) or "–"
 
 
 def is_failed(tables: StudyTables) -> NDArray:
@@ -216,24 +212,18 @@ def varied_table(study: Mapping[str, Any]) -> Table:
     rows = [
         (str(one.get("name", "")), _signals(one), _values(one)) for one in _parts(study, "factor")
     ]
-    sampled = _given(_given(study).get("sample") or {}).get("of") or {}
-    for signal, how in sampled.items():
-        rows.append(
-            (
-                str(_given(how).get("name") or signal),
-                _with_others(signal, how),
-                _distribution(_given(how)),
-            )
-        )
-    for signal, how in (_given(_given(study).get("tune") or {}).get("of") or {}).items():
-        ends = f"sought from {how['low']} to {how['high']}{' in the logarithm' if how.get('log') else ''}"
-        rows.append((str(how.get("name") or signal), _with_others(signal, how), ends))
+    for part, in_words in (("sample", _distribution), ("tune", _range)):
+        for signal, how in _given(_given(study.get(part) or {}).get("of") or {}).items():
+            # Others may get the same value.
+            signals = ", ".join([signal, *how.get("also", ())])
+            rows.append((str(how.get("name") or signal), signals, in_words(_given(how))))
     return Table(rows, ("name", "what it sets", "values"), tight=(0,))
 
 
-def _with_others(signal: str, how: Mapping[str, Any]) -> str:
-    """A signal and others with the same value."""
-    return ", ".join([str(signal), *how.get("also", ())])
+def _range(how: Mapping[str, Any]) -> str:
+    """Range of a search in words."""
+    spread = " in the logarithm" if how.get("log") else ""
+    return f"sought from {how['low']} to {how['high']}{spread}"
 
 
 def _given(part: Mapping[str, Any]) -> dict[str, Any]:
@@ -252,12 +242,10 @@ def _signals(factor: Mapping[str, Any]) -> str:
         names = dict.fromkeys(name for case in cases for name in case.get("set") or {})
         events = ["events"] if any(case.get("events") for case in cases) else []
         return ", ".join([*names, *events]) or "cases"
-    if "directions" in factor or "conditions" in factor:
-        return (
-            "where wind, waves and current come from"
-            if "directions" in factor
-            else "wind, waves and current"
-        )
+    if "directions" in factor:
+        return "where wind, waves and current come from"
+    if "conditions" in factor:
+        return "wind, waves and current"
     signals = factor.get("signal") or factor.get("signals")
     if "seeds" in factor and not signals:
         return "every parameter named seed"
@@ -306,8 +294,17 @@ def _distribution(how: Mapping[str, Any]) -> str:
 def measured_table(study: Mapping[str, Any]) -> Table:
     """Quantities of each run, and summaries over similar runs."""
     rows = [(str(one.get("name", "")), _quantity(one)) for one in _parts(study, "quantity")]
-    rows += [(str(one.get("name", "")), _summary(one)) for one in _parts(study, "summary")]
+    for one in _parts(study, "summary"):
+        statistic = str(one.get("statistic", "")).replace("_", " ")
+        said = [f"{statistic} of {one.get('quantity')} over {_plain(one.get('over', ''))}"]
+        said += _keys(one, "percentile", "along", "share")
+        rows.append((str(one.get("name", "")), ", ".join(said)))
     return Table(rows, ("name", "what it is"), tight=(0,))
+
+
+def _keys(one: Mapping[str, Any], *names: str) -> list[str]:
+    """Entries of a part as they are written."""
+    return [f"{name} {one[name]}" for name in names if name in one]
 
 
 def _quantity(one: Mapping[str, Any]) -> str:
@@ -322,17 +319,11 @@ def _quantity(one: Mapping[str, Any]) -> str:
     of = _plain(one.get("signal", ""))
     if "near" in one:
         of = f"the distance of {of} from {_plain(one['near'])}"
-    given = [f"{key} {one[key]}" for key in ("percentile", "limit", "time") if key in one]
-    during = [f"during {' to '.join(map(str, one['during']))}"] if "during" in one else []
-    return ", ".join([f"{str(one.get('reduce', '')).replace('_', ' ')} of {of}", *given, *during])
-
-
-def _summary(one: Mapping[str, Any]) -> str:
-    statistic = str(one.get("statistic", "")).replace("_", " ")
-    given = [f"{key} {one[key]}" for key in ("percentile", "along", "share") if key in one]
-    return ", ".join(
-        [f"{statistic} of {one.get('quantity')} over {_plain(one.get('over', ''))}", *given]
-    )
+    said = [f"{str(one.get('reduce', '')).replace('_', ' ')} of {of}"]
+    said += _keys(one, "percentile", "limit", "time")
+    if "during" in one:
+        said.append(f"during {' to '.join(map(str, one['during']))}")
+    return ", ".join(said)
 
 
 def _plain(value: Any) -> str:

@@ -130,6 +130,19 @@ def polar_axes(**radial: Any) -> PlotlyDict:
     }
 
 
+def shade(
+    colour: str, x: tuple[float, float] | None = None, y: tuple[float, float] | None = None
+) -> PlotlyDict:
+    """A shaded band behind the curves, from x to x or from y to y, all across the figure."""
+    made: PlotlyDict = {"type": "rect"}
+    for axis, ends in (("x", x), ("y", y)):
+        low, high = ends or (0, 1)
+        made |= {f"{axis}0": low, f"{axis}1": high}
+        if ends is None:
+            made[f"{axis}ref"] = "paper"
+    return made | {"layer": "below", "fillcolor": colour, "line": {"width": 0}}
+
+
 def limit(x: float) -> PlotlyDict:
     """A dotted upright line across the figure."""
     look = {"color": palette.VERMILLION, "dash": "dot", "width": 1.5}
