@@ -4,6 +4,9 @@ import pytest
 from measured.logs import FOLDERS, files
 from measured.test_measured import MEASURED, diagnosed, fmus, has_figures, log
 
+from shipcosim.diagnose.joint_pipeline import diagnose_jointly
+from shipcosim.ssp import read_system
+
 HERE = [craft for craft in FOLDERS if (MEASURED / FOLDERS[craft]).is_dir()]
 
 
@@ -23,3 +26,13 @@ def has_velocities_of_the_earth(found):
     frames = [finding for finding in found.findings if finding.cause == "frame"]
     assert [set(finding.channels) for finding in frames] == [{"surge", "sway"}]
     assert "north and east" in frames[0].note
+
+
+def test_logs_together_teach_a_craft_that_predicts_each_from_the_others(log, fmus):
+    """Without this, three logs together gained nothing: 6.1 m after 10 s, and 6.3 m with their common ratio."""
+    names = ("run_224.csv.gz", "run_230.csv.gz", "run_235.csv.gz")
+    tables = [log("blueboat", name) for name in names]
+    system = read_system(tables[0][2], fmus=[fmus])
+    found = diagnose_jointly([table for table, *_ in tables], system, tables[0][1])
+    gain = found.as_json()["gain"]
+    assert gain["after_m"] < 0.55 * gain["before_m"] and found.craft.logs == 3

@@ -139,7 +139,8 @@ def _compared(path, noise, fit, until):
 
 def _gain(case, compared, healthy, chosen, nameless):
     """The gain on some of the predictions, and how many; None where there are none."""
-    from shipcosim.diagnose.validation.gain import chance_of_more, gain, rms
+    from shipcosim.diagnose.validation.gain import gain, rms
+    from trial.gains import chance_of_more
 
     parts = []
     for one in (compared, healthy):

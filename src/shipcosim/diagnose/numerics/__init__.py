@@ -8,6 +8,7 @@ from shipcosim.diagnose.numerics.chi_square import log_survival, survival
 from shipcosim.diagnose.numerics.filters import gaussian_filter, moving_average
 from shipcosim.diagnose.numerics.finite import finite, usual_rise
 from shipcosim.diagnose.numerics.least_squares import least_squares
+from shipcosim.diagnose.numerics.quantiles import quantile
 from shipcosim.diagnose.numerics.root_mean_square import root_mean_square
 from shipcosim.diagnose.numerics.sequences import running_sums, runs
 from shipcosim.diagnose.numerics.splines import spline_integral
@@ -20,6 +21,7 @@ __all__ = [
     "least_squares",
     "log_survival",
     "moving_average",
+    "quantile",
     "root_mean_square",
     "running_sums",
     "runs",

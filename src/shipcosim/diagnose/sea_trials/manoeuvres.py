@@ -180,17 +180,15 @@ def as_trials(
     h = thresholds.STEP * np.sqrt(model.length)
     # Each approach begins at its own steady speed straight ahead.
     approaches = sorted({one.approach for one in planned})
-    orders = [
-        {name: _orders(model, shafts, power, 0.0, 0.0)[name] for name in model.thrusters}
-        for power in approaches
-    ]
+    units = {name: dp_thruster_of(model, name) for name in model.thrusters}
+    orders = [_orders(units, shafts, power, 0.0, 0.0) for power in approaches]
     speeds = dict(zip(approaches, settled(orders, model, changes, h), strict=True))
     # Every manoeuvre to both sides, on opposite courses; all runs in one simulation.
     runs = [(one, side) for one in planned for side in (1, -1)]
-    pilots = [_Pilot(one, side, speeds[one.approach], length, shafts, model) for one, side in runs]
+    pilots = [_Pilot(one, side, speeds[one.approach], length, shafts, units) for one, side in runs]
     rows = [int(one.way * length / speeds[one.approach] / h) + 2 for one, _ in runs]
     start = [(0.0, 0.0, 0.0 if side > 0 else np.pi, speeds[one.approach]) for one, side in runs]
-    motions, units = steered(pilots, start, max(rows), model, changes, h)
+    motions, ordered = steered(pilots, start, max(rows), model, changes, h)
     found = []
     for i, one in enumerate(planned):
         pair = [
@@ -198,7 +196,7 @@ def as_trials(
                 runs[k][0],
                 runs[k][1],
                 motions[k, : rows[k]],
-                {n: (a[: rows[k], k], b[: rows[k], k]) for n, (a, b) in units.items()},
+                {n: (a[: rows[k], k], b[: rows[k], k]) for n, (a, b) in ordered.items()},
                 h,
             )
             for k in (2 * i, 2 * i + 1)
@@ -228,11 +226,10 @@ def _seen(one, side, motion, units, h):
     return SeaTrial(one.kind, side, (h * first, h * last), helm, time, motion[part], cut)
 
 
-def _orders(model, shafts, power, helm, bow):
+def _orders(units, shafts, power, helm, bow):
     """Speed and direction of every thruster, from shaft speed, helm to starboard and bow thruster to starboard."""
     found = {}
-    for name in model.thrusters:
-        unit = dp_thruster_of(model, name)
+    for name, unit in units.items():
         if unit.pushes_sideways:
             found[name] = (bow * unit.most, 0.0)
         elif unit.pointed:
@@ -246,13 +243,13 @@ def _orders(model, shafts, power, helm, bow):
 class _Pilot:
     """Gives the orders of one run from the motion that it sees."""
 
-    def __init__(self, planned, side, speed, length, shafts, model):
+    def __init__(self, planned, side, speed, length, shafts, units):
         self.planned = planned
         self.side = side
         self.speed = speed
         self.length = length
         self.shafts = shafts
-        self.model = model
+        self.units = units
         self.ends = np.cumsum([leg.way for leg in planned.legs]) * length / speed
         self.first = None
         self.helm_to = side
@@ -274,4 +271,4 @@ class _Pilot:
             if self.helm_to * (psi - self.first) > leg.check:
                 self.helm_to = -self.helm_to
             helm = self.helm_to * leg.helm
-        return _orders(self.model, self.shafts, leg.power, helm, self.side * leg.bow)
+        return _orders(self.units, self.shafts, leg.power, helm, self.side * leg.bow)

@@ -143,10 +143,14 @@ def steered(
         for name in model.thrusters
     }
 
+    # An order holds until the next one. Units that answer early (a lag below 0) take it from later rows.
+    late = np.min(ships.parts["instruments"].order_lag)
+    held = 2 + max(0, int(np.ceil(-late / h)))
+
     def order(k, motion):
         for i, pilot in enumerate(pilots):
             for name, pair in pilot(k * h, float(motion.psi[0, i]), float(motion.r[0, i])).items():
-                units[name][0][k:, i], units[name][1][k:, i] = pair  # until the next row
+                units[name][0][k : k + held, i], units[name][1][k : k + held, i] = pair
 
     order(0, state)
     shown = []
@@ -198,12 +202,21 @@ def _at(units, k):
 def _followed(actual, units, k, ships, h):
     """Speed and direction of each unit a step later, which follow their orders. [rev/s or N, rad]"""
     found = {}
+    (count, trials) = next(iter(units.values()))[0].shape
+    # Row and share of a row at which orders act after the delay; by ship where this is an array.
+    at = np.clip(k - ships.parts["instruments"].order_lag / h, 0.0, count - 1.0)
+    low = np.minimum(at.astype(int), count - 2)
+    share = at - low
+    trial = np.arange(trials)
+
+    def late(series):
+        return (1.0 - share) * series[low, trial] + share * series[low + 1, trial]
+
     for name, (speed, direction) in units.items():
         unit = ships.parts[name]
-        # Orders act after the delay, within the limit of speed.
-        lag = ships.parts["instruments"].order_lag
-        wanted = _late(speed, k, lag / h)
-        angle = _late(direction, k, lag / h)
+        # Orders after the delay, within the limit of speed.
+        wanted = late(speed)
+        angle = late(direction)
         if hasattr(unit, "rpm_max"):
             wanted = np.clip(wanted, -unit.rpm_max / 60.0, unit.rpm_max / 60.0)
         # Shaft speed follows with a first-order lag; azimuths turn at their rate.
@@ -212,16 +225,6 @@ def _followed(actual, units, k, ships, h):
             angle = turned(actual[name][1], angle, unit.azimuth_rate * h)
         found[name] = (n, angle)
     return found
-
-
-def _late(series, k, rows):
-    """A series (n, trials) some rows before row k, linear between rows; by ship where the lag is an array."""
-    # Row and share of a row to interpolate at.
-    at = np.clip(k - np.asarray(rows, float), 0.0, len(series) - 1.0)
-    low = np.minimum(at.astype(int), len(series) - 2)
-    share = at - low
-    trial = np.arange(series.shape[1])
-    return (1.0 - share) * series[low, trial] + share * series[low + 1, trial]
 
 
 def _stepped(state, before, after, ships, h):

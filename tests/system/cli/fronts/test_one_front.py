@@ -1,5 +1,6 @@
 """A command and its call do the same work: the same files, byte for byte, the same verdict, the same remarks."""
 
+import inspect
 import os
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import pytest
 from diagnose.sea_trials import trials
 
 import shipcosim as sc
+from shipcosim.diagnose.sea_trials import study
 
 STUDY = """scenario = "fill"
 
@@ -201,16 +203,40 @@ def test_command_and_call_leave_the_same_files(name, tank, call):
     assert same_files(ours[2], theirs[2]) == [] and "verdict.json" in ours[2]
 
 
+def write_trials(folder):
+    planted = {"heavy to turn": {"vessel.inertia_yaw": 2.0 * 43e6}}
+    sc.write_table(trials.logs(planted, seed=3)["heavy to turn"], folder / "trials.csv")
+
+
+@pytest.fixture
+def studied_once(monkeypatch):
+    """Has the study of sea trials, which takes a minute, asked for the same by both fronts and worked out once."""
+    work_out, asked = study.study, []
+
+    def studied(*arguments, **options):
+        given = inspect.signature(work_out).bind(*arguments, **options).arguments
+        given |= {"progress": None, "system": given["system"].name}
+        if not asked:
+            asked.extend([given, work_out(*arguments, **options)])
+        assert given == asked[0]
+        return asked[1]
+
+    monkeypatch.setattr(study, "study", studied)
+    return asked
+
+
 @pytest.mark.parametrize("name", OF_SHIPS)
-def test_command_and_call_on_ships_leave_the_same_files(name, tmp_path, monkeypatch, call):
+def test_command_and_call_on_ships_leave_the_same_files(
+    name, tmp_path, monkeypatch, call, studied_once
+):
     monkeypatch.chdir(tmp_path)
     if name == "sea-trials":
-        planted = {"heavy to turn": {"vessel.inertia_yaw": 2.0 * 43e6}}
-        sc.write_table(trials.logs(planted, seed=3)["heavy to turn"], tmp_path / "trials.csv")
+        write_trials(tmp_path)
     command, call_in_python = OF_SHIPS[name]
     ours, theirs = both(command, call_in_python, call, tmp_path)
     assert ours[1] == theirs[1], ours[0].err
     assert same_files(ours[2], theirs[2]) == []
+    assert bool(studied_once) == (name == "sea-trials")
 
 
 def test_what_a_run_was_is_in_its_file_on_its_page_and_in_its_card(tank):

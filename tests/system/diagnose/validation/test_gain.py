@@ -28,9 +28,6 @@ from shipcosim.diagnose.validation.cosimulation import Replayed, simulated
 from shipcosim.diagnose.validation.gain import (
     MODELS,
     baseline,
-    beyond_observer,
-    by_condition,
-    chance_of_more,
     compare,
     gain,
     rms,
@@ -47,6 +44,7 @@ from shipcosim.diagnose.validation.split import (
 from shipcosim.library import build_stale
 from shipcosim.models.core.motion import Motion
 from shipcosim.ssp import read_system, with_values
+from trial.gains import beyond_observer, by_condition, chance_of_more
 from truth import draw
 
 CONTRACT = {

@@ -7,6 +7,7 @@ any change of the log that is linear goes through the same filter.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -18,7 +19,12 @@ from shipcosim.diagnose.log.thresholds import (
     SLOW_MOTION,
     WHITENESS_LAGS,
 )
-from shipcosim.diagnose.numerics import gaussian_filter, solve_tridiagonal, spline_integral
+from shipcosim.diagnose.numerics import (
+    gaussian_filter,
+    quantile,
+    solve_tridiagonal,
+    spline_integral,
+)
 
 RATIOS = (
     0.0005,
@@ -128,9 +134,7 @@ def jumps(seen: np.ndarray) -> np.ndarray:
         off = np.abs(change_here - np.median(around, axis=0))
         leap |= (
             off
-            > 5.0 * np.quantile(off, 0.95)
-            + 3.0 * np.ptp(np.sort(around, axis=0)[1:-1], axis=0)
-            + 1e-9
+            > 5.0 * quantile(off, 0.95) + 3.0 * np.ptp(np.sort(around, axis=0)[1:-1], axis=0) + 1e-9
         )
     return leap
 
@@ -180,7 +184,7 @@ def filter_for(motion: Motion, levels: np.ndarray | None = None) -> list[Filter]
     return [Filter(drafts[b].gains, drafts[b].scale, stds[b, k]) for k, b in enumerate(best)]
 
 
-def filters(time: np.ndarray, starts: np.ndarray) -> list[Filter]:
+def filters(time: np.ndarray, starts: np.ndarray) -> tuple[Filter, ...]:
     """A filter for each of RATIOS.
 
     Parameters
@@ -192,13 +196,19 @@ def filters(time: np.ndarray, starts: np.ndarray) -> list[Filter]:
     # Steps in units of the usual one: wander grows with time.
     steps = np.diff(time, prepend=time[0])
     steps = steps / np.median(steps[1:])
+    return _filters(tuple(steps.tolist()), tuple(starts.tolist()))
+
+
+@lru_cache(maxsize=1)
+def _filters(steps, starts):
+    """Filters of steps in units of the usual one, kept as the next relation or label mostly has the same rows."""
     ratios = np.array(RATIOS)
     variance = np.ones(len(RATIOS))
     gains = np.ones((len(steps), len(RATIOS)))
     scale = np.ones((len(steps), len(RATIOS)))
     # Riccati recursion of the scalar Kalman filter, in units
     # of the measurement noise, for all ratios at once.
-    for row, (step, anew) in enumerate(zip(steps.tolist(), starts.tolist(), strict=True)):
+    for row, (step, anew) in enumerate(zip(steps, starts, strict=True)):
         if row == 0 or anew:
             variance = np.ones(len(RATIOS))
             continue
@@ -207,7 +217,7 @@ def filters(time: np.ndarray, starts: np.ndarray) -> list[Filter]:
         total = variance + ratios * step + 1.0
         variance = np.minimum(1.0 - 1.0 / total, 1.0 - 1e-9)
         gains[row], scale[row] = variance, total
-    return [Filter(gains[:, k], np.sqrt(scale[:, k])) for k in range(len(RATIOS))]
+    return tuple(Filter(gains[:, k], np.sqrt(scale[:, k])) for k in range(len(RATIOS)))
 
 
 def _spreads(white):
@@ -236,7 +246,8 @@ def _togetherness(white):
     # of the correlations; correlated rows count less.
     lags = range(1, min(WHITENESS_LAGS + 1, len(white)))
     power = np.mean(tame**2) + 1e-12
-    together = [np.mean(tame[lag:] * tame[:-lag]) / power for lag in lags]
+    products = (tame[lag:] * tame[:-lag] for lag in lags)
+    together = [product.sum() / product.size / power for product in products]
     return max(1.0, 1.0 + 2.0 * sum(together))
 
 

@@ -9,6 +9,7 @@ import cmath
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from shipcosim.diagnose.log.mislabels import (
     CHANNEL_UNITS,
@@ -56,7 +57,7 @@ class LogInterpretation:
     time: float = 1.0
     free: frozenset[str] = frozenset()
 
-    @property
+    @cached_property
     def form(self) -> tuple[str, str]:
         """The form of the velocity in which it is proportional to the change of position."""
         # Mirroring the position is the same as mirroring velocity and heading
@@ -66,7 +67,7 @@ class LogInterpretation:
         turned = "mirrored" if ("heading" in self.mirrored) != flipped else "body"
         return taken, "earth" if self.earth else turned
 
-    @property
+    @cached_property
     def factor(self) -> complex:
         """Logarithm of the factor between the change of position and that form."""
         # The change of position is p_dot = w E for velocity w and

@@ -29,6 +29,7 @@ from shipcosim.diagnose.log.thresholds import (
     UNLABELLED,
     UNSURE_NOISE,
 )
+from shipcosim.diagnose.numerics import quantile
 
 ROUGHNESS = (
     5.69  # variance of the fourth differences of a spline's integral of white noise of variance 1
@@ -139,7 +140,7 @@ def thinned(count: int, series: Sequence[np.ndarray]) -> slice:
     return slice(None, None, stride)
 
 
-def _fits(drafts: list[Filter], pairs, labelled, axes):
+def _fits(drafts: Sequence[Filter], pairs, labelled, axes):
     """Of each pair the fit under the noise that suits it best, and how likely what is seen is by itself."""
     # Whiten each array only once, as columns of one matrix.
     columns = {id(one): one for pair in pairs.values() for one in pair}
@@ -157,18 +158,16 @@ def _fits(drafts: list[Filter], pairs, labelled, axes):
         scale = draft.scale[known]
         white = whitened(draft, stacked)
         offset = -axes * float(np.sum(np.log(scale)))
+        # White noise of a rate adds up to a random walk. This is the variance
+        # that it has after the whitening, by the median gain of the filter.
+        gain = float(np.median(draft.gains[known]))
+        adds_up = 1.0 / (gain * (2.0 - gain) * np.median(scale) ** 2)
         own = [white[:, place[id(one)]] for one in pairs.get(labelled, ())]
         for name in alone:
             alone[name] = max(alone[name], _likelihood(white[:, place[name]], axes)[0] + offset)
         for key, (seen, told) in pairs.items():
             fit = fit_rows(white[:, place[id(seen)]], white[:, place[id(told)]], axes, offset)
             if key not in fits or fit.likelihood > fits[key].likelihood:
-                # White noise of a rate adds up to a random walk. This is the variance
-                # that it has after the whitening, by the median gain of the filter.
-                gain = float(np.median(draft.gains[known]))
-                adds_up = 1.0 / (
-                    gain * (2.0 - gain) * np.median(scale) ** 2
-                )  # white noise that adds up, whitened
                 rows_noise = axes * adds_up * abs(fit.factor) ** 2 * noises[id(told)]
                 # What the labels leave can be held against it where both tell of the same rows.
                 is_same = bool(own) and seen is pairs[labelled][0]
@@ -218,7 +217,7 @@ def _noise_of_rows(told, axes):
 
 def _spread(off, axes):
     """Standard deviation of an axis, by what four in five rows are below."""
-    return float(np.quantile(off, 0.8)) / (1.794 if axes == 2 else 1.282) + 1e-300
+    return quantile(off, 0.8) / (1.794 if axes == 2 else 1.282) + 1e-300
 
 
 def _likelihood(rest, axes):
