@@ -17,6 +17,7 @@ import shipcosim as sc
 from shipcosim.diagnose.calibration_pipeline import calibrate
 from shipcosim.diagnose.checked_log import checked
 from shipcosim.diagnose.compared_log import compared
+from shipcosim.diagnose.joint_pipeline import diagnose_jointly
 from shipcosim.diagnose.log.checks.wind_jumps import jumping_wind
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.pipeline import read_measurements
@@ -109,6 +110,14 @@ def test_a_craft_is_learned_from_her_own_log_and_runs_as_a_system(log, fmus, tmp
     replayed = errors_of(replay_log(table, systems, put_right, horizon=3.0).tracks)
     before, after = (float(replayed["position"].sel(simulation=name)[-1]) for name in systems)
     assert after < 0.5 * before
+
+
+def test_two_logs_together_teach_a_craft_that_predicts_each_from_the_other(log, fmus):
+    tables = [log("blueboat", name) for name in ("run_224.csv.gz", "run_230.csv.gz")]
+    system = read_system(tables[0][2], fmus=[fmus])
+    found = diagnose_jointly([table for table, *_ in tables], system, tables[0][1])
+    gain = found.as_json()["gain"]
+    assert gain["after_m"] < gain["before_m"] and found.craft.logs == 2
 
 
 def test_calibration_to_logs_of_a_real_craft_makes_a_reference_that_predicts_each_from_the_others(
