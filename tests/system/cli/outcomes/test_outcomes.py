@@ -105,7 +105,7 @@ def test_expectation_that_a_run_did_not_reach_is_a_skipped_testcase(call, projec
     assert call("run", "fill", "--until", "2", "--junit", "junit.xml").code == 0
     cases, suite = cases_in()
     status, text = cases["lag.y: 1 ± 0.05 m during 4 to 5 s"]
-    assert status == "skipped" and "ended at 2 s" in text and suite.get("skipped") == "1"
+    assert status == "skipped" and "from 0 to 2 s" in text and suite.get("skipped") == "1"
 
 
 @pytest.mark.parametrize(
