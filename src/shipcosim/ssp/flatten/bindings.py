@@ -43,7 +43,6 @@ def take_bindings(
     fmu : FmuDescription, optional
         Of the component; it can hold parameter sets itself.
     """
-    before = len(tree.settings)
     for binding in bindings:
         document = tree.library.content(binding.values, place, fmu)
         if document is None:
@@ -58,7 +57,6 @@ def take_bindings(
             tree.settings += _settings(tree, values, path, binding.prefix, near)
         else:
             tree.settings += _mapped(tree, values, path, binding.prefix, mapping)
-    _remark_replaced(tree, tree.settings[before:])
 
 
 def apply_set(tree: Hierarchy, values: ParameterSet) -> None:
@@ -114,18 +112,6 @@ def _mapped(
         ]
     _remark_left_out(tree, by_name, path, mapping)
     return settings
-
-
-def _remark_replaced(tree: Hierarchy, settings: Iterable[Setting]) -> None:
-    """Remark names that an element's bindings give two values: the later one applies, as the standard has it."""
-    given: dict[str, ParameterValue] = {}
-    for setting in settings:
-        value = setting.value
-        earlier = given.setdefault(setting.name, value)
-        if (earlier.value, earlier.unit) != (value.value, value.unit):
-            found = f"It is {value.value} here and {earlier.value} in {earlier.place}; {value.value} is used."
-            tree.findings.remark(value.place, found, "Keep one of them.")
-        given[setting.name] = value
 
 
 def _remark_left_out(

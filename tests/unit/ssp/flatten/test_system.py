@@ -269,29 +269,6 @@ def test_values_for_an_element_that_does_not_exist_are_one_remark(shop, real, n_
     assert n_values == 1 or f"its {n_values} values are not used" in remark.found
 
 
-@pytest.mark.parametrize("place", ("component", "system"))
-@pytest.mark.parametrize("second", (1.0, 2.0))
-def test_of_two_values_by_the_sets_of_one_element_the_later_is_used_and_said(
-    shop, real, place, second
-):
-    shop.fmu("one", "parameter k Real")
-    name = "k" if place == "component" else "a.k"
-    shop.ssv(real(name, 1.0))
-    shop.ssv(real(name, second), "resources/more.ssv")
-    both = BOUND.replace(
-        "</ssd:ParameterBindings>",
-        '<ssd:ParameterBinding source="resources/more.ssv"/></ssd:ParameterBindings>',
-    )
-    more, head = (both, "") if place == "component" else ("", both)
-    shop.ssd(shop.component("a", "one", more=more), head=head)
-    assert shop.read().components["a"].start == {"k": second}
-    said = [one for one in check_system(shop.folder) if "is used" in one.found]
-    assert len(said) == (second != 1.0)
-    for remark in said:
-        assert remark.severity == "remark" and "more.ssv" in remark.where
-        assert "It is 2.0 here and 1.0 in" in remark.found and "numbers.ssv" in remark.found
-
-
 def test_values_for_a_component_without_its_fmu_say_nothing_beside_its_error(shop, real):
     shop.ssv("".join(real(f"a.{name}", 1.0) for name in "klm"))
     shop.ssd(shop.component("a", "lost"), head=BOUND)
