@@ -36,6 +36,8 @@ OTHER_PROCESSOR = {
 
 
 def main(target: str) -> int:
+    # Without the files of compiled code each of some hundred commands compiles all modules again.
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     if target == "quick":
         return run(LINT | {"tests": [*TESTS, "tests/unit"]})
     if target == "test":

@@ -140,4 +140,6 @@ def _digest(root: Path) -> str:
 def _newest(path: Path) -> float:
     """Time of the last change of a file, or of the files in a folder."""
     files = path.rglob("*") if path.is_dir() else [path]
-    return max((file.stat().st_mtime for file in files if file.suffix != ".pyc"), default=0.0)
+    # A folder is as new as the compiled code that Python puts into it, so only files count.
+    sources = (file for file in files if file.is_file() and file.suffix != ".pyc")
+    return max((file.stat().st_mtime for file in sources), default=0.0)
