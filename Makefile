@@ -25,7 +25,7 @@ nightly: .venv/installed-test
 	$(BIN)/python -m pip install --quiet --editable ".[allocators]"
 	$(BIN)/python .ci/checks.py nightly
 
-# the documentation as a site with search: build/site/index.html
+# the documentation as a site with search, and a ship to steer: build/site/index.html
 docs: .venv/installed-docs
 	$(BIN)/python -m mkdocs build --strict
 	@echo "Page: build/site/index.html"
@@ -40,7 +40,7 @@ durations: .venv/installed-test
 	$(BIN)/python -c "open('.venv/installed', 'w')"
 
 .venv/installed-docs: .venv/installed
-	$(BIN)/python -m pip install --quiet --editable ".[docs]"
+	$(BIN)/python -m pip install --quiet --editable ".[docs,native]"
 	$(BIN)/python -c "open('.venv/installed-docs', 'w')"
 
 # torch by its exact version: where a CPU build is at hand pip takes that one, a range would fetch gigabytes of GPU packages

@@ -1,9 +1,11 @@
 """Tables of the reference pages, made from the code that they describe: commands, file formats, FMUs, causes, calls.
+The ship that the reader steers is made here too.
 
 The hook of the site (`site_hooks.py`) puts them where a page says ``<!-- generated: NAME -->``, NAME being a key of
 `TABLES`. Nothing is stored: a page is what the code is when the site is built.
 """
 
+import functools
 import importlib
 import re
 import sys
@@ -19,6 +21,7 @@ from pydantic_core import PydanticUndefined
 
 import shipcosim
 from shipcosim import library
+from shipcosim.calls.arguments import Reading, system_and_scenario
 from shipcosim.cli.outcomes.exits import EXIT_CODES
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.hypotheses.cause import (
@@ -30,6 +33,7 @@ from shipcosim.diagnose.hypotheses.cause import (
 from shipcosim.diagnose.log.channels import Channel
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.roles import ROLES, THRUSTER_ROLES
+from shipcosim.report.live import live_page
 from shipcosim.scenario.model import Event, Expectation, Record, Scenario
 from shipcosim.ships import file as ship_file
 from shipcosim.ships.given import Given
@@ -382,6 +386,26 @@ def exit_codes() -> str:
     return f"```text\n{EXIT_CODES}\n```"
 
 
+LIVE = "live/four_corner.html"
+"""File of the site that runs the DP system of the four-corner test in the reader's browser."""
+
+
+def live_ship() -> str:
+    """That file within a page."""
+    return (
+        f"This is it. It has more room [in a window of its own]({LIVE}).\n\n"
+        f'<iframe src="{LIVE}" title="R/V Gunnerus on DP" loading="lazy" '
+        f'style="width: 100%; height: 44rem; border: 0"></iframe>'
+    )
+
+
+@functools.cache
+def live_file() -> str:
+    """What `shipcosim export page four_corner` writes."""
+    system, scenario, _ = system_and_scenario("four_corner", Reading(), {})
+    return live_page(system, scenario)
+
+
 TABLES: dict[str, Callable[[], str]] = {
     "commands": commands,
     "fmus": fmus,
@@ -389,6 +413,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "causes": causes,
     "python_api": python_api,
     "exit_codes": exit_codes,
+    "live_ship": live_ship,
     **{f"format_{kind}": format_of(kind) for kind in RECORDS},
 }
 

@@ -4,6 +4,7 @@
   the reference, the READMEs of the benches and the changelog pages of their own.
 - Links from one of these to another, or to a file of the repository, are turned into links of the site.
 - Tables of the reference are made from the code (`look_up.py`).
+- The ship that the reader steers, on the page of live runs, is compiled.
 - A generated page of `docs/generated` stands below the text on its subject (`BELOW`).
 """
 
@@ -114,6 +115,7 @@ def on_files(files, config):
         files.append(File.generated(config, page, content=(ROOT / source).read_text("utf-8")))
     shim = Path(__file__).with_name("iframe-worker.js")
     files.append(File.generated(config, "assets/iframe-worker.js", abs_src_path=str(shim)))
+    files.append(File.generated(config, look_up.LIVE, content=look_up.live_file()))
     pages = {file.src_uri: file for file in files if file.src_uri.endswith(".md")}
     wanted = set()
     for page, file in pages.items():

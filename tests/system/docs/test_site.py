@@ -27,9 +27,9 @@ def built(config, out, root):
 @pytest.fixture(scope="module")
 def site(root, needs, tmp_path_factory):
     """Folder of the site, built from the pages as they are."""
-    for package in ("mkdocs", "material", "mkdocstrings"):
+    for package in ("mkdocs", "material", "mkdocstrings", "ziglang"):
         if importlib.util.find_spec(package) is None:
-            needs(package, "pip install -e '.[docs]'")
+            needs(package, "pip install -e '.[docs,native]'")
     out = tmp_path_factory.mktemp("site")
     done = built(root / "mkdocs.yml", out, root)
     assert done.returncode == 0, done.stderr
@@ -56,6 +56,15 @@ def test_every_part_of_the_reference_is_filled(site):
         text = (site / page).read_text(encoding="utf-8")
         assert "<!-- generated" not in text
         assert [word for word in words if word not in text] == [], page
+
+
+def test_a_ship_can_be_steered_on_the_page_of_live_runs(site):
+    (frame,) = re.findall(
+        r'<iframe src="([^"]+)"', (site / "live.html").read_text(encoding="utf-8")
+    )
+    page = site / frame
+    assert "Four-corner DP test" in page.read_text(encoding="utf-8")
+    assert page.stat().st_size < 3_000_000
 
 
 def test_search_finds_tutorials_guides_reference_and_reports(site):
