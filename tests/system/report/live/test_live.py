@@ -152,6 +152,28 @@ def test_the_set_point_is_dragged_in_the_chart(desk):
     assert events[-1]["override"]["reference.y_set"] == pytest.approx(3.0, abs=0.2)
 
 
+def test_a_joystick_moves_the_set_point_and_turns_it(desk):
+    moved = "return ['x_set', 'y_set', 'psi_set'].map((name) => desk.present(`reference.${name}`))"
+    start = desk.ask(moved)
+    # A stick half to starboard and turned; that it is hardly forward moves nothing.
+    desk.ask(
+        "navigator.getGamepads = () => [null, { axes: [0.5, -0.1, 1] }];"
+        "window.dispatchEvent(new Event('gamepadconnected'))"
+    )
+    desk.wait("return desk.present('reference.psi_set') > 0.08")
+    north, east, heading = np.subtract(desk.ask(moved), start)
+    assert north == 0.0
+    # At full stick 1 m/s and 5 deg/s.
+    assert np.degrees(heading) / east == pytest.approx(10.0, rel=0.1)
+    # Where it is pulled out nothing moves any more.
+    desk.ask("navigator.getGamepads = () => [null]")
+    pause = "return new Promise((done) => setTimeout(() => done(true), 600))"
+    desk.wait(pause)
+    rest = desk.ask(moved)
+    desk.wait(pause)
+    assert desk.ask(moved) == rest
+
+
 def test_a_run_that_fails_says_why_and_can_be_saved_and_taken_back(desk):
     desk.ask(
         "desk.live.reach(10); desk.act('override', 'vessel.tau_X_4', 1e300); desk.live.reach(40)"

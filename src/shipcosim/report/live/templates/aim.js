@@ -1,4 +1,4 @@
-// The set point by hand: by a click in the chart, by dragging its cross, and by the arrow keys.
+// The set point by hand: by a click in the chart, by dragging its cross, by the arrow keys, and by a joystick.
 (() => {
   const { live } = report, { act, present, move, element } = window.desk, chart = document.getElementById("scene-chart");
   const STEP = 1, TURN = 5;  // m and degrees that a key moves it
@@ -22,7 +22,7 @@
   // ---- keys
 
   const words = element("p", { className: "hint", id: "aim" }), value = element("output");
-  words.append("Set point: ", value, ` In the chart the arrow keys move it by ${STEP} m${signals[2] ? `, ← and → with Shift turn it by ${TURN}°` : ""}; or drag its cross.${run.vessels[0].aims.reference ? " The reference travels there from where it is." : ""}`);
+  words.append("Set point: ", value, ` In the chart the arrow keys move it by ${STEP} m${signals[2] ? `, ← and → with Shift turn it by ${TURN}°` : ""}; or drag its cross. A joystick or gamepad moves it too.${run.vessels[0].aims.reference ? " The reference travels there from where it is." : ""}`);
   document.getElementById("scene").append(words);
   Object.assign(chart, { tabIndex: 0, role: "application" });
   chart.setAttribute("aria-describedby", "aim");
@@ -36,6 +36,22 @@
     if (signals[k]) set(k, k === 2 ? scene.wrapped(Math.round(aim(k)) + sense * size) : +(aim(k) + sense * size).toFixed(1));
     scene.refresh();
   });
+
+  // ---- joystick or gamepad: forward is north, as in the chart; its third axis turns the ship
+
+  const FASTEST = [1, 1, TURN], IDLE = 0.15, EVERY = 250;  // m/s and deg/s at full stick; share of it that moves nothing; ms
+  let stick = null;
+  function steered() {
+    const pad = [...navigator.getGamepads()].find(Boolean);
+    if (!pad) { clearInterval(stick); stick = null; return; }
+    const [right = 0, back = 0, turn = 0] = pad.axes.map((axis) => (Math.abs(axis) < IDLE ? 0 : axis));
+    for (const [k, share] of [-back, right, turn].entries()) {
+      const next = aim(k) + (share * FASTEST[k] * EVERY) / 1000;
+      if (share && signals[k]) set(k, +(k === 2 ? scene.wrapped(next) : next).toFixed(2));
+    }
+    if (right || back || turn) scene.refresh();
+  }
+  window.addEventListener("gamepadconnected", () => { stick ??= setInterval(steered, EVERY); });
 
   // ---- pointer
 
