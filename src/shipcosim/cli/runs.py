@@ -5,16 +5,28 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 import typer
 
-from shipcosim.cli.console import print_overview, print_problems, print_summary, progress_of
+from shipcosim.cli.console import (
+    make_console,
+    print_overview,
+    print_problems,
+    print_summary,
+    progress_of,
+)
 from shipcosim.cli.outcomes.exits import INTERRUPTED, Conclusion
 from shipcosim.cosim import Interrupted
 from shipcosim.errors import ShipcosimError
+from shipcosim.native import is_installed
 from shipcosim.results.run import VERDICT
 from shipcosim.staging import set_aside
+
+SLOW = 10.0
+"""Seconds of a run from which on it is worth to say that there is a faster way."""
+FASTER = "Compiled models run faster: pip install 'shipcosim[native]'."
 
 if TYPE_CHECKING:
     from shipcosim.calls.runs import PreparedRun
@@ -122,9 +134,15 @@ def run_with_progress(prepared: PreparedRun, out: Path, force: bool = False) -> 
     try:
         with progress_of(label, prepared.scenario.stop_time) as progress:
             shown = replace(prepared, options=replace(prepared.options, progress=progress))
-            return shown.finish(out, force=force)
+            began = monotonic()
+            result = shown.finish(out, force=force)
+            is_slow = monotonic() - began > SLOW
     except Interrupted as stop:
         page = out / "result-partial.html"
         if stop.table.sizes["time"] and page.is_file():
             print_summary(prepared.part(stop), page, to_stderr=True)
         raise typer.Exit(INTERRUPTED) from None
+    # Who waits and has no compiler may not know that there is a faster way.
+    if is_slow and prepared.options.engine == "auto" and not is_installed():
+        make_console(stderr=True).print(FASTER, markup=False)
+    return result

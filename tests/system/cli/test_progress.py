@@ -5,7 +5,8 @@ import itertools
 import pytest
 from rich.console import Console
 
-from shipcosim.cli import progress
+from shipcosim.calls.runs import prepare_run
+from shipcosim.cli import progress, runs
 from shipcosim.cli.progress import LAST_STEP, Course, shown_progress
 
 STEPS = {"reading": 1.0, "searching": 6.0, "predicting": 3.0}
@@ -122,3 +123,21 @@ def test_short_work_needs_no_lines(clock, capsys):
         clock.now += 0.01
         say(done, 100)
     assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize(
+    ("slow", "compiler", "engine", "hints"),
+    [
+        (0.0, False, "auto", True),
+        (0.0, True, "auto", False),
+        (0.0, False, "fmpy", False),
+        (60.0, False, "auto", False),
+    ],
+)
+def test_a_slow_run_without_a_compiler_says_what_is_faster(
+    slow, compiler, engine, hints, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setattr(runs, "SLOW", slow)
+    monkeypatch.setattr(runs, "is_installed", lambda: compiler)
+    runs.run_with_progress(prepare_run("stationkeeping", until=1.0, engine=engine), tmp_path)
+    assert (runs.FASTER in capsys.readouterr().err) == hints
