@@ -354,8 +354,8 @@ def _reasons_not_to_trust(
     after = root_mean_square(np.array([one.position["after"][-1] for one in errors]))
     if after > before:
         found.append(
-            f"On rows that it was not fitted on, the calibrated ship misses the log by {after:.2g} m, the ship as the "
-            f"system has her by {before:.2g} m. Log more, with larger moves, turns and thrust ahead and astern."
+            f"On rows that it was not fitted on, the calibrated ship misses the log by {after:.2g} m. The ship as the "
+            f"system has her misses it by {before:.2g} m. Log more, with larger moves, turns and thrust ahead and astern."
         )
     return found
 
@@ -400,18 +400,18 @@ def _judged(reference, found, suspects):
                 )
     if reference.tolerance_scale > 1.0:
         remarks.append(
-            f"The logs are only explained with {reference.tolerance_scale:g} times the stated tolerances: the ship is "
-            "of another form than the model, or her numbers are less well known than the system says."
+            f"It takes {reference.tolerance_scale:g} times the stated tolerances to explain the logs. The ship is of "
+            "another form than the model, or her numbers are less well known than the system says."
         )
     if reference.form_scale > 0.0 and found.form_gain < FORM_COST:
         remarks.append(
-            "These logs do not tell whether her loads have the form of the model's: drag along the hull, wind over the "
+            "These logs do not tell whether her loads have the form of the model's. Drag along the hull, wind over the "
             "angle, damping and added mass stay as uncertain as is usual. A log with moves, turns and thrust both ways "
             "would tell."
         )
     elif reference.form_scale > 0.0:
         remarks.append(
-            f"She is of another form than the model, {reference.form_scale:g} times what is usual: drag along the "
+            f"She is of another form than the model, by {reference.form_scale:g} times what is usual. Drag along the "
             "hull, wind over the angle, damping and added mass are fitted as functions. The reference has all of them, "
             "calibrated.ssv those that the system has numbers for."
         )

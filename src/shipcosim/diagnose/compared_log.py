@@ -249,7 +249,7 @@ def _not_learned(errors: HeldOutErrors | None, count: int) -> str:
     if errors is None:
         return f"{what} not teach the craft: too short, or no ship moves like that. {remedy}"
     return (
-        f"{what} not teach the craft: her best numbers predict parts that were held out no better, for sure, than "
+        f"{what} not teach the craft. On parts that were held out her best numbers predict no better, for sure, than "
         f"a craft that keeps her velocity. After {errors.horizon:.3g} s they are {errors.after:.2g} m and "
         f"{errors.after_deg:.2g} deg off, she is {errors.steady:.2g} m and {errors.steady_deg:.2g} deg. {remedy}"
     )

@@ -436,7 +436,7 @@ def remarks_on(found: JointDiagnosis) -> list[str]:
     for name in basis.ratios.apart if basis.has_ratio else ():
         own = basis.ratios.each[name]
         remarks.append(
-            f"{name} by itself says {own.ratio:.2f} ± {own.std:.2f} of thrust over inertia, away from all others: "
-            "the common ratio is that much less certain."
+            f"{name} by itself says {own.ratio:.2f} ± {own.std:.2f} of thrust over inertia, away from all others. "
+            "The common ratio is that much less certain."
         )
     return remarks

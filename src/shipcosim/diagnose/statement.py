@@ -113,8 +113,8 @@ def named_if_better(found: Diagnosis, predicted: PredictedLog) -> tuple[Diagnosi
         return found, predicted
     names = ", ".join(one.label for one in found.physics)
     remark = (
-        f"{names}: likeliest by its evidence, and not named, since on rows that it was not fitted on the ship with it "
-        f"misses the log by {within:.2g} m, without it by {without:.2g} m."
+        f"{names}: likeliest by its evidence, but not named. On rows that it was not fitted on the ship with it misses "
+        f"the log by {within:.2g} m, without it by {without:.2g} m."
     )
     doubted = replace(
         found,
@@ -153,8 +153,8 @@ def verified(found: Diagnosis, predicted: PredictedLog) -> Diagnosis:
         for channel in healthy.beyond
     ]
     remark = (
-        f"No cause stands out, but after {HORIZONS[-1]:g} s the system misses the log by {' and '.join(sizes)}: by more "
-        "than any of the healthy ships drawn within its tolerances."
+        f"No cause stands out, but after {HORIZONS[-1]:g} s the system misses the log by {' and '.join(sizes)}. "
+        "None of the healthy ships drawn within its tolerances does so."
     )
     return replace(found, verdict="unknown", healthy=healthy, remarks=(*found.remarks, remark))
 

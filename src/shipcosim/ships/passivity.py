@@ -103,8 +103,8 @@ def driven_by_water(where: str, values: Mapping[str, Any]) -> Iterator[Problem]:
     rate = np.degrees(turning_rate_of_dp(hull))
     found = (
         f"still water drives her in {100.0 * gain.share:.2g} % of the states of DP (u and v up to {DP_SPEED:g} m/s, r up "
-        f"to {rate:.2g} deg/s): by {gain.power:.3g} W at u {gain.u:.2g} m/s, v {gain.v:.2g} m/s, "
-        f"r {np.degrees(gain.r):.2g} deg/s, where her kinetic energy grows by {100.0 * gain.growth:.2g} % a second."
+        f"to {rate:.2g} deg/s). It gives her most, {gain.power:.3g} W, at u {gain.u:.2g} m/s, v {gain.v:.2g} m/s, "
+        f"r {np.degrees(gain.r):.2g} deg/s. Her kinetic energy grows there by {100.0 * gain.growth:.2g} % a second."
     )
     remedy = "Still water brakes a ship: correct her damping, or add linear damping X_u, Y_v, N_r."
     yield Problem(where, found, remedy, "remark")

@@ -85,8 +85,8 @@ def export_fmu(
                 )
                 return remarks
     remedy = (
-        "Components whose outputs follow their inputs at once are passed on in another order there; where the last "
-        "digits alone differ, a component amplifies rounding, and the FMU can be written without this comparison."
+        "There, components whose outputs follow their inputs at once are in another order. If only last digits differ, "
+        "a component amplifies rounding: the FMU can then be written without this comparison."
     )
     raise ShipcosimError([Problem(system.name, found, remedy) for found in differing[:5]])
 

@@ -254,8 +254,7 @@ def problem_of(system: System, name: str, ship: str, one: ThirdPartyFmu) -> Prob
     )
     found = f"'{name}' ({one.component.fmu.model_name}) puts a load on '{ship}', and {why}."
     remedy = (
-        f"Feed its speed by an input of the system named '{name}_rpm', its direction by '{name}_azimuth' (in rpm or "
-        f"rad/s, deg or rad), or what it is to push by '{name}_thrust', or other inputs from the ship's "
-        f"{', '.join(MOTION)}."
+        f"Feed it by inputs of the system: its speed by '{name}_rpm' [rpm or rad/s] and its direction by '{name}_azimuth' "
+        f"[deg or rad], or its thrust by '{name}_thrust'. Or feed its inputs from the ship's {', '.join(MOTION)}."
     )
     return Problem(system.file, found, remedy)

@@ -264,8 +264,8 @@ def craft_sentence(craft: LearnedCraft | None) -> str:
     errors = craft.errors
     taught = "the log teaches her" if craft.logs == 1 else f"{craft.logs} logs teach her"
     return (
-        f" The craft as {taught} predicts better: after {errors.horizon:.3g} s, on parts that were held "
-        f"out, {metres(errors.after)} and {errors.after_deg:.2g}° off instead of {metres(errors.before)} and "
+        f" The craft as {taught} predicts better. After {errors.horizon:.3g} s, on parts that were held "
+        f"out, it is {metres(errors.after)} and {errors.after_deg:.2g}° off instead of {metres(errors.before)} and "
         f"{errors.before_deg:.2g}°. If she kept her velocity, it would be {metres(errors.steady)} and "
         f"{errors.steady_deg:.2g}°."
     )
@@ -332,8 +332,8 @@ def next_steps(diagnosis: Diagnosis, extended: str | None = None) -> list[str]:
         steps.append(_manoeuvre_step(diagnosis.prescription))
     if diagnosis.is_assumed:
         steps.append(
-            "Write into craft.toml what is known of her, make her systems with shipcosim new ship NAME --from craft.toml, "
-            "and diagnose this and other logs with them."
+            "Write into craft.toml what is known of her and make her systems: shipcosim new ship NAME --from craft.toml. "
+            "Diagnose this and other logs with them."
         )
     elif diagnosis.obstacles:
         steps.append(

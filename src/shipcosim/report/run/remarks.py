@@ -147,6 +147,6 @@ def _lost_hold(shown: Dataset, roles: Roles) -> list[str]:
     drift = "She cannot hold" if error[-1] > GROWTH else "She is driven off for a while"
     begin = starts[k] + np.argmax(limits[limited[0]][starts[k] :])
     return [
-        f"{drift}: from {time[begin]:g} s on the thrust is at its limit ({', '.join(limited)}) while the "
-        f"position error grows to {error[ends[k]]:.1f} m within a minute, and to {np.nanmax(error):.1f} m at most."
+        f"{drift}: from {time[begin]:g} s on the thrust is at its limit ({', '.join(limited)}). The position error "
+        f"grows to {error[ends[k]]:.1f} m within a minute, and to {np.nanmax(error):.1f} m at most."
     ]
