@@ -1,11 +1,13 @@
-"""How long the sentences of the pages are, and which turns of phrase they should not have.
+"""How long the sentences of the pages and of the messages are, and which turns of phrase they should not have.
 
 `python docs/generators/sentences.py` prints a table: page, words, median and 90th percentile of the length of its
 sentences, the longest one, turns of phrase of `PLAIN` that it has. `--show PAGE` prints its longest sentences and these.
 """
 
+import ast
 import re
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from statistics import median
 
@@ -57,6 +59,40 @@ def pages() -> list[Path]:
         p for p in (ROOT / "docs").rglob("*.md") if not {"generated", "generators"} & set(p.parts)
     )
     return found
+
+
+def texts_of_code() -> Iterator[tuple[str, str, bool]]:
+    """Strings of four words or more in src: where, text, whether it is a docstring. A value in a message is one word."""
+    for file in sorted((ROOT / "src").rglob("*.py")):
+        tree = ast.parse(file.read_text(encoding="utf-8"))
+        nodes = list(ast.walk(tree))
+        docstrings = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
+        parts = {
+            id(part) for node in nodes if isinstance(node, ast.JoinedStr) for part in node.values
+        }
+        for node in nodes:
+            if isinstance(node, ast.JoinedStr):
+                text = "".join(
+                    str(part.value) if isinstance(part, ast.Constant) else "X"
+                    for part in node.values
+                )
+            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+                text = node.value
+            else:
+                continue
+            if len(text.split()) >= 4 and id(node) not in parts:
+                where = f"{file.relative_to(ROOT).as_posix()}:{node.lineno}"
+                yield where, text, id(node) in docstrings
+
+
+def message_sentences() -> list[str]:
+    """Sentences of all strings in src that are whole sentences and no docstrings."""
+    return [
+        one
+        for _, text, is_docstring in texts_of_code()
+        if not is_docstring and text.rstrip().endswith((".", "?"))
+        for one in sentences(text)
+    ]
 
 
 def prose(text: str) -> list[str]:
@@ -127,6 +163,8 @@ def main(shown: str = "") -> None:
         f"{'all, words without reports':44} {counted:6} {median(everything):6.0f} "
         f"{percentile(everything, 0.9):4} {max(everything):7}"
     )
+    lengths = [length(one) for one in message_sentences()]
+    print(f"{'messages':51} {median(lengths):6.0f} {percentile(lengths, 0.9):4} {max(lengths):7}")
 
 
 if __name__ == "__main__":

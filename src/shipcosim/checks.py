@@ -22,7 +22,7 @@ OF_SHIP = {"particulars", "thrusters"}
 OF_STUDY = {"factor", "quantity", "sample", "extends", "scenario"}
 OF_CAUSE = {"cause", "sentence"}
 OF_SCENARIO = {"system", "stop_time", "step_size", "events", "expect", "set"}
-"""Keys by which a .toml is told from those of other kinds."""
+"""Keys that only a .toml of one kind has."""
 OSP_SCENARIOS = (".json", ".yaml", ".yml")
 TABLES = (".csv", ".csv.gz", ".nc", ".parquet")
 LOGS = (".txt", ".dat", ".tsv", ".log", ".xlsx", ".mat", ".txt.gz", ".dat.gz", ".tsv.gz", ".log.gz")

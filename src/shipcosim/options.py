@@ -1,6 +1,6 @@
 """Options of a run: which engine runs it, from when to when, what feeds its inputs, in which processes.
 
-What happens in the run (steps, start values, events) is the scenario's; how it is carried out is said here.
+What happens in the run (steps, start values, events) is the scenario's; how it is carried out is set here.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from shipcosim.snapshot import Snapshot
 
 TIMEOUT = 60.0
-"""How long a component in its own process may take for an answer, if nothing else is said. [s]"""
+"""How long a component in its own process may take for an answer, if nothing else is given. [s]"""
 
 
 CountProgress = Callable[[int, int], None]
@@ -105,7 +105,7 @@ class RunOptions:
 
 
 class RunKeywords(TypedDict, total=False):
-    """`RunOptions` as keyword arguments, but for `start_time`, whose default `shipcosim.simulate` finds itself.
+    """`RunOptions` as keyword arguments, except for `start_time`, whose default `shipcosim.simulate` finds itself.
 
     Times may be amounts: ``until="10 min"``.
     """

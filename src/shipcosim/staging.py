@@ -18,7 +18,7 @@ from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.temporary import temporary_folder
 
 WRITING = "writing the page"
-"""What a progress function is told at the end, where results are written."""
+"""What a progress function gets at the end, where results are written."""
 
 
 def check_targets(folder: Path | None, file: Path | None = None) -> None:

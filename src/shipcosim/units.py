@@ -279,7 +279,7 @@ def relation(source: Unit, target: Unit) -> str:
     Returns
     -------
     str
-        ``"same"``; ``"convertible"``; ``"angle"`` where they are equal but for the radian; ``"unknown"`` where one of
+        ``"same"``; ``"convertible"``; ``"angle"`` where they are equal except for the radian; ``"unknown"`` where one of
         them has no definition; ``"incompatible"``.
     """
     if source.exponents is None or target.exponents is None:

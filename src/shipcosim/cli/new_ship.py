@@ -88,13 +88,13 @@ def _is_terminal() -> bool:
 
 
 def _answer(answers: Answers, key: str, question: str, ask: bool) -> None:
-    """An answer, asked for until it can be read; what is usual where nobody asks."""
+    """An answer, asked for until it can be read; the usual value if no answer can be asked for."""
     if getattr(answers, key):
         return
     try:
         proposed = usual(answers, key)
     except ValueError:
-        return  # a length that is none is said with the rest
+        return  # a wrong length is reported with the rest
     while ask:
         said = _asked(question, str(proposed))
         setattr(answers, key, proposed if said == proposed else said)
@@ -207,7 +207,7 @@ def _study(ship: Described) -> str:
     """A study of failures: each thruster stops, in wind from all sides."""
     from shipcosim.ships.control import units_for_dp
 
-    # A thruster without a drive cannot fail by itself; the allocator is told that it is lost.
+    # A thruster without a drive cannot fail by itself; the allocator gets it as lost.
     events = {
         unit.name: f'"allocator.available_{number}" = false'
         if unit.fmu == "fixed_thruster"

@@ -108,7 +108,7 @@ def shown_progress(steps: Mapping[str, float]) -> Iterator[Callable[..., None]]:
     Parameters
     ----------
     steps : mapping of str to float
-        Steps in order but for the page, which is the last of all, with the time that each typically takes. [s]
+        Steps in order except for the page, which is the last of all, with the time that each typically takes. [s]
     """
     from rich.progress import (
         BarColumn,

@@ -280,7 +280,7 @@ def problems_of(
     *,
     reference: Reference | None = None,
 ) -> dict[str, Identification]:
-    """Several logs by their names, each as an identification problem; what cannot be used of all is said at once."""
+    """Several logs by their names, each as an identification problem; all that cannot be used is reported at once."""
     found = {}
     problems = []
     names = log_names(logs)
@@ -310,7 +310,7 @@ def _reference_logs(found: Mapping[str, Identification]) -> list[ReferenceLog]:
 def _written(
     result: CalibratedShip, given: System, out: AnyPath | None, is_assumed: bool = False
 ) -> CalibratedShip:
-    """The same, once its files are in a folder; nothing is written where nobody asks, or the logs are refused.
+    """The same, once its files are in a folder; nothing is written unless asked, or the logs are refused.
 
     A craft of whom all was guessed is no reference: her form is too rough for causes to be named beside it.
     """

@@ -39,7 +39,7 @@ class CheckedLog(ReadLog):
     faults : tuple of Finding
         Of kind ``"data"``.
     repaired : xarray.Dataset
-        The log on even rows, these faults put right or cut out.
+        The log on even rows, these faults corrected or cut out.
     """
 
     faults: tuple[Finding, ...]

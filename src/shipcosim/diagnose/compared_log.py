@@ -118,7 +118,7 @@ class LogComparison:
 
 @dataclass(frozen=True)
 class ComparedLog(CheckedLog):
-    """A checked log held against the simulation; what is grossly wrong is put right, in the log and in the ship.
+    """A checked log held against the simulation; what is grossly wrong is corrected, in the log and in the ship.
 
     Attributes
     ----------
@@ -129,7 +129,7 @@ class ComparedLog(CheckedLog):
 
 
 def compared(log: CheckedLog, is_assumed: bool = False) -> ComparedLog:
-    """A checked log held against the simulation: what is grossly wrong is put right before anything else.
+    """A checked log held against the simulation: what is grossly wrong is corrected before anything else.
 
     Sides and signs of thrusters that the motion contradicts are faults of the log; a common ratio of thrust to inertia
     that is far off is in the ship from here on. Where all numbers of the ship are guesses, she is learned instead.
@@ -179,7 +179,7 @@ def _compared(log: CheckedLog) -> ComparedLog:
     comparison = LogComparison(errors, told, tuple(gains), labels, ratio, missing=tuple(missing))
     found = _stage(log, comparison)
     if labels.is_sure and labels.best.changes:
-        # The log with sides and signs of the thrusters put right.
+        # The log with sides and signs of the thrusters corrected.
         sure = float(1.0 - np.exp(-min(labels.margin, 4.6)))
         faults = [finding_of(_label(change, found.log), sure) for change in labels.best.changes]
         faults = (*found.faults, *faults)

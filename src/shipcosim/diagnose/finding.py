@@ -67,7 +67,7 @@ class Finding:
         What else there is to say, one sentence.
     alternatives : tuple of str
         Other readings that explain the log alike, one sentence each. Where there are any, `note` is only the likeliest
-        of them, and nothing was put right.
+        of them, and nothing was corrected.
     at_reference : dict of str to Estimate
         What the parameters were when a reference was made; empty without one, and of what it does not hold.
     logs : tuple of str
@@ -104,7 +104,7 @@ class Finding:
         """The note, with what explains the log alike."""
         if not self.alternatives:
             return self.note
-        return f"{'; or '.join([self.note, *self.alternatives])}: the log does not tell, nothing is put right"
+        return f"{'; or '.join([self.note, *self.alternatives])}: the log does not tell, nothing is corrected"
 
     def as_json(self) -> dict:
         """The finding as an entry of diagnosis.json; what does not apply is left out."""

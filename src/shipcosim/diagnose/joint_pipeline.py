@@ -6,7 +6,7 @@ From the logs to their common verdict, `find_common_causes`:
     causes_in          Diagnosis       each log by itself
     common_faults      Finding         faults of the data that the logs have in common
     ratio_of_logs      RatioOfLogs     one ratio of thrust to inertia, unless the logs contradict each other
-    about_common       Identification  each log with what is common put right, where it was not by itself
+    about_common       Identification  each log with what is common corrected, where it was not by itself
     judged_jointly     JointVerdict    causes by the evidence of all logs
 
 From the verdict to the gain, `diagnose_jointly`: the system with the common causes in it, and each log co-simulated
@@ -300,7 +300,7 @@ def _together(
 def _relabelled(
     faults: Sequence[Finding], usable: Mapping[str, Identification]
 ) -> dict[str, list[Finding]]:
-    """Faults of the thrusters' labels that other logs show, by the logs that are put right after them."""
+    """Faults of the thrusters' labels that other logs show, by the logs that are corrected after them."""
     found: dict[str, list[Finding]] = {}
     for fault in (one for one in faults if is_of_thrusters(one)):
         for name in (name for name in usable if name not in fault.logs):
@@ -327,7 +327,7 @@ def _about_common(
 
 
 def _stated(found: JointDiagnosis, basis: JointBasis) -> JointDiagnosis:
-    """What is said of the logs together."""
+    """The result for all logs together."""
     judgement = basis.verdict.judgement
     ratios = basis.ratios
     # Ratios that contradict each other, one of them far off, keep any common cause from being

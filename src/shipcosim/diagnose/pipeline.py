@@ -4,7 +4,7 @@ From a log to an identification problem, `problem_of`:
 
     read_measurements  ReadLog         the log by the roles of its columns, the ship, the catalogue of causes
     checked            CheckedLog      faults of the log that its own channels show, repaired
-    compared           ComparedLog     commanded against felt force: what is grossly wrong, put right
+    compared           ComparedLog     commanded against measured force: what is grossly wrong, corrected
     identified         Identification  the identification problem: noise, linearisation about the ship without a cause
 
 From there to its verdict, `verdict_on`:
@@ -242,7 +242,7 @@ def ship_by(system: System, reference: Reference | None) -> ShipModel:
 
 
 def problem_of(read: ReadLog, is_assumed: bool = False) -> Identification:
-    """A log as an identification problem; what cannot be used is said here, later stages refuse nothing."""
+    """A log as an identification problem; what cannot be used is reported here, later stages refuse nothing."""
     return identified(compared(checked(read), is_assumed))
 
 

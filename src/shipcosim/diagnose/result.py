@@ -31,7 +31,7 @@ class LogSummary:
     name : str
         Of its file.
     measured, repaired : xarray.Dataset
-        As read; and with its faults put right, over even times, with the coordinate `logged_time`.
+        As read; and with its faults corrected, over even times, with the coordinate `logged_time`.
     step : float
         Time from row to row as used. [s]
     remarks : tuple of str
@@ -147,7 +147,7 @@ class Diagnosis:
 
     @property
     def is_named(self) -> bool:
-        """Whether causes of the physics are named, and nothing else is the matter."""
+        """Whether causes of the physics are named, and nothing else is wrong."""
         return self.verdict == "named" and bool(self.physics)
 
     @property

@@ -1,4 +1,4 @@
-"""What is said of a log: its diagnosis from the verdict on, and with the errors, the gain and what the page shows."""
+"""The statement on a log: its diagnosis from the verdict on, and with the errors, the gain and what the page shows."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -33,14 +33,14 @@ from shipcosim.ssp import AnyPath
 
 
 def stated(log: JudgedLog) -> Diagnosis:
-    """What is said of a log: faults, causes since when they act, what it could not have shown, what to sail next."""
+    """The statement on a log: faults, causes since when they act, what it could not have shown, what to sail next."""
     found = log.explained.identification
     judgement = log.judgement
     comparison = found.comparison
     excitation = excitation_of(log)
     if any(
         fault.alternatives for fault in found.faults
-    ):  # of a log that may be misread, nothing is said of the ship
+    ):  # of a log that may be misread, nothing is reported of the ship
         return Diagnosis(
             "ambiguous",
             found.faults,
@@ -236,7 +236,7 @@ def completed(
     )
     if errors is None or predicted.comparison is None:
         return complete
-    # The error of the simulation is told over one set of predictions, those that the gain is measured on, where the
+    # The error of the simulation is taken over one set of predictions, those that the gain is measured on, where the
     # craft's own times are theirs.
     measured = baseline(errors)
     told = found.baseline

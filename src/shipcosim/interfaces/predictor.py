@@ -13,7 +13,7 @@ from shipcosim.models.prediction.regions import FORESIGHT, RegionParameters, own
 from shipcosim.models.ship.mast import MastParameters, wind_from_mast
 
 HORIZONS = (10.0, 30.0, 60.0)  # s, as the outputs are named
-NO_LOAD = 1.0  # N and N.m, below which no thruster is told to give anything
+NO_LOAD = 1.0  # N and N.m, below which no thruster gets a command
 FARTHEST = 1e7  # m and rad, beyond which a prediction has diverged
 SHOWN = ("x", "y", "psi", "position_region", "heading_region")
 NO_GOAL = 1e9  # m, where no reference model goes: nobody says where she goes to
@@ -42,7 +42,7 @@ class Prediction(NamedTuple):
 
 
 def thrust_is_lost(known: Known) -> bool:
-    """Whether no thruster is told to give anything."""
+    """Whether no thruster gets a command."""
     X, Y, N = (abs(load) < NO_LOAD for load in known.thrusters)
     return X & Y & N
 
@@ -239,7 +239,7 @@ class MotionPredictor(Fmu):
                 setattr(self, output, where(is_sound, value, getattr(self, output)))
 
     def _show_nothing(self, known, t, error):
-        """Keep the prediction before, and begin anew: what is known of the surroundings may be no number either."""
+        """Keep the prediction before, and begin anew: wind and current may be no number either."""
         if not self.has_diverged:
             self.log(
                 f"the prediction at t = {t:.9g} s diverges ({error}): none is shown", "warning"

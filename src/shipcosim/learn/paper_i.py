@@ -35,7 +35,7 @@ NOTES = (
     "With five signals, units 5 and 6 get one command. Of allocator 1 that is the same network as with six, since each"
     " output has weights of its own, and those of units 5 and 6 have the same targets.",
     "Held out are 10 % of the rows, drawn at random as in the paper: their neighbours at 20 Hz are trained on. The"
-    " exercise never shows two thrusters at work together, but for the two main propellers.",
+    " exercise never shows two thrusters at work together, except for the two main propellers.",
 )
 
 

@@ -95,7 +95,7 @@ def _thruster(one: LoggedThruster, length: float, thrust: float) -> str:
     if one.drives == {"thrust"}:
         entry |= {"kind": '"fixed"', "command": '"thrust"'}
     elif one.drives == {"rpm"}:
-        # Thrust goes with the square of the shaft speed.
+        # Thrust is proportional to the square of the shaft speed.
         coefficient = thrust / (max(one.largest, 1.0) * pi / 30.0) ** 2
         both = f"coefficient_ahead = {coefficient:.4g}, coefficient_astern = {coefficient:.4g}"
         entry |= {"kind": '"fixed"', "coefficients": f"{{ {both} }}"}

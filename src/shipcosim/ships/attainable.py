@@ -58,7 +58,7 @@ def largest_multiple(sets: Sequence[NDArray], left: NDArray, loads: NDArray) -> 
         # Only facets that face the load limit it.
         along = normals @ (loads[row] / size[row])
         facing = along > ASIDE
-        # A reach that is zero but for rounding means that no load is possible in this direction.
+        # A reach that is zero except for rounding means that no load is possible in this direction.
         reach = np.min(most[facing] @ left[row] / along[facing])
         found[row] = reach / size[row] if reach > NOTHING * most.max() else 0.0
     return found

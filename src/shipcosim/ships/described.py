@@ -169,7 +169,7 @@ def _problem(path: Path, said: dict[str, Any], finding: Any) -> Problem:
     """Translate a finding of pydantic into our words."""
     keys = list(finding["loc"])
     kind = finding["type"]
-    # Findings in thrusters are told by the thruster's name.
+    # Findings in thrusters have the thruster's name.
     if keys[:1] == ["thrusters"] and len(keys) > 1:
         return _of_thruster(path, said, keys, finding)
     last = str(keys[-1])

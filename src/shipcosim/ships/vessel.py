@@ -78,7 +78,7 @@ def form_of(ship: ShipFile, where: str, problems: list[Problem]) -> HullDimensio
     filled = number(heavy) / (density * p.hulls * L * B * T)
     block = min(
         max(number(p.block_coefficient, filled), 0.05), 1.0
-    )  # what cannot be is said by the check
+    )  # the check reports what cannot be
     # Usual service speed at Froude number 0.2.
     speed = number(p.service_speed, USUAL_FROUDE * sqrt(GRAVITY * L))
     return HullDimensions(

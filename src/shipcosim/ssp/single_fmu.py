@@ -155,7 +155,7 @@ def _add_experiment(root: etree._Element, given: Mapping[str, float]) -> None:
 
 
 def default_step_size(system: System, start_time: float, stop_time: float | str) -> float | None:
-    """Step size of a run between two times where nobody gives one. [s]
+    """Step size of a run between two times if none is given. [s]
 
     Of one FMU its own step, where that divides the run, or the nearest that does; 500 steps where it has none. Of any
     other system the step of its default experiment, or None.

@@ -211,7 +211,7 @@ class Plan:
 
     @cached_property
     def columns(self) -> list[ColumnOf]:
-        """Columns of the table of runs, but for its number, error and input."""
+        """Columns of the table of runs, except for its number, error and input."""
         # Columns in the order of the table: factors, samples, quantities. Units come from the
         # signals.
         unit_of = units_of(self.system)

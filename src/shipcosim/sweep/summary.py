@@ -21,7 +21,7 @@ SHARE = 0.9
 """Of the runs of a case that have to hold, where a summary does not say."""
 
 RANGE = "_range"
-"""Ending of the column that says what is known of a value where not every case was run."""
+"""Ending of the column that says the bounds of a value where not every case was run."""
 
 Interval = tuple[float, float, float]
 """Value, lower and upper limit at CONFIDENCE; NaN where a limit cannot be given."""

@@ -174,7 +174,7 @@ class Cluster(Workers):
 def _begin(parent: int, folder: str) -> None:
     """Prepare a worker: it ends with its parent, no Ctrl-C, and one thread for numerical libraries."""
     end_with_parent(parent)
-    # Workers are ended by a signal and remove nothing: what they leave goes with the folder of the study.
+    # Workers are ended by a signal and remove nothing: what they leave is removed with the folder of the study.
     tempfile.tempdir = folder
     os.environ["TMPDIR"] = folder
     # All cores have a process each; more threads would only compete.

@@ -91,6 +91,6 @@ def test_a_reading_that_is_left_open_says_all_of_them_and_that_nothing_was_done(
     finding = Finding(
         "frame", None, "data", 0.4, channels=("north",), note="one", alternatives=("two", "three")
     )
-    assert finding.sentence == "one; or two; or three: the log does not tell, nothing is put right"
+    assert finding.sentence == "one; or two; or three: the log does not tell, nothing is corrected"
     assert finding.as_json()["alternatives"] == ["two", "three"]
     assert "alternatives" not in Finding("frame", kind="data").as_json()

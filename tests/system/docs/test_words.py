@@ -1,4 +1,4 @@
-"""The pages are written plainly: none of the turns of phrase that readers had to read twice, and short sentences.
+"""Pages and code are written plainly: none of the turns of phrase that readers had to read twice, and short sentences.
 
 `python docs/generators/sentences.py` prints the figures of every page. Reports may have longer sentences.
 """
@@ -9,6 +9,8 @@ import pytest
 
 LONGEST = {"median": 14, "percentile": 24, "sentence": 45}
 """Words of a sentence: median and 90th percentile over all guides, and the longest one."""
+MESSAGES = {"median": 12, "percentile": 22}
+"""The same of all messages; a value in one counts as a word."""
 WORDS = 48_000
 """Of all pages that people write, without reports: 45,000, and room for pages to come."""
 
@@ -51,6 +53,19 @@ def test_sentences_are_told_apart(texts):
 def test_pages_have_no_turn_of_phrase_that_must_be_read_twice(texts, pages):
     found = {name: texts.turns(text) for name, text in pages.items()}
     assert {name: turns for name, turns in found.items() if turns} == {}
+
+
+def test_messages_and_docstrings_have_none_either(texts):
+    found = {where: texts.turns(text) for where, text, _ in texts.texts_of_code()}
+    assert len(found) > 5000
+    assert {where: turns for where, turns in found.items() if turns} == {}
+
+
+def test_sentences_of_messages_are_short(texts):
+    lengths = [texts.length(one) for one in texts.message_sentences()]
+    assert len(lengths) > 1000
+    assert median(lengths) <= MESSAGES["median"]
+    assert texts.percentile(lengths, 0.9) <= MESSAGES["percentile"]
 
 
 def test_sentences_of_the_guides_are_short(texts, guides):

@@ -53,7 +53,7 @@ def replay(
     ] = None,
     force: Force = False,
 ) -> Conclusion:
-    """Draw a log and what a system makes of it, before and after a diagnosis: track, heading and speeds, errors.
+    """Draw a log and its simulation by a system, before and after a diagnosis: track, heading and speeds, errors.
 
     The system is started again and again from the measured state and driven by what the log says of its thrusters.
     Leaves report.html, errors.csv and replay.nc.

@@ -16,7 +16,9 @@ from shipcosim.errors import Problem, ShipcosimError, error_at, reading
 if TYPE_CHECKING:
     from shipcosim.ssp import System
 
-ORIGIN = "gunnerus_dp"  # what a new system is a copy of, and a new scenario runs, where nobody says otherwise
+ORIGIN = (
+    "gunnerus_dp"  # what a new system is a copy of, and a new scenario runs, if no other is given
+)
 SHIP = "my_ship"  # system of a new project
 HELD = "The ship keeps her place while the wind rises"
 LOADED = 'parameters      = "loaded"                        # a set in the system\'s resources/, over her own numbers\n'

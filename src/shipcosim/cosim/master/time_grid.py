@@ -1,7 +1,7 @@
 """The time grid of a run: communication points, and the rows of the table among them.
 
 Steps are counted in integers. Time is the quotient of two integers, k p / q for a step size of p / q seconds, so that
-it is the double nearest to the true time at every step, and an FMU is told to step by the difference of two times, so
+it is the double nearest to the true time at every step, and an FMU steps by the difference of two times, so
 that it ends where the next step begins. libcosim, which counts nanoseconds, gets the same numbers.
 """
 

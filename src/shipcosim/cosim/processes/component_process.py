@@ -23,7 +23,7 @@ EXIT_TIMEOUT = 5.0
 """For a process that has nothing more to do. [s]"""
 MOST_LINES = 1000
 LAST_LINES = 3
-"""Lines that a component prints and that are shown at most, and of them those that are told where it fails."""
+"""Lines that a component prints and that are shown at most, and of them those that an error repeats."""
 MOST_BYTES = 4096
 """Of a line that a component prints."""
 
@@ -114,7 +114,7 @@ class ComponentProcess:
         # A broken pipe means that the process has ended: find out why.
         except (OSError, EOFError):
             raise SlaveError(self._cause_of_end(what, limit)) from None
-        # Where an answer begins and ends is lost: as after a crash, the process is of no use.
+        # Where an answer begins and ends is lost: as after a crash, the process is useless.
         except Garbled:
             self._kill()
             raise SlaveError(

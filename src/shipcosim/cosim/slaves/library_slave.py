@@ -69,7 +69,7 @@ class LibrarySlave(Slave):
                 modelIdentifier=identifier,
                 unzipDirectory=str(folder),
                 instanceName=name,
-                requireFunctions=False,  # one that is missing is said where it is called
+                requireFunctions=False,  # a missing one is reported where it is called
             )
             self._instantiate()
         except Exception as error:

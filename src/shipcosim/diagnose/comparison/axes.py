@@ -1,6 +1,6 @@
-"""Commanded against felt on each axis: how much of the felt force the thrusters explain, with which gain.
+"""Commanded against felt on each axis: how much of the measured force the thrusters explain, with which gain.
 
-The felt force is inertia times acceleration, less what turning asks of the rigid body. Beside the thrusters it is
+The measured force is inertia times acceleration, less what turning asks of the rigid body. Beside the thrusters it is
 explained by whatever else may act: the model's load of the water with any size, further damping of any size, coupling
 of the axes, wind, and a steady force. Damping takes energy away, in whatever model: its coefficients have one sign.
 """
@@ -32,7 +32,7 @@ _OF_HULL = 3  # columns of the water's load: the model's, and linear and quadrat
 
 @dataclass(frozen=True)
 class AxisFit:
-    """The felt force on one axis explained by commanded loads and all else that may act.
+    """The measured force on one axis explained by commanded loads and all else that may act.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class AxisFit:
     squares : float
         Mean square of what is left. [N2 or N2.m2]
     share : float
-        Of the felt force's mean square that is explained.
+        Of the measured force's mean square that is explained.
     damping, damping_std : float
         The water's load as fitted over that of the model, along the log.
     """
@@ -130,7 +130,7 @@ class Axis:
         return bool(total.std() > LEAST_COMMANDED * max(self.felt.std(), 1e-9))
 
     def explained(self, columns: np.ndarray) -> AxisFit:
-        """The felt force explained by some commanded loads, whose gains must not be negative.
+        """The measured force explained by some commanded loads, whose gains must not be negative.
 
         Parameters
         ----------
@@ -174,14 +174,14 @@ class Axis:
         return 1.0 / slope, float(found.std[0] / unit / slope**2)
 
     def unexplained(self, given: np.ndarray) -> float:
-        """Mean square of the felt force that is left beside a given load, (n,) array, and all but the thrusters."""
+        """Mean square of the measured force that is left beside a given load, (n,) array, and all but the thrusters."""
         return regressed(
             self.felt - given, self.rest, self.positive, self.block, self._prior
         ).squares
 
     @property
     def felt_unit(self) -> float:
-        """Root mean square of the felt force."""
+        """Root mean square of the measured force."""
         return root_mean_square(self.felt) + 1e-30
 
     def both_ways(self, ahead: np.ndarray, astern: np.ndarray) -> AxisFit:
@@ -220,7 +220,7 @@ class Axis:
     @cached_property
     def _prior(self) -> np.ndarray:
         """What forces that no model knows may be, as coefficients of their columns."""
-        # Damping and model loads are free but for their sign; coupling and steady forces have a
+        # Damping and model loads are free except for their sign; coupling and steady forces have a
         # standard deviation of a share of the commanded force.
         return np.where(
             self.positive,
@@ -230,7 +230,7 @@ class Axis:
 
     @cached_property
     def _without(self) -> Regression:
-        """The felt force explained by all but the thrusters."""
+        """The measured force explained by all but the thrusters."""
         return regressed(self.felt, self.rest, self.positive, self.block, self._prior)
 
     def _water(self, found: Regression, k: int) -> tuple[float, float]:

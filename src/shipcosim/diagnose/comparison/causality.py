@@ -1,8 +1,8 @@
 """Whether commands come before what they do: velocities predicted from their past, with and without past commands.
 
-Where thrusters are told by a controller to answer the motion, or weather that nobody knows drives the ship, what is
-commanded goes with what is felt in either sense. But only what a thruster does comes after its command: given the past
-of the motion, past commands say more of the next velocity if they are those that the ship obeys.
+Where a controller commands the thrusters by the motion, or unknown weather drives the ship, commands and measured
+force correlate whichever causes the other. But only what a thruster does comes after its command: given the past of the
+motion, past commands say more of the next velocity if they are those that the ship obeys.
 """
 
 from collections.abc import Sequence

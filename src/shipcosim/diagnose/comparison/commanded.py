@@ -65,7 +65,7 @@ def commanded_by(record: Record, felt: Felt, model: ShipModel) -> Commanded:
 
 
 def _rows(load: Load, size: int) -> np.ndarray:
-    """A load as (3, n) array; what is known of each step only, held at the last row."""
+    """A load as (3, n) array; of values for each step only, the last is held at the last row."""
     # Components may be scalars or series: bring all to the same length, and repeat the last step
     # for the last row.
     rows = np.stack(

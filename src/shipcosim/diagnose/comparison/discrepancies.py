@@ -1,4 +1,4 @@
-"""What differs between commanded and felt force, in words with sizes, the largest first, and what remains."""
+"""What differs between commanded and measured force, in words with sizes, the largest first, and what remains."""
 
 from collections.abc import Iterator, Sequence
 
@@ -28,7 +28,7 @@ def discrepancies_of(
     ratio: CommonRatio | None,
     missing: Sequence[MissingLoad],
 ) -> list[Discrepancy]:
-    """What differs between commanded and felt force: signs, then sizes, largest first, then what is left.
+    """What differs between commanded and measured force: signs, then sizes, largest first, then what is left.
 
     A large error on an axis of which nothing of this is said is said by itself, whatever its cause.
 
@@ -146,7 +146,7 @@ def _gone(left: float, before: float) -> float:
 
 
 def _explained_by_gain(one: AxisGain) -> float:
-    """Share of the error that goes with the gain, the water's load as the log has it."""
+    """Share of the error that comes from the gain, the water's load as the log has it."""
     return _gone(one.fit.squares, one.axis.unexplained(one.total))
 
 

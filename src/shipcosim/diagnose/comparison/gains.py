@@ -36,7 +36,7 @@ class AxisGain:
     total : (n,) array
         What all thrusters are commanded. [N or N.m]
     fit : AxisFit
-        The felt force explained by that, any sign.
+        The measured force explained by that, any sign.
     gain, std : float
         Middle and standard deviation of the gain, by what both ways of explaining it say; of the fit alone where only
         that says something.
@@ -45,13 +45,13 @@ class AxisGain:
     support_of_each : float
         Log-likelihood that the thrusters gain, each with a gain of its own. [nats]
     share_of_each : float
-        Of the felt force's mean square that they then explain, with the water.
+        Of the measured force's mean square that they then explain, with the water.
     ways : tuple of two pairs of floats, or None
         Gains of thrust ahead and astern with their standard deviations; None where the log does not have both.
     support_of_ways : float
         Log-likelihood that the thrusters gain, each way with a gain of its own that is not negative. [nats]
     error : float
-        Root mean square of the felt force less all of the model's, over that of the commanded one.
+        Root mean square of the measured force less all of the model's, over that of the commanded one.
     """
 
     axis: Axis

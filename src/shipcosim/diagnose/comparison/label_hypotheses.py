@@ -38,7 +38,7 @@ class LabelError:
     turns: bool = False
 
     def undo(self, units: ThrusterSeries) -> ThrusterSeries:
-        """What drives the thrusters, put right; the direction of one that does not turn stays."""
+        """What drives the thrusters, corrected; the direction of one that does not turn stays."""
         if len(self.thrusters) == 2:
             one, other = self.thrusters
             (first, ahead) = units[one]
@@ -194,7 +194,7 @@ def driven(units: ThrusterSeries, record: Record, felt: Felt, model: ShipModel) 
     record = replace(record, units=units)
     if any(
         "rpm" in one.drives for one in model.third_party.values()
-    ):  # one that is told its thrust is linear
+    ):  # one that gets its thrust is linear
         model = with_surrogates(model, record, felt.motion)
     return commanded_by(record, felt, model)
 

@@ -1,6 +1,6 @@
 """Sides and signs of thrusters: which labels of their channels make what is commanded agree with what is felt.
 
-Three measures tell. The *fit* holds commanded against felt force, smoothed, each axis by itself. The *foresight* asks
+Three measures tell. The *fit* holds commanded against measured force, smoothed, each axis by itself. The *foresight* asks
 whether commands come before what they do. The *likelihood* takes all axes at once, with errors that are autocorrelated
 and one gain. Each is misled by something: the fit by what thrusters answer, the foresight by a steady command, the
 likelihood by noise that the controller does not see. A reading is believed that two of them prefer beyond doubt.
@@ -129,7 +129,7 @@ class _Weighed:
         return self.drives < min(-SURELY_BRAKES, other.drives)
 
     def is_as(self, other: _Weighed) -> bool:
-        """Whether they do the same but for the number of changes."""
+        """Whether they do the same except for the number of changes."""
         # Undo the cost of changes: compare what the measures themselves give.
         cost = CHANGE_COST * (len(self.reading.changes) - len(other.reading.changes))
         return bool(np.abs(self.measures + cost - other.measures).max() < ALIKE)
@@ -299,7 +299,7 @@ def _is_contradicted(best: LabelHypothesis, logged: LabelHypothesis, axes: Seque
 
 
 def _explained(best: LabelHypothesis, logged: LabelHypothesis, axes: Sequence[Axis]) -> float:
-    """Largest share of the felt force that a reading explains on an axis where it differs from the logged one."""
+    """Largest share of the measured force that a reading explains on an axis where it differs from the logged one."""
     shares = [0.0]
     for axis in axes:
         if axis.is_changed(logged.commanded, best.commanded) and axis.is_driven(best.commanded):

@@ -1,4 +1,4 @@
-"""How likely a reading of the commands makes the felt force, over all axes at once, with autocorrelated errors.
+"""How likely a reading of the commands makes the measured force, over all axes at once, with autocorrelated errors.
 
 All thrusters have nearly one gain, of the order of 1, on all axes. Whoever reads their labels wrongly must make the
 gain small or let the thrusters differ, and pays for both; where each axis has a gain of its own, a wrong reading only
@@ -36,7 +36,7 @@ _LOG_GAINS = np.linspace(np.log(0.05), np.log(8.0), 81)
 
 
 class _Axis(NamedTuple):
-    """One axis between blocks: felt force (n,), all but the thrusters (n, q), and which of it has one sign (q,)."""
+    """One axis between blocks: measured force (n,), all but the thrusters (n, q), and which of it has one sign (q,)."""
 
     felt: np.ndarray
     rest: np.ndarray
@@ -149,9 +149,9 @@ def _between(series: np.ndarray) -> np.ndarray:
 def likelihood_of(log: Blocks, commanded: Commanded, ahead: dict[str, np.ndarray]) -> float:
     """Log-likelihood that commands so read gain over none, over all axes. [nats]
 
-    On each axis the felt force is explained by the commanded ones, the water, coupling and a steady force; its errors
+    On each axis the measured force is explained by the commanded ones, the water, coupling and a steady force; its errors
     are autoregressive (generalized least squares: Ljung, System Identification, 2nd ed., Prentice Hall, 1999, ch. 7).
-    The gain is averaged over its prior, common to the axes but for their own error.
+    The gain is averaged over its prior, common to the axes except for their own error.
 
     Parameters
     ----------
@@ -206,7 +206,7 @@ def _fitted(
     apart: np.ndarray,
     widths: np.ndarray | None = None,
 ) -> _Fit:
-    """The felt force on an axis explained, with errors that are autoregressive."""
+    """The measured force on an axis explained, with errors that are autoregressive."""
     # Prior of forces that no model contains, relative to what the thrusters can give.
     axis = log.axes[i]
     rows = log.rows

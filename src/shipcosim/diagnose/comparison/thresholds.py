@@ -49,8 +49,8 @@ zig-zag reached 21 (tests/bench/craft, seed 108), wrong labels on a simulated bo
 RIVAL = 3.0
 """Readings closer than this cannot be told apart. [nats]"""
 TOLD = 0.5
-"""Least share of the felt force that the thrusters and the water explain on an axis, before it says anything of signs,
-sides and sizes. In stationkeeping thrusters answer the weather, and what they are commanded goes with the weather: of
+"""Least share of the measured force that the thrusters and the water explain on an axis, before it says anything of signs,
+sides and sizes. In stationkeeping thrusters answer the weather, and their commands follow the weather: of
 36 such logs with something hidden (seeds 700 to 717) three looked like wrong labels, which explained up to 0.29."""
 SURELY_CAUSED = 8.0
 """By how much another reading must predict the next velocities better than the logged one, where the thrusters explain
@@ -102,17 +102,17 @@ LEAST_GAIN = 0.1
 LAG_COST = 3.0
 """What a lag costs beside none, and one more for each root of the ship's length over gravity. [nats] Assumed."""
 LEAST_LAG = 2.0
-"""Least lag that is said. [rows]"""
+"""Least lag that is reported. [rows]"""
 LAGS = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 5.0)
 """Lags of the thrust that are tried, over the root of the ship's length over gravity."""
 
 # Gains
 
 OFF = 0.3
-"""Root mean square of the felt force less the model's over that of the commanded one, above which a model is far off.
+"""Root mean square of the measured force less the model's over that of the commanded one, above which a model is far off.
 Healthy small craft with noisy velocities reach 0.15 in yaw."""
 LEAST_SUPPORT = 8.0
-"""Log-likelihood that commanded loads must gain before their size is said. [nats] As an unmodelled error."""
+"""Log-likelihood that commanded loads must gain before their size is reported. [nats] As an unmodelled error."""
 SURE_OF_GAIN = 3.0
 """Standard deviations that a gain must differ (assumed)."""
 COMMON_SPREAD = 0.08
@@ -120,12 +120,12 @@ COMMON_SPREAD = 0.08
 THRUSTER_SPREAD = 0.3
 """Share by which thrusters may differ from the gain that they have in common. Assumed."""
 GROSS = 1.5
-"""Factor of a common ratio of thrust to inertia from which it is put right before anything else. No healthy ship of the
+"""Factor of a common ratio of thrust to inertia from which it is corrected before anything else. No healthy ship of the
 tolerances comes near, nor a lost third of one thruster."""
 SURE_OF_RATIO = 2.0
 """The same for a common ratio, whose standard deviation has the difference of axes in it already. Assumed."""
 PLAIN = 1.3
-"""Factor from which it is said, where no cause in the catalogue explains the log. Loads of another form differ by as
+"""Factor from which it is reported, where no cause in the catalogue explains the log. Loads of another form differ by as
 much: zig-zags of a tanker's model, whose hull bears far more than her rudder, gave 1.2 to 1.4 of published numbers."""
 LEAST_DAMPING = 0.05
 """Damping over the model's below which it is not said: a hull that is unstable on her course has none to compare."""
@@ -134,13 +134,13 @@ LEAST_WAY = 0.15
 MENTIONED = 1.25
 """Factor from which a gain or a damping is a discrepancy."""
 REMAINS = 0.1
-"""Share of the mean square of the felt force from which what nothing explains is said."""
+"""Share of the mean square of the measured force from which an unexplained force is reported."""
 
 LARGE = 0.7
 """Root mean square of what the model lacks over that of what the motion needs, above which an error is large: half of
 the mean square is unexplained. Beyond 1 a model without any load would be nearer. Assumed."""
 ABOVE_NOISE = 3.0
-"""The same over what noise of the velocities makes of it. Assumed."""
+"""The same over what noise of the velocities alone gives. Assumed."""
 STEADY = 0.7
 """Mean of what the model lacks over its root mean square, above which it is said to be steady."""
 GOES_WITH = 0.3
@@ -168,4 +168,4 @@ RESOLVED = 1.5
 fastest answer, sway with yaw at full speed, takes some 1 of these times; between rows farther apart thrusters and ship
 do what the log does not have."""
 FEWEST_USABLE = 60
-"""Rows without gaps nearby from which commanded and felt force are compared."""
+"""Rows without gaps nearby from which commanded and measured force are compared."""

@@ -39,7 +39,7 @@ CLEAR = 10.0
 """Expected difference in log-evidence that separates two causes. [nats]
 
 A difference expected to be d varies with a standard deviation of sqrt(2 d): at 10 nats the right cause ends more than
-3 nats ahead, the distance at which causes are told apart, in 94 of 100 logs, and more than 3 behind in 1 of 500.
+3 nats ahead, the distance at which causes are separated, in 94 of 100 logs, and more than 3 behind in 1 of 500.
 """
 MOST_SETS = 4
 """Sets of causes that are compared. [1]"""

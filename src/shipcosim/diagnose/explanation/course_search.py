@@ -209,7 +209,7 @@ def _otherwise(given: ExplainedLog, plain: Identification) -> Iterator[Explained
     than on healthy ships, as noise that was tuned without the course grows to cover it.
     """
     found = given.identification
-    if found.faults != plain.faults:  # labels were put right since
+    if found.faults != plain.faults:  # labels were corrected since
         return
     # The plain form, where another one was learnt.
     if found.problem.model.form_scale:

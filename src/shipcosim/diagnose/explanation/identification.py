@@ -18,7 +18,7 @@ class Identification(CheckedLog):
     problem : IdentificationProblem
         Of the repaired log: noise and linearisation about the ship without a cause.
     misconnections : tuple of Finding
-        Connections of the system that the log contradicts; `ship` has them put right.
+        Connections of the system that the log contradicts; `ship` has them corrected.
     comparison : LogComparison
         Of simulated with measured, commanded with felt; empty by default.
     """

@@ -141,7 +141,7 @@ def healthy_records(
 def drawn_within_tolerances(
     model: ShipModel, shape: tuple[int, ...], rng: np.random.Generator
 ) -> ShipModel:
-    """Ships within what is known of a ship model, whose numbers are arrays of a shape."""
+    """Ships within the tolerances of a ship model, whose numbers are arrays of a shape."""
     # Listed uncertainties, less those that a reference covers by its directions.
     own = {path: size for path, size in model.uncertainties.items() if path not in model.referenced}
     directions = [

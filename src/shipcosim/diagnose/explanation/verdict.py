@@ -175,7 +175,7 @@ def judge_against_healthy(
     def unmodelled_beside(fit):
         if fit not in unmodelled:
             unmodelled[fit] = gains_of(fit)
-        # where nobody knows the wind, a force that nobody explains is no surprise
+        # where the wind is unknown, a force that nobody explains is no surprise
         return {
             kind: gain
             for kind, gain in unmodelled[fit].items()

@@ -162,7 +162,7 @@ class Cause(_Strict):
     shape : list of str
         Companions that, taken together, must lie within their tolerances: with another shape it is another cause.
     replaces : list of str
-        Numbers that this cause speaks for: their tolerance is left out where it acts.
+        Numbers that this cause is evidence for: their tolerance is left out where it acts.
     special : str, optional
         A simpler cause that this one contains, its parameters several times in the same order.
     without_wind : "sought", "left out" or "allowed for"

@@ -351,7 +351,7 @@ def _uncertain(noise: Noise) -> np.ndarray:
 
 
 def _lost() -> np.ndarray:
-    """What is added where nobody knows what drove the ship over a step."""
+    """What is added where the inputs over a step are unknown."""
     return np.diag([25.0, 25.0, 0.1, 0.25, 0.25, 1e-3, *[0.0] * 12])
 
 

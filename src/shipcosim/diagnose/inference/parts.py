@@ -16,7 +16,7 @@ PART = 4096
 """Most rows of a part: as many as a processor's cache holds series of. A log of an hour at 1 Hz is one part."""
 _ENTRIES = 4096 * 64
 _LEAST = 512
-"""Rows times columns of a part, some 50 MB in all that the filter makes of them; rows that it has at least."""
+"""Rows times columns of a part, some 50 MB in all that the filter needs for them; rows that it has at least."""
 _KEPT = 600_000
 """Rows times columns that are kept for a second look, 58 MB: those of a fit to a long log's 6000 rows. More are made
 anew, which takes half as long again."""

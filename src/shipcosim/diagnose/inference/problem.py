@@ -49,7 +49,7 @@ def identification_problem(
     everyone = hypotheses_of(causes, ship)
     hidden = unidentifiable(everyone, record, repaired, ship.third_party)
     if record.wind is None:
-        # Tolerances of what stands for the wind, where nobody knows it: the typical size of causes allowed for.
+        # Tolerances of what stands for the wind, where it is unknown: the typical size of causes allowed for.
         allowed = [
             hypothesis
             for hypothesis in everyone

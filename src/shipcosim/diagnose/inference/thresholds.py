@@ -118,7 +118,7 @@ MOST_WALK = 3e-5
 """Fastest random walk of the unexplained acceleration: some 400 N on a ship of 750 t in ten minutes. [m/s2.5] Left
 free, it swallowed every cause (prototypes)."""
 GUST_FACTOR = 10.0
-"""Times as fast may it walk where nobody knows the wind. Assumed."""
+"""Times as fast may it walk where the wind is unknown. Assumed."""
 TUNED_BESIDE = 3.0
 """Gain of a cause at first sight, from which on noise is tuned beside it. [nats]"""
 NOISE_MARGIN = 1.5

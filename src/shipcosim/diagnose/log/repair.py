@@ -20,10 +20,10 @@ CUT_OUT = ("gap", "heading_wrap")
 
 
 def repaired(log: xarray.Dataset, findings: Sequence[Finding] = ()) -> xarray.Dataset:
-    """The log on an even grid, with the faults that were found put right or cut out.
+    """The log on an even grid, with the faults that were found corrected or cut out.
 
     Rows are sorted; of rows with the same time the first is kept; rows without a time are left out. Time runs as the
-    findings on the clock say, mislabelled channels are put right, and what was interpolated over, held or turned
+    findings on the clock say, mislabelled channels are corrected, and what was interpolated over, held or turned
     through south is cut out.
 
     Parameters
@@ -99,7 +99,7 @@ def rate_of(findings: Sequence[Finding]) -> float:
 
 
 def read_anew(log: dict, findings: Sequence[Finding]) -> dict:
-    """A log, a dict of arrays with `time`, with what findings say of all of it put right: time base, then labels."""
+    """A log, a dict of arrays with `time`, with what findings say of all of it corrected: time base, then labels."""
     time = log["time"]
     log = log | {"time": time[0] + rate_of(findings) * (time - time[0])}
     for mislabel in _labels_throughout(findings):
@@ -142,7 +142,7 @@ def _true_time(logged, base, findings, step):
 
 
 def _put_right(time, channels, findings):
-    """Channels with labels put right, then with outliers and all that is no measurement cut out."""
+    """Channels with labels corrected, then with outliers and all that is no measurement cut out."""
     # Mistakes of the whole log first, then those of segments.
     channels = read_anew({"time": time, **channels}, findings) | {"time": time}
     for finding in findings:

@@ -1,7 +1,7 @@
 """Thresholds of the checks of a log by its own channels, each with its unit and what it was set on.
 
-The checks were developed on logs of the independent truth (tests/bench/truth, seeds below 1000); where nothing is said,
-what a number was set on was not recorded. "Assumed" is what nobody has measured.
+The checks were developed on logs of the independent truth (tests/bench/truth, seeds below 1000); where nothing else
+is given, what a number was set on was not recorded. "Assumed" is what nobody has measured.
 """
 
 # Rows that are no measurement
@@ -62,7 +62,7 @@ CALM_SHARE = 0.25
 UNSURE_NOISE = (0.25, 0.35, 0.15)
 """Of what noise takes from a factor, measured in two ways: how far from the larger to the smaller the value is taken,
 how unsure it is as a share of their difference, and as a share of the larger even where both agree. Set on hold logs
-of seeds 200 to 213: 28 factors are off by 0.6 of what is said of them, as a root mean square."""
+of seeds 200 to 213: 28 factors are off by 0.6 of their stated error, as a root mean square."""
 HEARD = 12.0
 """What the best form of a relation must gain over none, to be heard. [nats] Assumed; of 36 forms without any relation
 the best one gains 5."""
@@ -128,11 +128,11 @@ READING_SURE = 0.95
 MOST_SURE = 0.998
 """Largest probability of a reading: what is not thought of remains."""
 LEFT_OPEN = 0.5
-"""Probability of something that no reading explains, from which on nothing is said."""
+"""Probability of something that no reading explains, from which on nothing is reported."""
 UNLIKELY_READING = 0.02
 """Probability below which a reading is not said beside others."""
 MOST_ALTERNATIVES = 6
-"""Readings that are said beside another."""
+"""Readings that are reported beside another."""
 
 # Position against velocity, heading against rate
 
@@ -202,7 +202,7 @@ BESIDE_SEGMENT = 240.0
 WIND_JUMP = 0.35
 """Logarithm of the wind speed by which another unit may miss the jump at the ends of a segment."""
 WIND_GOES_ON = 0.6
-"""Share of the change of the wind over ground at the ends of a segment that may be left once it is put right."""
+"""Share of the change of the wind over ground at the ends of a segment that may be left once it is corrected."""
 STEADIER = 0.08
 """By which the steadiness of the wind must grow; so the ship must have turned."""
 

@@ -1,7 +1,7 @@
-"""Faults of a log, and wrong connections of a system, that only the ship's response shows: found and put right.
+"""Faults of a log, and wrong connections of a system, that only the ship's response shows: found and corrected.
 
 Each step leads from one identification to the next, and gives back the one that it was given where nothing is wrong. A
-step is taken where the evidence for what is put right is larger than that for any cause that would leave it as it is.
+step is taken where the evidence for what is corrected is larger than that for any cause that would leave it as it is.
 """
 
 from dataclasses import replace
@@ -118,7 +118,7 @@ def _with_right_wind_label(found, place):
 
 
 def _is_told_by_the_ship(problem, logged):
-    """Whether the ship answers a log with a label put right, as the problem has it, and not one as logged."""
+    """Whether the ship answers a log with a label corrected, as the problem has it, and not one as logged."""
     return (
         likelihood(problem, problem.record)
         > likelihood(problem, record_of(logged, problem.model)) + PART_GAIN
@@ -128,7 +128,7 @@ def _is_told_by_the_ship(problem, logged):
 def _likeliest_direction(as_logged, fault):
     """A fault of the wind's direction, and the problem, by the likeliest label of those that could be meant.
 
-    `as_logged` has the log without that fault put right, and the problem with it put right.
+    `as_logged` has the log without that fault corrected, and the problem with it corrected.
     """
     log = as_logged.repaired
     problem = as_logged.problem
@@ -171,7 +171,7 @@ def with_right_connections(found: Identification) -> Identification:
 
 
 def with_right_inputs(explained: ExplainedLog) -> ExplainedLog:
-    """The log with mislabelled channels of thrusters and wind put right, where it is not healthy; explained anew."""
+    """The log with mislabelled channels of thrusters and wind corrected, where it is not healthy; explained anew."""
     known = len(explained.identification.faults)
     for _ in range(MOST_INPUT_FAULTS):
         better = None if explained.is_healthy else _with_right_input(explained)
@@ -179,13 +179,13 @@ def with_right_inputs(explained: ExplainedLog) -> ExplainedLog:
             break
         *others, fault = better.identification.faults[known:]
         if any(set(fault.channels) & set(other.channels) for other in others):
-            break  # what a channel already put right cannot be again: something else is wrong with it
+            break  # what a channel already corrected cannot be again: something else is wrong with it
         explained = better
     return explained
 
 
 def _with_right_input(explained):
-    """The log with the likeliest fault of thrusters' or the wind's channels put right; None if there is none.
+    """The log with the likeliest fault of thrusters' or the wind's channels corrected; None if there is none.
 
     The ends of a segment are rough until they are settled, so the likeliest fault is settled before it is held against
     all causes; further ones only where they are better than those even so.
@@ -225,14 +225,14 @@ def _with_right_input(explained):
 
 
 def _repaired(found, faults, noise=None):
-    """An identification anew, of the log as read with some faults put right."""
+    """An identification anew, of the log as read with some faults corrected."""
     log = _without(found, faults)
     problem = identification_problem(log, found.ship, found.causes, noise)
     return replace(found, faults=tuple(faults), repaired=log, problem=problem)
 
 
 def _without(found, faults):
-    """The log as read with some faults put right; a long one in stretches."""
+    """The log as read with some faults corrected; a long one in stretches."""
     return in_stretches(repaired(found.log, faults), found.ship.length)
 
 
@@ -245,9 +245,9 @@ def _relabelled(found, fault):
 
 
 def _with_settled_segment(found, fault):
-    """A mislabel with its segment settled, and the identification with it put right.
+    """A mislabel with its segment settled, and the identification with it corrected.
 
-    `found` has the log without it put right, and the problem with it put right in its first segment.
+    `found` has the log without it corrected, and the problem with it corrected in its first segment.
     """
     # Segment and motion depend on each other: refine one with the other, a few times.
     right = replace(found, repaired=with_label(found.repaired, mislabel_in(fault), fault.segments))

@@ -2,7 +2,7 @@
 
 Each way in which they could be wrong is undone, over all the log, and the likelihood row by row compared with that of
 the log as it is: where the difference adds up most is about the segment in which they are wrong. Its ends are refined
-about a motion that is smoothed with it put right, on which every wrong row counts.
+about a motion that is smoothed with it corrected, on which every wrong row counts.
 """
 
 from collections.abc import Sequence
@@ -82,11 +82,11 @@ def with_refined_segment(
     Parameters
     ----------
     log : xarray.Dataset
-        Repaired, the finding not put right.
+        Repaired, the finding not corrected.
     finding : Finding
         Of a mislabel, with one segment, or throughout.
     problem : IdentificationProblem
-        Of the log with the finding put right.
+        Of the log with the finding corrected.
 
     Returns
     -------

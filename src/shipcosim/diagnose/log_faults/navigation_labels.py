@@ -48,7 +48,7 @@ class Relabelled:
     ----------
     faults : tuple of Finding
     density : float
-        Log-density of the log as it is over that of the log with its units put right, the same values in both. [nats]
+        Log-density of the log as it is over that of the log with its units corrected, the same values in both. [nats]
     """
 
     faults: tuple[Finding, ...]
@@ -60,7 +60,7 @@ def relabelled(
 ) -> list[Relabelled]:
     """The likeliest labels of the navigation, where they are not those that the faults say.
 
-    Each in its likeliest stretch, and but for units throughout: row by row it is judged with the noise of the log as it
+    Each in its likeliest stretch, and except for units throughout: row by row it is judged with the noise of the log as it
     is, which a wrong label throughout makes too large.
 
     Parameters
@@ -126,7 +126,7 @@ def _likely(gains, record, least):
 
 
 def _matters(plain, label):
-    """Whether a label, put right, makes its channels other ones: at a heading near north earth-fixed is body-fixed."""
+    """Whether a label, corrected, makes its channels other ones: at a heading near north earth-fixed is body-fixed."""
     # Sum of squares of the change, relative to that of the channels.
     right = with_label(plain, label)
     changed = 0.0
@@ -144,7 +144,7 @@ def _is_clear(plain):
 
 
 def _gain(plain, label, problem):
-    """Log-likelihood of each row with a label put right, as a density of what was logged."""
+    """Log-likelihood of each row with a label corrected, as a density of what was logged."""
     # Noise belongs to the logged channels: scale it
     # with the unit, or exchange it with the channels.
     places = [CHANNELS.index(role) for role in label.channels]

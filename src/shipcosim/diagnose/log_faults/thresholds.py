@@ -28,7 +28,7 @@ SHORTEST_INPUT = 60.0
 WHOLE = 0.85
 """Share of the log from which on a segment is taken as all of it. Assumed."""
 BESIDE_AN_END = 4
-"""Rows on either side of an end that are neither as logged nor put right: series are averaged over neighbours. [1]"""
+"""Rows on either side of an end that are neither as logged nor corrected: series are averaged over neighbours. [1]"""
 SEARCH_STEP = 60.0
 """Time between the places where an end of a segment is sought first. [s]"""
 MOST_PLACES = 80

@@ -1,4 +1,4 @@
-"""Tall matrices whose columns are zero but for some neighbouring rows."""
+"""Tall matrices whose columns are zero except for some neighbouring rows."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -32,7 +32,7 @@ def gaussian_filter(
 
     Examples
     --------
-    The slope of a straight line, but for what is cut off:
+    The slope of a straight line, except for what is cut off:
 
     >>> round(float(gaussian_filter(2.0 * np.arange(21.0), 2.0, order=1)[10]), 3)
     1.999

@@ -92,7 +92,7 @@ def leans_to(labels: Labels | None, fault: Finding) -> bool:
 
 
 def with_right_labels(log: xarray.Dataset, faults: Sequence[Finding]) -> xarray.Dataset:
-    """A log as read, with faults of labels that hold throughout put right.
+    """A log as read, with faults of labels that hold throughout corrected.
 
     Parameters
     ----------

@@ -44,7 +44,7 @@ class JointDiagnosis(Diagnosis):
     left_out : dict of str to str
         Logs that say nothing of the ship, and why.
     relabelled : dict of str to tuple of Finding
-        Logs that are read as other logs show, and with which faults of labels put right.
+        Logs that are read as other logs show, and with which faults of labels corrected.
     errors : dict of str to LogErrors
         By log.
     together : JointBasis or None

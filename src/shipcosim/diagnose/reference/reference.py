@@ -161,7 +161,7 @@ def read_reference(path: AnyPath | Reference) -> Reference:
 
 
 def is_same(one: float, other: float) -> bool:
-    """Whether two values of a number are the same, but for what a file rounds."""
+    """Whether two values of a number are the same, except for what a file rounds."""
     return bool(np.isclose(one, other, rtol=1e-6, atol=1e-9))
 
 

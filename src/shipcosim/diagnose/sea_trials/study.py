@@ -136,7 +136,7 @@ class SeaTrialStudy:
 
     @property
     def rivals(self) -> list[SetOfCauses]:
-        """Sets that fit alike."""
+        """Sets that fit equally well."""
         return rivals_of(self.ranking)
 
     @property

@@ -82,12 +82,12 @@ def _lost(where: str) -> float:
 class ThrusterForm(_LoadDeviation):
     """Thrust that a thruster loses at the hull beyond the model's, by where it pushes to, whoever made it."""
 
-    across: float = _lost("by one that pushes athwartships; goes with the squared sine")
+    across: float = _lost("by one that pushes athwartships; proportional to the squared sine")
     to_starboard: float = _lost(
-        "by one that pushes to starboard, gained to port; goes with the sine"
+        "by one that pushes to starboard, gained to port; proportional to the sine"
     )
     astern: float = _lost("by one that pushes astern; none ahead, half of it athwartships")
-    under_way: float = _lost(f"at Froude number {FROUDE_UNDER_WAY}; goes with the speed")
+    under_way: float = _lost(f"at Froude number {FROUDE_UNDER_WAY}; proportional to the speed")
 
 
 def form_of(thruster: str) -> str:

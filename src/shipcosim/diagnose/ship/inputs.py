@@ -65,7 +65,7 @@ class Record:
     Attributes
     ----------
     time : (n,) array
-        Even, but for holes between the stretches of a long log. [s]
+        Even, except for holes between the stretches of a long log. [s]
     measured : (..., n, 6) array
         `CHANNELS` in SI, heading unwrapped, NaN where there is none.
     units : dict of str to tuple of two (..., n) arrays

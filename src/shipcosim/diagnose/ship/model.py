@@ -126,7 +126,7 @@ class ShipModel:
 
     @property
     def referenced(self) -> set[str]:
-        """Numbers that a reference speaks for."""
+        """Numbers that a reference is evidence for."""
         return set().union(*self.directions)
 
     @staticmethod

@@ -18,7 +18,7 @@ class ThirdPartyPart:
 
 
 class QuadraticThrust(NamedTuple):
-    """Thrust that goes with the squared speed of a propeller, along an axis, at a place.
+    """Thrust that is proportional to the squared speed of a propeller, along an axis, at a place.
 
     Attributes
     ----------

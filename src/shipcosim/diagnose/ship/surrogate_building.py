@@ -1,8 +1,8 @@
 """Surrogates of third-party FMUs: loads over a log, from co-simulations of an FMU alone, and their derivatives.
 
 The FMU runs along the log with what the log says at its inputs, and again with each of them, and each of its
-parameters, changed a little. The part of its loads that goes with the squared speed of a propeller is a quadratic law
-of thrust, which holds for large changes too; the surrogate is linear in the rest.
+parameters, changed a little. The part of its loads that is proportional to the squared speed of a propeller is a
+quadratic law of thrust, which holds for large changes too; the surrogate is linear in the rest.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -115,7 +115,7 @@ def surrogates_of(
     ----------
     third_party : dict of str to ThirdPartyFmu
     time : (n,) array
-        Even, but for holes between stretches. [s]
+        Even, except for holes between stretches. [s]
     units : dict of str to dict of str to (n,) array
         By third-party FMU: what drives it, as `drives_of` gives it.
     motion : Motion

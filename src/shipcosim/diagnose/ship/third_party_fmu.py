@@ -22,7 +22,7 @@ _UNITS = {
     "thrust": ("N", "kN"),
     "azimuth": ("rad", "deg"),
 }
-_KNOWN = 0.02  # of the thrust, where nobody says more (assumed)
+_KNOWN = 0.02  # of the thrust, if no more is given (assumed)
 
 
 class Link(NamedTuple):

@@ -121,7 +121,7 @@ def _between(series, row):
 
 
 def _at(inputs, k, units):
-    """What drives the ships over a step: the wind of the record, and thrusters as they are told."""
+    """What drives the ships over a step: the wind of the record, and thrusters as commanded."""
     wind = (
         (None, None)
         if inputs.wind_speed is None

@@ -122,7 +122,7 @@ def compare(
     part : Fit, optional
         The fit to these rows, where it is known: that of several logs together.
     plain : ShipModel, optional
-        The ship as the system has her, where the problem's has more put right than that.
+        The ship as the system has her, where the problem's has more corrected than that.
 
     Returns
     -------

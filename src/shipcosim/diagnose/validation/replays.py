@@ -72,7 +72,7 @@ def with_cosimulation(
     except ShipcosimError as error:
         first = {
             (p.found, p.remedy): p for p in reversed(error.problems)
-        }  # that of many segments is said once
+        }  # that of many segments is reported once
         said = reversed(first.values())
         remarks = tuple(f"The system was not co-simulated: {problem}" for problem in said)
         return SimulatedLog(log.comparison.errors, in_array_form, False, remarks)

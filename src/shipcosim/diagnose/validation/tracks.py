@@ -36,7 +36,7 @@ _TO_LOG = (1.0, 1.0, 180.0 / np.pi, 1.0, 1.0, 180.0 / np.pi)
 
 @dataclass(frozen=True)
 class Tracks:
-    """A log, and what simulations make of it.
+    """A log, and its simulations.
 
     Attributes
     ----------

@@ -312,7 +312,7 @@ def kept_shares(thrusts: Arithmetic, azimuths: Arithmetic, *, units: Units) -> A
 
     References
     ----------
-    As `interaction.thrust_shares`. The speed of a slipstream goes with the root of its unit's thrust over the limit.
+    As `interaction.thrust_shares`. A slipstream's speed is proportional to the root of its unit's thrust over the limit.
     """
     # Speed of a slipstream, as the root of thrust over its limit.
     wash = sqrt(_used(thrusts, units) + 1e-6)

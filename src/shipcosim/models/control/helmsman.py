@@ -85,7 +85,11 @@ class MannerParameters:
         1.5, "s", "time from a look to the levers", _MANNER, minimum=0.0
     )
     lever_step: float = quantity(
-        0.05, "1", "step of a lever, which goes with the root of thrust", _MANNER, minimum=1e-3
+        0.05,
+        "1",
+        "step of a lever, which is proportional to the root of thrust",
+        _MANNER,
+        minimum=1e-3,
     )
     angle_step: float = quantity(
         5.0 * pi / 180.0, "rad", "step of a unit's direction", _MANNER, minimum=1e-3
@@ -411,7 +415,7 @@ def _moved(before, wanted, who):
 
 
 def _notch(before, wanted, scale, step):
-    """Thrust of a lever in notches; its position goes with the root of thrust. [N]"""
+    """Thrust of a lever in notches; its position is proportional to the root of thrust. [N]"""
     then, now = (copysign(sqrt(abs(one) / scale), one) for one in (before, wanted))
     if abs(now - then) < 0.8 * step:
         return before

@@ -118,7 +118,7 @@ def predict(
 
     Notes
     -----
-    The estimate is taken to be right, but for the bias, which follows its load in `bias_time`. A unit
+    The estimate is taken to be right, except for the bias, which follows its load in `bias_time`. A unit
     that gives nothing now is missing. The load over a step is that of its middle, on the line through the last two.
 
     References

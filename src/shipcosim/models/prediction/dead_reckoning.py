@@ -13,7 +13,7 @@ from shipcosim.models.prediction.surroundings import Surroundings
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import accelerations, through_water
 
-_NO_LOAD = 1.0  # N and N.m, below which no thruster is told to give anything
+_NO_LOAD = 1.0  # N and N.m, below which no thruster gets a command
 
 
 def predict(

@@ -166,8 +166,8 @@ def delivered(thrust: Thrust, told: Thrust, h: float, *, learned: Learned) -> Th
 
     Notes
     -----
-    A free propeller is braked by its torque, which like its thrust goes with the square of its speed: 1/n grows evenly,
-    and the thrust is that of now over (1 + h/T)², T in proportion to 1/n.
+    A free propeller is braked by its torque, which like its thrust is proportional to the square of its speed: 1/n
+    grows evenly, and the thrust is that of now over (1 + h/T)², T in proportion to 1/n.
 
     References
     ----------
@@ -176,7 +176,7 @@ def delivered(thrust: Thrust, told: Thrust, h: float, *, learned: Learned) -> Th
     # All commands exactly zero means that power is lost.
     lost = (abs(told.bow) + abs(told.stern_X) + abs(told.stern_Y)) == 0.0
     share = 1.0 - exp(-h / learned.lag)
-    # Shaft speed goes with the root of thrust, 1/n grows evenly: T(t) = T0 / (1 + t/τ)², τ ∝ 1/n.
+    # Shaft speed is proportional to the root of thrust, 1/n grows evenly: T(t) = T0 / (1 + t/τ)², τ ∝ 1/n.
     stern = sqrt((hypot(thrust.stern_X, thrust.stern_Y) + _TINY) / HELD)
     bow = sqrt((abs(thrust.bow) + _TINY) / HELD)
     slowed_stern = 1.0 + h * stern / learned.run_down_stern

@@ -32,7 +32,7 @@ FEATURES = (
     "main power",
     "main action",
 )
-"""Inputs that paper II considers, Table III, but for the commands, of which it keeps none."""
+"""Inputs that paper II considers, Table III, except for the commands, of which it keeps none."""
 UNITS = (0, 2, 4)
 """Foremost bow tunnel, foremost stern tunnel and port propeller: the paper takes one of each pair."""
 
@@ -151,7 +151,7 @@ def _regressor(arrays, axis):
     )
 
 
-# Power as an input goes with the cube of the command (propeller law).
+# Power as an input is proportional to the cube of the command (propeller law).
 def features(measured: Measured, full_power: np.ndarray, full_command: np.ndarray) -> np.ndarray:
     """Inputs that the paper considers.
 

@@ -78,7 +78,7 @@ class AzimuthParameters(PropellerParameters):
     angle_loss: float = quantity(
         0.0,
         "1",
-        "share of the thrust lost at the hull by a unit that points athwartships; goes with the squared sine",
+        "share of the thrust lost at the hull by a unit that points athwartships; proportional to the squared sine",
         "neutral",
         maximum=1.0,
     )

@@ -2,7 +2,7 @@
 
 The loss of two units one behind the other, and how it goes when the front one turns away, are measured; what is added
 here is assumed: a slipstream slower than the hit unit's own takes proportionally less, several slipstreams multiply,
-tunnel thrusters neither hit nor are hit, and nothing goes with the speed of the ship.
+tunnel thrusters neither hit nor are hit, and nothing depends on the speed of the ship.
 
 References
 ----------

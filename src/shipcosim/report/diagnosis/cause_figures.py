@@ -20,7 +20,7 @@ MOST_SETS = 12
 WHITENESS = {"before": "Before: the plain model", "after": "After: with the causes"}
 UNMODELLED_KINDS = {
     "slow": "a slow force in the ship's frame",
-    "with the heading": "a force that goes with the heading",
+    "with the heading": "a force that turns with the heading",
     "from part to part": "the best cause's size, from part to part of the log",
     "beyond tolerances": "the ship's numbers, farther off than their tolerances say",
     "periodic": "a periodic force",

@@ -133,7 +133,7 @@ def facts_of(diagnosis: Diagnosis) -> tuple[Fact, ...]:
 
 def _sentence(diagnosis: Diagnosis) -> str:
     """The verdict, with what it rests on."""
-    # Faults of the log and causes in the physics are told apart.
+    # Faults of the log and causes in the physics are kept apart.
     data = [told(f) for f in diagnosis.findings if f.kind == "data" and not f.alternatives]
     physics = [told(f, diagnosis.causes or None) for f in diagnosis.physics]
     several = isinstance(diagnosis, JointDiagnosis)
@@ -332,7 +332,7 @@ def next_steps(diagnosis: Diagnosis, extended: str | None = None) -> list[str]:
         steps.append(_manoeuvre_step(diagnosis.prescription))
     if diagnosis.is_assumed:
         steps.append(
-            "Write into craft.toml what is known of her and make her systems: shipcosim new ship NAME --from craft.toml. "
+            "Write her known numbers into craft.toml and make her systems: shipcosim new ship NAME --from craft.toml. "
             "Diagnose this and other logs with them."
         )
     elif diagnosis.obstacles:

@@ -29,7 +29,7 @@ def sentence(found: SeaTrialStudy) -> str:
         return f"{best} explains best what the model sails otherwise than the ship."
     count = len(found.rivals)
     others = "another set" if count == 1 else f"{count} other sets"
-    return f"{best} explains best what the model sails otherwise than the ship; {others} of causes fit alike."
+    return f"{best} explains best what the model sails otherwise than the ship; {others} of causes fit equally well."
 
 
 def said(label: str) -> str:

@@ -168,7 +168,7 @@ def _views(
     plots = []
     undrawn = []
     for content in tables.study.get("view") or ():
-        # Each view with its own rows; what is missing is told in its place.
+        # Each view with its own rows; the reason stands in place of a missing one.
         try:
             view = View.model_validate(content)
             shown = narrowed(tables, view)

@@ -147,7 +147,7 @@ class Column:
     ranges: tuple[str, ...] = ()
 
     def text_at(self, row: int) -> str:
-        """Value of a row as text for readers; what is known of it where not every case was run."""
+        """Value of a row as text for readers; its bounds where not every case was run."""
         return self.ranges[row] if self.ranges else self.text(self.values[row])
 
     @property

@@ -42,7 +42,7 @@ SENSORS = {
     "wind_speed_noise": 0.02,
     "wind_from_noise_std": pi / 180.0,
 }
-"""Usual DP sensors: Skulstad 2021, paper II, Table I, and telegrams' rates; assumed."""
+"""Usual DP sensors: Skulstad 2021, paper II, Table I, and message rates; assumed."""
 OBSERVER = {
     "sample_period": 0.1,
     "position_period": 0.2,

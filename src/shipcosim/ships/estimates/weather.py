@@ -148,7 +148,7 @@ def drift_table(length: float, breadth: float, draught: float, density: float) -
         for heading in range(0, 181, 30):
             c = cos(radians(heading))
             s = sin(radians(heading))
-            # The load on a wall goes with the squared cosine of the angle to its normal.
+            # The load on a wall is proportional to the squared cosine of the angle to its normal.
             X = scale * breadth * c * abs(c)
             Y = scale * length * s * s
             rows.append(f"{omega:g} {heading} {round(X, 3) + 0.0:g} {round(Y, 3) + 0.0:g} 0")

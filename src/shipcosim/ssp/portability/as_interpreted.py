@@ -27,7 +27,7 @@ class Taken:
     what : str
         In words: which values are not applied, which connections are something else.
     system : System
-        As we take it but for this.
+        As we take it except for this.
     """
 
     what: str
@@ -147,7 +147,7 @@ def _connections(host: str, subject: Subject, system: System) -> tuple[str, Syst
         }
     taken = []
     other = []
-    # Compare each of our connections with what the tool makes of it.
+    # Compare each of our connections with how the tool reads it.
     for connection in system.connections:
         arrow = " -> ".join(
             ".".join(filter(None, end)) for end in (connection.source, connection.target)

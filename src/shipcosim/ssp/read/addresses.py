@@ -67,7 +67,7 @@ def _candidates(text: str, base: Path, folder: Path, rooted: bool) -> Iterator[P
 
 
 def alike(path: Path) -> list[Path]:
-    """The only file of a folder whose name is this one but for upper and lower case, or none."""
+    """The only file of a folder whose name is this one except for upper and lower case, or none."""
     if not path.parent.is_dir():
         return []
     found = [one for one in path.parent.iterdir() if one.name.lower() == path.name.lower()]

@@ -74,7 +74,7 @@ class Library:
         """
         # Found files are shared by all owners; a missing one is reported for each owner.
         at = "at", place.package.folder, place.folder, uri
-        if self._kept.get(at) is None:  # what is missing is said of each owner, once
+        if self._kept.get(at) is None:  # a missing one is reported for each owner, once
             self._kept[at] = self._once((id(owner), uri), lambda: self._located(owner, uri, place))
         return self._kept[at]
 

@@ -56,7 +56,7 @@ def entries(path: AnyPath, shown: str | None = None) -> list[str]:
     Raises
     ------
     ShipcosimError
-        Like `unpack`, but for the room.
+        Like `unpack`, except for the room.
     """
     shown = shown or str(path)
     with _opened(path, shown) as archive:

@@ -117,7 +117,7 @@ class Document:
     folder : Path
         Folder that relative addresses in it start from.
     flaws : list of Problem
-        Flaws of its form that were put right in the tree, which reading it says again.
+        Flaws of its form that were corrected in the tree, which reading it says again.
     mended : bool
         Whether they were looked for: what is changed here has none.
     """

@@ -26,7 +26,7 @@ Value = Any
 """A value of a variable: float, int, bool, str or bytes, as its kind says; of an enumeration the name of its item."""
 
 SSP_1_TYPES = ("Real", "Integer", "Boolean", "String", "Enumeration", "Binary")
-"""Types of SSP 1.0; the kinds of all others (FMI 3.0) are among them, but for clocks."""
+"""Types of SSP 1.0; the kinds of all others (FMI 3.0) are among them, except for clocks."""
 
 BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 

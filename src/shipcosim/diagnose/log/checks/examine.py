@@ -68,7 +68,7 @@ def _unless_in_part(throughout, table, stated):
 def _in_parts(table, stated):
     """Mistakes of parts of a log, and those of the wind.
 
-    A label is wrong in a part of a log only where all channels agree throughout once it is put right.
+    A label is wrong in a part of a log only where all channels agree throughout once it is corrected.
     """
     # Wrong labels in parts count only if the corrected log has no wrong label left.
     labels, right = mislabelled(table, stated)
@@ -102,7 +102,7 @@ def _agreeing(clock):
 
 
 def _as_logged(segment, start, rate):
-    """A segment of a time base put right, in the times of the log."""
+    """A segment of a time base corrected, in the times of the log."""
     first, last = (float(start + (end - start) / rate) for end in segment)
     return first, last
 
@@ -118,7 +118,7 @@ def _stated_units(log):
 
 
 def _is_the_clock(label, clock, time):
-    """Whether a mislabel of a part of the log is where the clock is wrong even with the label put right."""
+    """Whether a mislabel of a part of the log is where the clock is wrong even with the label corrected."""
     if not label.segments or not clock:
         return False
     # The label is explained by the clock where it overlaps it by more than half.

@@ -185,7 +185,7 @@ def leaps(time: np.ndarray, speed: np.ndarray, segment: Segment | None, factor: 
 
 
 def _goes_on(time, labelled, right, segment):
-    """Whether the wind over ground beside a segment goes on in it if put right, rather than as labelled.
+    """Whether the wind over ground beside a segment goes on in it if corrected, rather than as labelled.
 
     The ship's own way makes the wind that she meets stronger and weaker too, most of all that of a fast small craft.
     """

@@ -43,7 +43,7 @@ def jumping_wind(log: dict) -> list[Finding]:
             found.append((gain, label, segment, _unsteadiness(undone[first:last])))
     if not found:
         return []
-    # Labels that explain nearly as well are told apart by the steadier wind over ground.
+    # Labels that explain nearly as well are distinguished by the steadier wind over ground.
     most = max(gain for gain, *_ in found)
     gain, label, segment, _ = min(
         (entry for entry in found if entry[0] > most - JUMPS_TIED), key=lambda entry: entry[3]
@@ -59,7 +59,7 @@ def _wind(part):
 
 
 def _unsteadiness(wind):
-    """Change of the wind over ground in a segment: what is too much in it goes with the ship. [m2/s2]"""
+    """Change of the wind over ground in a segment: what is too much in it follows the ship. [m2/s2]"""
     return float(np.mean(np.abs(wind[STEADINESS_LAG:] - wind[:-STEADINESS_LAG]) ** 2))
 
 

@@ -1,4 +1,4 @@
-"""A yaw rate in rad/s where deg/s is stated: so small that its own rounding swallows it, in all of a log or in a part.
+"""A yaw rate in rad/s where deg/s is stated: so small that it is below its own rounding, in all of a log or in a part.
 
 Where the ship turns, heading against rate tells it; where she does not, the channel's noise does, which falls by the
 same factor of 57 as the rate.

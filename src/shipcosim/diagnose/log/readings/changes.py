@@ -126,7 +126,7 @@ class LogMistake:
     apply : callable
         From a reading to the one with it.
     mislabel : Mislabel or None
-        What it is in the log; None of the time base, and where it cannot be put right.
+        What it is in the log; None of the time base, and where it cannot be corrected.
     sentence : str
     slab : Slab or None
         Where its factor may have any value.
@@ -275,7 +275,7 @@ def _freed(reading, what):
 
 
 def _odd(stated) -> Iterator[LogMistake]:
-    """What has no name or cannot be put right, and must be beaten by what has one."""
+    """What has no name or cannot be corrected, and must be beaten by what has one."""
     for name, what, verb, alike in ODD_UNITS:
         # Units that a header states are wrong less often, so these mistakes cost more then.
         slot = f"unit of {name}"

@@ -1,6 +1,6 @@
-"""What is seen to change fitted by what is told of it: a factor, its deviation, and how likely it is.
+"""A measured change fitted by the logged one: a factor, its deviation, and how likely it is.
 
-What is left between both wanders as the noise of what is told adds up, and is seen through noise of its own. Under a
+What is left between both wanders as the noise of the logged change adds up, and is seen through noise of its own. Under a
 Kalman filter of such a level what is left is white, so that all motion counts that stands out of the noise, the slow
 and the fast, and a ship on her station is judged as one under way. Rows take the place of time: a time base that is
 wrong by a thousand does no harm.
@@ -209,7 +209,7 @@ def fit_rows(seen: np.ndarray, told: np.ndarray, axes: int, offset: float) -> Ro
 
 
 def _noise_of_rows(told, axes):
-    """Variance of an axis of the noise of what is told from row to row; too large where waves are as short as rows."""
+    """Variance of an axis of the noise of the logged change from row to row; too large where waves are as short as rows."""
     # The fourth difference removes the motion and leaves the noise of neighbouring rows.
     rows = np.abs(np.diff(told, n=4))
     return _spread(rows, axes) ** 2 / ROUGHNESS
@@ -221,7 +221,7 @@ def _spread(off, axes):
 
 
 def _likelihood(rest, axes):
-    """Logarithm of the likelihood of white rows but for a constant, and their variance; single rows count so much."""
+    """Logarithm of the likelihood of white rows except for a constant, and their variance; single rows count so much."""
     # Gaussian likelihood at the estimated variance. Large
     # residuals are clipped, so outliers count little.
     off = np.abs(rest)
@@ -245,7 +245,7 @@ def _relation(fit, evidence, rough):
 
 
 def _too_small(per_row, fit):
-    """By how much noise of what is told makes the logarithm of a factor too small, and how unsure that is.
+    """By how much noise of the logged change makes the logarithm of a factor too small, and how unsure that is.
 
     Noise with a share of what is told makes a factor 1 - share of what it is. All that wanders can be such noise, or
     noise of what is seen; no more of it can than neighbouring rows differ by. But noise that a filter has smoothed

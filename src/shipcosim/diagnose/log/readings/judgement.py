@@ -133,7 +133,7 @@ def _best_forms(evidence):
 
 
 def _score(combination, evidence) -> tuple[float, tuple[float, float]]:
-    """Log of the probability of a combination, but for a constant, and the rate of the clock with its deviation."""
+    """Log of the probability of a combination, except for a constant, and the rate of the clock with its deviation."""
     # Relations that belong to the units and forms of this combination.
     reading = reading_of(combination)
     cost = sum(change.cost for change in combination)

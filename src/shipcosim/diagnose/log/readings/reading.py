@@ -84,7 +84,7 @@ def explained(log: dict) -> float:
 
 
 def is_as_labelled(log: dict, stated: dict[str, str]) -> bool:
-    """Whether no reading of a log, but for its clock, is likelier than the one that its labels say.
+    """Whether no reading of a log, except for its clock, is likelier than the one that its labels say.
 
     Parameters
     ----------
@@ -201,7 +201,7 @@ def _angle(best, evidence):
 def _findings(
     readings: list[Judged], unexplained: float, angle: ParameterEstimate | None
 ) -> list[Finding]:
-    """Findings of the changes that are sure, and one of what is left open; `angle`: of a grid that can be put right."""
+    """Findings of the changes that are sure, and one of what is left open; `angle`: of a grid that can be corrected."""
     # Marginal probability of each mistake: the sum over all combinations that contain it.
     readings = _with_known_rates(readings)
     shares: dict[str, float] = {}
