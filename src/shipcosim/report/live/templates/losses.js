@@ -32,7 +32,7 @@
     busy = true;
     asked = present;
     const steps = Math.round((ahead * about.step[1]) / about.step[0]);
-    worker.postMessage({ state: live.engine.state(), pending: live.pending, losses, steps, time: live.time.last, watch: { x: real, columns, ...limits } });
+    worker.postMessage({ state: live.engine.state(), coming: live.coming(steps), losses, steps, time: live.time.last, watch: { x: real, columns, ...limits } });
   }
 
   // A unit that is lost already is no further loss.

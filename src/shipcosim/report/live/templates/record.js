@@ -174,7 +174,8 @@ report.live = await (async () => {
       const last = done.filter(([step, , of]) => of === name && step <= engine.step()).sort((a, b) => a[0] - b[0]).pop();
       return last && last[1] !== "reset" ? last : null;
     },
-    get pending() { return done.filter(([step]) => step === engine.step()); },  // what the next step begins with
+    coming: (steps) => done.filter(([step]) => step >= engine.step() && step < engine.step() + steps),
+    get pending() { return self.coming(1); },  // what the next step begins with
     get done() { return done.filter(([step, , , , byHand]) => byHand || step < engine.step()); },
     get starts() { return starts; },
     states: () => states.length,

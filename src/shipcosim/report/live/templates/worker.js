@@ -1,10 +1,10 @@
-// What comes of each loss: the present state runs on with one unit or bus lost, and is watched.
+// What comes of each loss: the present state runs on with one unit or bus lost and with the scenario's events, and is watched.
 let engine = null, about = null;
 
-function future({ state, pending, changes, steps, watch }) {
+function future({ state, coming, changes, steps, watch }) {
   engine.restore(state);
   const begin = engine.step(), width = about.columns[watch.x].length, found = { distance: 0, heading: 0, crossed: null };
-  const due = [...pending, ...changes.map(([action, name, value]) => [begin, action, name, value])], track = [];
+  const due = [...coming, ...changes.map(([action, name, value]) => [begin, action, name, value])], track = [];
   let row = 0;
   engine.advance(begin + steps, due, (tables) => {
     const table = tables[watch.x];
