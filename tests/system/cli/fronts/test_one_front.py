@@ -37,6 +37,10 @@ CASES = {
         ["run", "fill", "--set", "lag.time_constant=0.4 s", "--until", "4.2", "--out", "out"],
         lambda: sc.run("fill", set={"lag.time_constant": "0.4 s"}, until=4.2, out="out"),
     ),
+    "run with other times": (
+        ["run", "fill", "--stop-time", "6", "--step-size", "50 ms", "--every", "1", "--out", "out"],
+        lambda: sc.run("fill", stop_time=6, step_size="50 ms", output_interval=1, out="out"),
+    ),
     "run another FMU and a set": (
         ["run", "fill", "--component", "lag=lag", "--parameters", "fast.ssv", "--out", "out"],
         lambda: sc.run("fill", components={"lag": "lag"}, parameters=["fast.ssv"], out="out"),
