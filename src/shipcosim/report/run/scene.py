@@ -1,5 +1,6 @@
 """The scene of a run: data of the page's DP display, as one compact table and its records."""
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import degrees
@@ -34,6 +35,8 @@ MOST_ROWS = (
 EXACT = 1e9  # steps of the time axis
 METRES = 0.01  # what a screen can tell apart
 DEGREES = 0.02
+REFERENCE = re.compile(r"(?:.*\.)?((?:position|compass|heading|wind|gnss|gyro)\w*)_valid")
+BUS = re.compile(r"(.*\.)(\w*bus\w*)_load")
 FLOWS = {"wind": ("from", -1.0), "current": ("to", 1.0)}  # named by where it comes from or goes to
 
 
@@ -84,6 +87,10 @@ class Run:
         What had to be supposed.
     predicted : list of dict
         Tracks that predictors foretold, of the first vessel.
+    references : list of dict
+        Label of each, and the columns that say that it works and that it is rejected.
+    buses : list of dict
+        Label of each, and the columns of its load and of the most that it has for thrusters. [W]
     recipes : dict of str to Recipe
         How the columns follow from signals, for a run that goes on; the page of a finished run has none.
     colour : str
@@ -99,6 +106,8 @@ class Run:
     watch: dict[str, float]
     read_as: list[str]
     predicted: list[JsonObject]
+    references: list[JsonObject]
+    buses: list[JsonObject]
     recipes: dict[str, Recipe] = field(default_factory=dict)
     colour: str = ""
 
@@ -201,6 +210,8 @@ def make_run(
         _watch(table),
         supposed,
         predicted_tracks(table, shift),
+        _references(columns),
+        _buses(columns),
         columns.recipes if goes_on else {},
     )
 
@@ -338,6 +349,35 @@ def _flows(table: Dataset, columns: _Columns, goes_on: bool) -> list[JsonObject]
     source = columns.add(sources, "deg")
     if height and source and (goes_on or np.nanmax(table[height].values) > 0.0):
         found.append({"what": "waves", "sense": "from", "height": height, "direction": source})
+    return found
+
+
+def _references(columns: _Columns) -> list[JsonObject]:
+    """Position references, compasses and sensors, each with what says that it works and that it is rejected."""
+    names = list(map(str, columns.table.data_vars))
+    found = []
+    for name in names:
+        if (match := REFERENCE.fullmatch(name)) and columns.add(name, ""):
+            label = match[1]
+            # A sensor says that it works; the controller that votes says whom it rejects.
+            rejected = next((one for one in names if one.endswith(f".{label}_rejected")), None)
+            found.append(
+                {
+                    "label": label.replace("_", " "),
+                    "valid": name,
+                    "rejected": columns.add(rejected, ""),
+                }
+            )
+    return found
+
+
+def _buses(columns: _Columns) -> list[JsonObject]:
+    """Buses with the power that their thrusters take, and the most that they have for them."""
+    found = []
+    for name in map(str, columns.table.data_vars):
+        if (match := BUS.fullmatch(name)) and columns.add(name, "W"):
+            most = columns.add(f"{match[1]}{match[2]}_power", "W")
+            found.append({"label": match[2].replace("_", " "), "load": name, "most": most})
     return found
 
 

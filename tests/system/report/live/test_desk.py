@@ -141,12 +141,12 @@ def test_alarms_come_at_their_time_and_are_acknowledged_once(craft):
 
 
 def test_panels_show_references_and_power(craft):
-    assert "position 1\tused" in craft.text("#panels")
+    assert "position 1\tused" in craft.text("#status")
     craft.ask(
         "desk.act('override', 'craft.y_set', 1000); desk.live.reach(2); scene.grown(2); scene.go(2)"
     )
-    craft.wait("return document.getElementById('panels').innerText.includes('lost')")
-    assert "bus a\t1 kW" in craft.text("#panels")
+    craft.wait("return document.getElementById('status').innerText.includes('lost')")
+    assert "bus a\t1 kW" in craft.text("#status")
 
 
 def test_arrow_keys_move_the_set_point_and_turn_it(craft, craft_project):

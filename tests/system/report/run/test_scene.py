@@ -28,6 +28,19 @@ LIMITS = {"port.thrust_max": 10000.0, "port.thrust_min": -8000.0}
 def table(four_corner):
     found = four_corner()
     found["monitor.position_alarm"] = ("time", np.zeros(found.sizes["time"], bool))
+    # Reference 1 is lost from 500 s on and reference 2 is rejected; bus A has 20 kW.
+    late = found["time"].values >= 500.0
+    for name, flags in {
+        "sensors.position_1_valid": ~late,
+        "controller.position_1_rejected": np.zeros_like(late),
+        "sensors.position_2_valid": np.ones_like(late),
+        "controller.position_2_rejected": late,
+        "sensors.wind_valid": np.ones_like(late),
+    }.items():
+        found[name] = ("time", flags)
+    found["allocator.bus_a_load"] = ("time", np.where(late, 30e3, 10e3), {"units": "W"})
+    found["allocator.bus_a_power"] = ("time", np.full(late.size, 20e3), {"units": "W"})
+    found["allocator.bus_b_load"] = ("time", np.full(late.size, 5e3), {"units": "W"})
     found.attrs["start_values"] = json.dumps(
         {**SIZE, **PLACES, **LIMITS, "monitor.position_limit": 3.0}
     )
@@ -53,6 +66,20 @@ def page(browse, chromium, file, opened):
         opened[:] = [browse(file)]
     opened[0].ask("window.scrollTo(0, 0)")
     return opened[0]
+
+
+@pytest.mark.parametrize(
+    ("t", "rows", "bad"),
+    [
+        (100.0, "used used valid 10 kW of 20 kW 5 kW", 0),
+        (600.0, "lost rejected valid 30 kW of 20 kW 5 kW", 3),
+    ],
+)
+def test_references_and_buses_show_their_state_at_the_time(page, t, rows, bad):
+    page.ask("scene.pause(); scene.go(arguments[0])", t)
+    cells = "[...document.querySelectorAll('#status td')].map((cell) => cell.textContent).join(' ')"
+    page.wait(f"return {cells} === '{rows}'", 20.0)
+    assert page.ask("return document.querySelectorAll('#status .bad').length") == bad
 
 
 def drawn(page, t, **wanted):
