@@ -72,8 +72,7 @@ def run(
 
     A part of a run is checked for what is expected within it. The scenarios of a folder are run one after another;
     report.html in results/FOLDER is a table of all of them, and the results of each are in a folder beside it. Of a
-    project's folder all scenarios are run.
-    Earlier results are kept in results/SCENARIO-1, -2, ... unless --force is given.
+    project's folder all scenarios are run. Earlier results are kept in results/SCENARIO-1, -2, ... without --force.
 
     --parameters takes sets that were made for another system too, as extended.ssv of a diagnosis: what the scenario's
     system has is taken, over what the scenario says, and what it has not is said.
@@ -89,9 +88,6 @@ def run(
         "fmus": fmus or [],
         "strict": strict,
         "engine": engine,
-        "stop_time": stop_time,
-        "step_size": step_size,
-        "until": until,
         "resume": resume,
         "realtime": realtime,
         "record": record or (),
@@ -99,7 +95,8 @@ def run(
         "set": parsed_settings(settings or []),
         "components": parsed_components(components or ()),
     }
-    asked |= {"profile": profile, **isolation(isolate, timeout)}
+    asked |= {"stop_time": stop_time, "step_size": step_size, "until": until, "profile": profile}
+    asked |= isolation(isolate, timeout)
     if files := library.scenarios(scenario):
         if store or resume:
             found = "This is a folder of scenarios: it has no one state to store or to go on from."

@@ -196,10 +196,9 @@ def make_run(
     if columns.without_unit:
         without = ", ".join(dict.fromkeys(columns.without_unit))
         supposed.append(f"without a unit in the table: {without}")
-    circles = []
-    for verdict in verdicts:
-        for vessel in vessels:
-            circles += _circle(verdict, vessel, shift)
+    circles = [
+        one for verdict in verdicts for vessel in vessels for one in _circle(verdict, vessel, shift)
+    ]
     return Run(
         label,
         packed_series(time[columns.rows], EXACT),
