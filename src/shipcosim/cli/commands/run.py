@@ -89,14 +89,13 @@ def run(
         "strict": strict,
         "engine": engine,
         "resume": resume,
-        "realtime": realtime,
         "record": record or (),
         "output_interval": every,
         "set": parsed_settings(settings or []),
         "components": parsed_components(components or ()),
     }
-    asked |= {"stop_time": stop_time, "step_size": step_size, "until": until, "profile": profile}
-    asked |= isolation(isolate, timeout)
+    asked |= {"stop_time": stop_time, "step_size": step_size, "until": until}
+    asked |= {"realtime": realtime, "profile": profile, **isolation(isolate, timeout)}
     if files := library.scenarios(scenario):
         if store or resume:
             found = "This is a folder of scenarios: it has no one state to store or to go on from."
