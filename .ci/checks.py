@@ -66,7 +66,7 @@ def run(
     seconds, failed = {}, []
     for name, command in steps.items():
         before = time.monotonic()
-        code = subprocess.run(command, env=os.environ | environment).returncode
+        code = subprocess.run(command, env=_inherited() | environment).returncode
         seconds[name] = time.monotonic() - before
         if code:
             failed.append(name)
@@ -81,6 +81,11 @@ def run(
     if failed:
         print(f"failed: {', '.join(failed)}", flush=True)
     return int(bool(failed))
+
+
+def _inherited() -> dict[str, str]:
+    """Environment in which Python keeps bytecode: tests start hundreds of processes that import the same modules."""
+    return {name: one for name, one in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
 
 
 if __name__ == "__main__":
