@@ -11,7 +11,6 @@ import pytest
 from rich.console import Console
 from rich.text import Text
 
-import shipcosim as sc
 from shipcosim.cli.tables import print_table
 
 NUMBER = re.compile(r"[−+-]?\d[\d.,]*(?:e[+-]?\d+)?")
@@ -99,18 +98,12 @@ def check_numbers(said_at, show):
     return wide
 
 
-def write_short_log(path):
-    """The first six minutes of the example: enough to name the same cause."""
-    log = sc.read_log("gunnerus_log").table
-    sc.write_table(log.isel(time=slice(0, 361)), path)
-
-
 @pytest.mark.parametrize("name", COMMANDS)
-def test_numbers_are_whole_at_every_width_of_every_command(name, project, call, said_at):
+def test_numbers_are_whole_at_every_width_of_every_command(name, project, six_minutes, said_at):
     (project / "studies").mkdir()
     (project / "studies" / "constants.toml").write_text(STUDY)
     for copy in ("log.csv", "again.csv"):
-        write_short_log(copy)
+        six_minutes(copy)
     module = name.split()[0]
     command = getattr(importlib.import_module(f"shipcosim.cli.commands.{module}"), module)
     found = command(**COMMANDS[name]())
