@@ -21,6 +21,11 @@ def test_every_log_goes_through_the_whole_diagnosis(craft, name, log, fmus):
         has_velocities_of_the_earth(found)
 
 
+def test_of_a_short_log_of_a_spin_nothing_but_exchanged_thrusters_is_said(log, fmus):
+    found = diagnosed(*log("blueboat", "run_228.csv.gz"), fmus)
+    assert [finding.cause for finding in found.findings] == ["channel_swap"]
+
+
 def has_velocities_of_the_earth(found):
     """HSVA's columns u and v are the rates of x and y to 1 mm/s; as those of the body they are off by 5 cm/s."""
     frames = [finding for finding in found.findings if finding.cause == "frame"]

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import pytest
 from typer.testing import CliRunner
 
+import shipcosim as sc
 from shipcosim.cli import app
 from shipcosim.library import build_stale
 
@@ -147,3 +148,14 @@ def call():
         return SimpleNamespace(code=result.exit_code, out=result.stdout, err=result.stderr)
 
     return call
+
+
+@pytest.fixture
+def six_minutes():
+    """Function that writes the first six minutes of the example log: enough to name the same cause."""
+
+    def write(path):
+        log = sc.read_log("gunnerus_log").table
+        sc.write_table(log.isel(time=slice(0, 361)), path)
+
+    return write

@@ -47,6 +47,12 @@ def screw():
 
 def structure(name="boat", **factors):
     """The boat, whose propellers' loads reach her by factors other than 1 where given."""
+    return _put_together(name, **factors).copy()
+
+
+@cache
+def _put_together(name, **factors):
+    """The same once for all tests: that takes a second."""
     boat = sc.new(name)
     with boat.changes():
         boat.add_component("boat", twin.build_stale(twin.ROOT) / "vessel.fmu")

@@ -66,6 +66,16 @@ def helm():
 
 def structure(name="ferry", **parameters):
     """The ferry without control, with inputs for what a log says."""
+    ferry = _as_modelled(name).copy()
+    with ferry.changes():
+        for signal, value in parameters.items():
+            ferry.set(signal, value)
+    return ferry
+
+
+@cache
+def _as_modelled(name):
+    """The same without changed numbers, put together once: that takes seconds."""
     ferry, fmus = sc.new(name), twin.build_stale(twin.ROOT)
     with ferry.changes():
         for part, fmu in {"environment": "environment", "ship": "vessel"}.items():
@@ -96,8 +106,6 @@ def structure(name="ferry", **parameters):
             ferry.set(f"{unit}.replay", True)
             for parameter, value in (AZIMUTH | dict(zip("xy", place, strict=True))).items():
                 ferry.set(f"{unit}.{parameter}", value)
-        for signal, value in parameters.items():
-            ferry.set(signal, value)
     ferry.step_size = STEP
     return ferry
 

@@ -18,7 +18,7 @@ TRUE = {"tunnel.x": 14.48, "starboard.x": -14.02, "port.x": -14.02, "port.y": -2
 def healthy(folder):
     """A log of a ship as the file says."""
     path = folder / "healthy.csv"
-    draw("trial", SEED, causes=0).save(path)
+    draw("trial", SEED, causes=0, minutes=20).save(path)
     return str(path)
 
 

@@ -110,7 +110,7 @@ def test_the_slipstream_is_that_of_the_unit_which_the_system_wires():
 
 def test_what_no_set_says_is_known_in_proportion_to_the_ship():
     models = (
-        along(ferry.structure, short_ferry)[0],
+        ship_model_of(ferry.structure().checked()),
         along(usv.structure, short_usv)[0],
         twin.model(),
     )

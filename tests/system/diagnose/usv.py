@@ -1,5 +1,7 @@
 """A USV of 5 m with our hull and two of our thrusters that nothing turns; and logs of her, by co-simulation."""
 
+from functools import cache
+
 import numpy as np
 import ships
 from diagnose import boat, twin
@@ -46,6 +48,16 @@ THRUSTER = {
 
 def structure(name="usv", **parameters):
     """The USV, her propellers driven by inputs of the system."""
+    usv = _as_modelled(name).copy()
+    with usv.changes():
+        for signal, value in parameters.items():
+            usv.set(signal, value)
+    return usv
+
+
+@cache
+def _as_modelled(name):
+    """The same without changed numbers, put together once: that takes seconds."""
     usv, fmus = sc.new(name), twin.build_stale(twin.ROOT)
     with usv.changes():
         usv.add_component("hull", fmus / "vessel.fmu")
@@ -70,8 +82,6 @@ def structure(name="usv", **parameters):
             usv.set(f"{side}.replay", True)
             for parameter, value in (THRUSTER | {"y": aside, "azimuth_in": toe}).items():
                 usv.set(f"{side}.{parameter}", value)
-        for signal, value in parameters.items():
-            usv.set(signal, value)
     usv.step_size = STEP
     return usv
 

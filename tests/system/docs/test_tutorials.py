@@ -2,7 +2,8 @@
 
 Its blocks are taken in order. One with a file name as title is written to that file. `sh` blocks are run; those with
 the title "exit code 1" must end so. Python without a title is run. Lines of `text` blocks must stand in the output of
-the commands before; a title says that such a block shows something else.
+the commands before; a title says that such a block shows something else. Commands of shipcosim are called in the
+process of the test: that they start from a shell too is shown by `cli/test_wheel.py`.
 """
 
 import importlib.util
@@ -10,41 +11,37 @@ import os
 import re
 import shlex
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
+
+from shipcosim.cli import app
 
 PAGES = sorted((Path(__file__).parents[3] / "docs" / "learn").glob("*.md"))
 BLOCK = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```', re.MULTILINE | re.DOTALL)
-STAND_INS = {
-    "shipcosim": "from shipcosim.cli import main; main()",
-    "pytest": "import pytest, sys; sys.exit(pytest.main())",
-}
 
 
 @pytest.fixture
-def shell(root, tmp_path, monkeypatch):
-    """Function that runs a script in an empty folder, with the commands of an environment with shipcosim."""
-    programs, empty = tmp_path / "bin", tmp_path / "empty"
-    programs.mkdir()
-    empty.mkdir()
-    for name, code in STAND_INS.items():
-        script = programs / name
-        script.write_text(
-            f'#!/bin/sh\nexec {shlex.quote(sys.executable)} -c {shlex.quote(code)} "$@"\n'
-        )
-        script.chmod(0o755)
-    path = os.pathsep.join([str(root / "src"), os.environ.get("PYTHONPATH", "")])
-    monkeypatch.setenv("PYTHONPATH", path)
-    monkeypatch.setenv("PATH", f"{programs}{os.pathsep}{os.environ['PATH']}")
+def shell(tmp_path, monkeypatch):
+    """Function that runs the commands of a script in an empty folder: what they say. The last must end with the code."""
     monkeypatch.setenv("COLUMNS", "200")
-    monkeypatch.chdir(empty)
+    monkeypatch.chdir(tmp_path)
 
     def run(script, code=0):
-        done = subprocess.run(["sh", "-ec", script], capture_output=True, text=True)
-        assert done.returncode == code, f"{script}\n{done.stdout}\n{done.stderr}"
-        return done.stdout + done.stderr
+        *before, last = script.replace("\\\n", " ").splitlines()
+        return "".join([one(command, 0) for command in before] + [one(last, code)])
+
+    def one(command, code):
+        program, *arguments = shlex.split(command)
+        if program == "shipcosim":
+            done = CliRunner().invoke(app, arguments, prog_name="shipcosim")
+            ended, said = done.exit_code, done.output
+        else:
+            other = subprocess.run(["sh", "-ec", command], capture_output=True, text=True)
+            ended, said = other.returncode, other.stdout + other.stderr
+        assert ended == code, f"{command}\n{said}"
+        return said
 
     return run
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from diagnose.log.test_readings import check_mistake
 from diagnose.logs import smooth, table
 
 from shipcosim.diagnose.log.checks.examine import examine
@@ -45,3 +46,20 @@ def test_what_is_wrong_shows_on_a_ship_that_keeps_her_station_too(said, change):
     (finding,) = examine(table(log | change(log)))
     assert said in (finding.note, *finding.alternatives) and not finding.segments
     assert finding.alternatives or finding.probability > 0.95
+
+
+OTHER_UNITS = {
+    "time is in min, not s": lambda log: {"time": log["time"] / 60.0},
+    "2 s pass in each logged second": lambda log: {"time": 0.5 * log["time"]},
+    "surge and sway are in ft/s, not m/s": lambda log: {
+        role: log[role] / 0.3048 for role in ("surge", "sway")
+    },
+    "north and east are in ft, not m": lambda log: {
+        role: log[role] / 0.3048 for role in ("north", "east")
+    },
+}
+
+
+@pytest.mark.parametrize("said", OTHER_UNITS)
+def test_other_units_throughout_are_named_alone_and_put_right(said):
+    check_mistake(said, OTHER_UNITS[said])

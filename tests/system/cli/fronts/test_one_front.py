@@ -120,16 +120,16 @@ OF_SHIPS = {
         lambda: sc.replay("gunnerus_log", horizon=60.0, out="out"),
     ),
     "diagnose": (
-        ["diagnose", "gunnerus_log", "--out", "out"],
-        lambda: sc.diagnose("gunnerus_log", out="out"),
+        ["diagnose", "log.csv", "--out", "out"],
+        lambda: sc.diagnose("log.csv", out="out"),
     ),
     "sea-trials": (
         ["sea-trials", "trials.csv", "--orders", "--out", "out"],
         lambda: sc.sea_trials("trials.csv", orders=True, out="out"),
     ),
     "calibrate": (
-        ["calibrate", "gunnerus_log", "--out", "out"],
-        lambda: sc.calibrate("gunnerus_log", out="out"),
+        ["calibrate", "log.csv", "--out", "out"],
+        lambda: sc.calibrate("log.csv", out="out"),
     ),
 }
 SET = """<?xml version="1.0" encoding="UTF-8"?>
@@ -231,9 +231,10 @@ def studied_once(monkeypatch):
 
 @pytest.mark.parametrize("name", OF_SHIPS)
 def test_command_and_call_on_ships_leave_the_same_files(
-    name, tmp_path, monkeypatch, call, studied_once
+    name, tmp_path, monkeypatch, call, six_minutes, studied_once
 ):
     monkeypatch.chdir(tmp_path)
+    six_minutes("log.csv")
     if name == "sea-trials":
         write_trials(tmp_path)
     command, call_in_python = OF_SHIPS[name]

@@ -83,9 +83,6 @@ class Dangerous(Fmu):
         if self.how == "hang":
             print("hanging")
             time.sleep(600.0)
-        if self.how == "spin":
-            while True:
-                pass
         if self.how == "raise":
             raise ValueError("50%s of it is wrong")
         if self.how == "interrupt":
@@ -227,7 +224,7 @@ def test_the_dp_ship_gives_the_same_digits(root):
 
     scenario = read_scenario(root / "scenarios" / "gust.toml")
     scenario = scenario.model_copy(
-        update={"stop_time": 5.0, "events": [], "expect": [], "output_interval": None}
+        update={"stop_time": 1.0, "events": [], "expect": [], "output_interval": None}
     )
     system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[build_stale(root)])
     same(simulate(system, scenario), simulate(system, scenario, RunOptions(isolate=True)))
@@ -248,7 +245,6 @@ def test_the_dp_ship_gives_the_same_digits(root):
         ("close", "Its process ended itself in DoStep, with exit code 1."),
         ("fork", "Its process ended itself in DoStep, with exit code 4."),
         ("hang", f"Its process gave no answer to DoStep within {LIMIT:g} s and was ended."),
-        ("spin", f"Its process gave no answer to DoStep within {LIMIT:g} s and was ended."),
     ],
 )
 def test_a_component_that_goes_down_is_named_and_the_rows_before_are_there(

@@ -164,7 +164,7 @@ def test_a_clock_that_is_wrong_for_headings_alone_is_no_clock():
     assert examine(table(log)) == []
 
 
-SEGMENTS = [None, (300.0, 800.0)]
+PART = (300.0, 800.0)
 LABELS = {
     "surge": ("sign", ("surge",), lambda log: {"surge": -log["surge"]}),
     "sway": ("sign", ("sway",), lambda log: {"sway": -log["sway"]}),
@@ -209,9 +209,21 @@ LABELS = {
 }
 
 
-@pytest.mark.parametrize("segment", SEGMENTS, ids=["throughout", "in a part"])
+IN_A_PART = ("sway", "yaw_rate", "wind_from", "earth", "knots", "earth-fixed")
+"""At least one of each cause, of body and earth, and of the wind; the others at night."""
+
+
 @pytest.mark.parametrize("fault", LABELS)
-def test_a_mislabelled_channel_is_named_and_put_right(fault, segment):
+def test_a_channel_mislabelled_throughout_is_named_and_put_right(fault):
+    check_label(fault)
+
+
+@pytest.mark.parametrize("fault", IN_A_PART)
+def test_a_channel_mislabelled_in_a_part_is_named_and_put_right(fault):
+    check_label(fault, PART)
+
+
+def check_label(fault, segment=None):
     cause, channels, change = LABELS[fault]
     right = measured(seed=8)
     here = inside(right, *segment) if segment else np.ones(len(right["time"]), bool)
@@ -431,10 +443,10 @@ def test_a_small_craft_that_swings_across_north_is_no_heading_wrap():
     assert examine(table({"time": time, "heading": np.mod(heading, 360.0)})) == []
 
 
-@pytest.mark.parametrize("grain", [0.1, 0.6, 1.1])
+@pytest.mark.parametrize("grain", [0.1, 1.1])
 @pytest.mark.parametrize("noise", [0.02, 0.5])
 @pytest.mark.parametrize("swing", [0.0, 20.0])
-@pytest.mark.parametrize("speed", [0.1, 0.5, 2.0])
+@pytest.mark.parametrize("speed", [0.1, 2.0])
 def test_positions_of_five_decimals_of_a_degree_are_no_gap(grain, noise, speed, swing):
     """At 1 Hz a slow craft stays on one such step for seconds, and goes on by one: no line, nothing held."""
     time, random = np.arange(600.0), np.random.default_rng(5)

@@ -38,7 +38,7 @@ def repeated(page, folder):
     """Table of the scenario that the page saves, run by the native engine."""
     file = folder / "saved.toml"
     file.write_text(page.ask("return desk.scenario()"), encoding="utf-8")
-    return shipcosim.run(file, engine="native", out=folder / "out").table
+    return shipcosim.run(file, engine="native").table
 
 
 def largest_difference(page, table):
@@ -77,20 +77,23 @@ def test_going_back_forgets_what_came_after(desk, tmp_path):
     assert worst < SAME
 
 
-@pytest.mark.parametrize("name, value", [("environment.seed", 17), ("environment.wind_speed", 12)])
-def test_another_start_value_starts_another_run(desk, tmp_path, name, value):
-    place = desk.ask(
-        "return desk.live.about.starts.find(([, name]) => name === arguments[0])[0]", name
+def test_other_start_values_start_another_run(desk, tmp_path):
+    given = {"environment.seed": 17, "environment.wind_speed": 12}
+    desk.ask(
+        "const of = (name) => desk.live.about.starts.find(([, other]) => other === name)[0];"
+        "desk.live.reset(Object.fromEntries(Object.entries(arguments[0]).map(([n, v]) => [of(n), v])));"
+        "desk.live.reach(60)",
+        given,
     )
-    desk.ask("desk.live.reset({ [arguments[0]]: arguments[1] }); desk.live.reach(60)", place, value)
     table = repeated(desk, tmp_path)
-    assert json.loads(table.attrs["start_values"])[name] == value
+    started = json.loads(table.attrs["start_values"])
+    assert {name: started[name] for name in given} == given
     worst, _ = largest_difference(desk, table)
     assert worst < SAME
 
 
 # At 250 s the scenario moves the set point.
-@pytest.mark.parametrize(("lost", "at"), [("port", 60.0), ("starboard", 200.0), ("tunnel", 60.0)])
+@pytest.mark.parametrize(("lost", "at"), [("port", 200.0), ("tunnel", 60.0)])
 def test_the_forecast_of_a_loss_equals_a_run_with_it(desk, tmp_path, lost, at):
     desk.ask(f"desk.live.reach({at})")
     desk.wait(f"return desk.losses.time > {at} - 10 && desk.losses.answers.length >= 5")
@@ -128,9 +131,9 @@ def test_a_reader_runs_pauses_fails_and_undoes_by_the_pages_own_buttons(desk):
 
 def test_as_fast_as_it_goes_from_the_start_and_back_within_bounds(desk):
     desk.ask("scene.setSpeed(Infinity); scene.play()")
-    desk.wait("return desk.live.time.last > 1500")
-    desk.ask("scene.pause(); desk.live.back(1234.5)")
-    assert desk.ask("return desk.live.time.last") == 1234.5
+    desk.wait("return desk.live.time.last > 650")  # by then the states were thinned twice
+    desk.ask("scene.pause(); desk.live.back(512.5)")
+    assert desk.ask("return desk.live.time.last") == 512.5
     assert desk.ask("return desk.live.states()") <= 81
 
 
