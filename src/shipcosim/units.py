@@ -11,10 +11,11 @@ from __future__ import annotations
 
 import math
 import re
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import pint
@@ -448,6 +449,20 @@ def number_in(text: str, target: Unit | None, *, difference: bool = False) -> fl
     factor = source.factor / target.factor
     offset = (source.offset - target.offset) / target.factor
     return number * factor + (0.0 if difference else offset)
+
+
+def value_of(text: str) -> Any:
+    """Value of a text that somebody typed, as TOML has it; what is no TOML is text.
+
+    Examples
+    --------
+    >>> [value_of(text) for text in ("5e5", " true", "10 kn", "'5'")]
+    [500000.0, True, '10 kn', '5']
+    """
+    try:
+        return tomllib.loads(f"value = {text.strip()}")["value"]
+    except (ValueError, RecursionError):
+        return text.strip()
 
 
 def seconds(given: str | float) -> float:
