@@ -9,6 +9,7 @@ import openpyxl
 import pandas
 import pytest
 
+from shipcosim.diagnose.log.files.positions import degrees_of_texts
 from shipcosim.diagnose.log.reader import columns_of, read_log
 from shipcosim.errors import ShipcosimError
 from shipcosim.series import read_table
@@ -95,6 +96,19 @@ def test_a_row_of_another_length_is_left_out_or_refused_wherever_it_stands(tmp_p
     log = read_log(tmp_path / "log.csv")
     assert len(log["time"]) == len(ROWS) - 1
     assert "1 row without 4 cells left out" in " ".join(log.attrs["column_remarks"])
+
+
+@pytest.mark.parametrize(
+    ("side", "sign"), [("E", 1), ("Ø", 1), ("Ö", 1), ("W", -1), ("V", -1), ("w", -1)]
+)
+def test_sides_of_longitudes_in_other_languages(side, sign):
+    cells = np.array([f"10°24,0015'{side}"], object)
+    found = degrees_of_texts(cells, 180.0)
+    assert found is not None and found[0] == pytest.approx(sign * (10.0 + 24.0015 / 60.0))
+
+
+def test_a_side_that_is_east_in_one_language_and_west_in_another_is_none():
+    assert degrees_of_texts(np.array(["10°24,0015'O"], object), 180.0) is None
 
 
 NDBC = "#YY  MM DD hh mm WDIR WSPD ATMP\n#yr  mo dy hr mn degT m/s  degC\n"
