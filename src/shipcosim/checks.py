@@ -25,7 +25,19 @@ OF_SCENARIO = {"system", "stop_time", "step_size", "events", "expect", "set"}
 """Keys that only a .toml of one kind has."""
 OSP_SCENARIOS = (".json", ".yaml", ".yml")
 TABLES = (".csv", ".csv.gz", ".nc", ".parquet")
-LOGS = (".txt", ".dat", ".tsv", ".log", ".xlsx", ".mat", ".txt.gz", ".dat.gz", ".tsv.gz", ".log.gz")
+LOGS = (
+    ".txt",
+    ".dat",
+    ".tsv",
+    ".log",
+    ".jsonl",
+    ".xlsx",
+    ".mat",
+    ".txt.gz",
+    ".dat.gz",
+    ".tsv.gz",
+    ".log.gz",
+)
 
 
 def check_any(file: str, channels: Path | None = None, hosts: Iterable[str] = ()) -> list[Problem]:

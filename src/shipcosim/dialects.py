@@ -61,9 +61,16 @@ def unicode_of(content: bytes) -> str:
 
 _BYTE_ORDERS = (
     (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF32_LE, "utf-32"),
+    (codecs.BOM_UTF32_BE, "utf-32"),
     (codecs.BOM_UTF16_LE, "utf-16"),
     (codecs.BOM_UTF16_BE, "utf-16"),
 )
+
+
+def is_text(head: bytes) -> bool:
+    """Whether a file can only be a text by its first bytes: ASCII without control characters."""
+    return head.isascii() and min(head, default=0) > 8
 
 
 def is_comment(line: str) -> bool:

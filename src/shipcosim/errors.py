@@ -24,10 +24,13 @@ def printable(text: str) -> str:
     >>> printable("a\x1b[31mred")
     'a\\x1b[31mred'
     """
-    return _CONTROLS.sub(lambda found: ascii(found[0])[1:-1], text)
+    return CONTROLS.sub(lambda found: ascii(found[0])[1:-1], text)
 
 
-_CONTROLS = re.compile(r"[\ud800-\udfff\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
+CONTROLS = re.compile(
+    r"[\ud800-\udfff\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufffe\uffff]"
+)
+"""Characters that control a terminal or that XML cannot hold."""
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,6 @@ import io
 import json
 import os
 import re
-import zlib
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from functools import cache
@@ -27,6 +26,7 @@ from shipcosim.dialects import (
     decimal_of,
     header_of,
     is_figure,
+    is_text,
     name_in,
     seconds_of_spans,
     separator_of,
@@ -190,11 +190,23 @@ def read_columns(path: str | os.PathLike) -> dict[str, tuple[np.ndarray, str]]:
     return {name: (values, unit) for name, unit, values in columns}
 
 
+def ending_of(path: Path) -> str:
+    """Ending that suits the content of a file: Parquet is Parquet and text is CSV, whatever they are called."""
+    with path.open("rb") as file:
+        head = file.read(8)
+    if head.startswith(b"PAR1"):
+        return ".parquet"
+    ending = "".join(re.findall(r"(?:\.csv)?\.\w+$", path.name.lower()))
+    return ".csv" if is_text(head) and ending in (".nc", ".parquet") else ending
+
+
 def _suffix(path: str | os.PathLike, known: Iterable[str]) -> str:
     path = Path(path)
-    suffix = next((s for s in known if path.name.endswith(s)), None)
-    if path.is_dir() or suffix is None:
-        found = "is a folder, no table." if path.is_dir() else f"'{path.suffix}' is no table."
+    if path.is_dir():
+        raise error_at(str(path), "is a folder, no table.", f"Tables are {', '.join(known)}.")
+    suffix = ending_of(path) if path.is_file() else path.suffix
+    if suffix not in known:
+        found = f"'{path.suffix}' is no table."
         raise error_at(str(path), found, f"Tables are {', '.join(known)}.")
     if not path.is_file():
         raise error_at(str(path), "there is no such file.")
@@ -347,22 +359,15 @@ def _check_declared(path: Path) -> None:
 def _open_netcdf(path: Path) -> xarray.Dataset:
     import xarray
 
-    try:
-        _check_declared(path)
-        with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as table:
-            table = table.load()
-        own = {
-            name: variable.attrs.pop(OWN_NAME)
-            for name, variable in table.variables.items()
-            if OWN_NAME in variable.attrs
-        }
-        return _within_valid_range(table.rename(own))
-    except (
-        Exception
-    ) as error:  # of a damaged file xarray, h5netcdf and h5py raise anything, MemoryError too
-        said = "".join(c if c.isprintable() else " " for c in str(error))[:200].rstrip(".")
-        found = f"is no NetCDF 4 file that can be read: {said or type(error).__name__}."
-        raise error_at(str(path), found, "Write or copy it again.") from error
+    _check_declared(path)
+    with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as table:
+        table = table.load()
+    own = {
+        name: variable.attrs.pop(OWN_NAME)
+        for name, variable in table.variables.items()
+        if OWN_NAME in variable.attrs
+    }
+    return _within_valid_range(table.rename(own))
 
 
 def _within_valid_range(table: xarray.Dataset) -> xarray.Dataset:
@@ -426,7 +431,7 @@ def _netcdf_columns(table: xarray.Dataset) -> dict[str, tuple[np.ndarray, str]]:
 
 def _read_columns(path: Path) -> list[tuple[str, str, np.ndarray]]:
     """Name, unit and values of each column of a CSV or Parquet file."""
-    headers, columns = _read_parquet(path) if path.name.endswith(".parquet") else _read_csv(path)
+    headers, columns = _read_parquet(path) if ending_of(path) == ".parquet" else _read_csv(path)
     if not len(columns) or not len(columns[0]):
         raise error_at(
             str(path), "has no row below its header.", "Each row is a time and its values."
@@ -442,16 +447,13 @@ def _read_columns(path: Path) -> list[tuple[str, str, np.ndarray]]:
 
 def _read_csv(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
     """Headers, and cells by column."""
-    try:
-        content = unpacked_bytes(path)
-        text = content.decode(unicode_of(content) or "cp1252").removeprefix("\ufeff")
-        rows, decimal = _cells(path, text)
-    except (OSError, EOFError, csv.Error, UnicodeDecodeError, zlib.error) as error:
-        raise ShipcosimError(_unreadable(path, error)) from error
-    except MemoryError as error:
-        raise error_at(str(path), "is larger than the memory.", "Read a part of it.") from error
+    content = unpacked_bytes(path)
+    text = content.decode(unicode_of(content) or "cp1252", errors="replace")
+    if "\0" in text:
+        raise error_at(str(path), "is no text: it holds zero bytes.", "Write or copy it again.")
+    rows, decimal = _cells(path, text.removeprefix("\ufeff"))
     if not rows:
-        raise ShipcosimError(_unreadable(path, ValueError("Empty CSV file")))
+        raise error_at(str(path), "is empty.", "Each row is a time and its values.")
     if decimal == ",":
         # A number with a decimal comma is written with a point; points in it group thousands.
         for row in rows[1:]:
@@ -461,23 +463,32 @@ def _read_csv(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
     width = len(rows[0])
     for number, row in enumerate(rows, start=1):
         if len(row) != width:
-            found = f"Row {number}: Expected {width} columns, got {len(row)}: {','.join(row)}"
-            raise ShipcosimError(_unreadable(path, ValueError(found)))
+            found = f"has {len(row)} cells, and the header has {width}: {','.join(row)}"
+            raise error_at(f"{path}, row {number}", found[:100], _AS_CSV)
     rows = _without_row_of_units(rows)
     return rows[0], list(zip(*rows[1:], strict=True))
 
 
+_AS_CSV = "Columns are separated by commas, numbers have a decimal point."
+
+
 def _without_row_of_units(rows: list[list[str]]) -> list[list[str]]:
     """The rows, with the units of a row of them below the names in the header."""
-    units = [cell.strip("[]() ") for cell in (rows[1] if len(rows) > 1 else ())]
-    known = [unit in ("", "-") or spelled_unit(unit) is not None for unit in units]
-    if not any(units) or not all(known) or any(map(is_figure, units)):
+    if len(rows) < 2 or not _are_units(rows[1]):
         return rows
+    units = [cell.strip("[]() ") for cell in rows[1]]
     header = [
         header if _HEADER.match(header) or unit in ("", "-") else f"{header} [{unit}]"
         for header, unit in zip(rows[0], units, strict=True)
     ]
     return [header, *rows[2:]]
+
+
+def _are_units(cells: list[str]) -> bool:
+    """Whether all cells of a row are units, or empty."""
+    units = [cell.strip("[]() ") for cell in cells]
+    known = [unit in ("", "-") or spelled_unit(unit) is not None for unit in units]
+    return any(units) and all(known) and not any(map(is_figure, units))
 
 
 def unpacked_bytes(path: Path) -> bytes:
@@ -506,7 +517,10 @@ def _cells(path: Path, text: str) -> tuple[list[list[str]], str]:
     text = _without_comments(text)
     lines = text.splitlines()
     separator = "," if not lines or "," in lines[0] else separator_of(lines)
-    if separator in (",", " "):
+    # Blanks separate where every line has as many cells as the header.
+    if separator == " " and len({len(line.split()) for line in lines if line.strip()}) > 1:
+        separator = ","
+    if separator == ",":
         return [row for row in csv.reader(io.StringIO(text, newline=""), strict=True) if row], "."
     rows = [cells_in(line, separator) for line in lines if line.strip()]
     with_comma = {cell for row in rows[1:] for cell in row if "," in cell and is_figure(cell)}
@@ -514,7 +528,7 @@ def _cells(path: Path, text: str) -> tuple[list[list[str]], str]:
 
 
 def _without_comments(text: str) -> str:
-    """The text without lines with # above its header; where numbers follow them at once, the last one is the header."""
+    """The text without lines with # above its header; where numbers follow at once, the last of them are names, units."""
     lines = text.splitlines(keepends=True)
     is_above = [not line.strip() or line.startswith("#") for line in lines]
     if not text.startswith("#") or all(is_above):
@@ -522,8 +536,9 @@ def _without_comments(text: str) -> str:
     first = is_above.index(False)
     table = "".join(lines[first:])
     if all(map(is_figure, cells_in(lines[first], separator_of(lines[first:])))):
-        header = next(line for line in reversed(lines[:first]) if line.strip())
-        return header.lstrip("# ") + table
+        above = [line.lstrip("# ") for line in lines[:first] if line.strip()]
+        count = 2 if _are_units(cells_in(above[-1], separator_of(above[-1:]))) else 1
+        return "".join(above[-count:]) + table
     return table
 
 
@@ -535,41 +550,20 @@ def _read_parquet(path: Path) -> tuple[list[str], list[np.ndarray]]:
     except ImportError as error:
         remedy = 'Install it: pip install "shipcosim[parquet]". Or save the table as CSV.'
         raise error_at(str(path), "pyarrow, which reads Parquet, is not here.", remedy) from error
-    try:
-        file = ParquetFile(path)
-        about = file.metadata
-        # What is packed well declares more than its size: bounded as for NetCDF.
-        if about.num_rows * about.num_columns * 8 > LARGEST_TABLE:
-            size = about.num_rows * about.num_columns * 8 / 2**30
-            raise ValueError(f"it declares {size:.3g} GiB, at most {LARGEST_TABLE >> 30} are read")
-        content: Table = file.read()
-        columns = []
-        for column in content.columns:
-            # Stamps are UTC inside, whatever their zone is called: some writers name zones that only they know.
-            if types.is_timestamp(column.type) and column.type.tz is not None:
-                column = column.cast(timestamp(column.type.unit))
-            columns.append(column.to_pandas().to_numpy())
-    except MemoryError:
-        raise
-    except Exception as error:  # Arrow has errors of many kinds
-        raise ShipcosimError(_unreadable(path, error)) from error
+    file = ParquetFile(path)
+    about = file.metadata
+    # What is packed well declares more than its size: bounded as for NetCDF.
+    if about.num_rows * about.num_columns * 8 > LARGEST_TABLE:
+        size = about.num_rows * about.num_columns * 8 / 2**30
+        raise ValueError(f"it declares {size:.3g} GiB, at most {LARGEST_TABLE >> 30} are read")
+    content: Table = file.read()
+    columns = []
+    for column in content.columns:
+        # Stamps are UTC inside, whatever their zone is called: some writers name zones that only they know.
+        if types.is_timestamp(column.type) and column.type.tz is not None:
+            column = column.cast(timestamp(column.type.unit))
+        columns.append(column.to_pandas().to_numpy())
     return content.column_names, columns
-
-
-def _unreadable(path: Path, error: Exception) -> Problem:
-    if isinstance(error, UnicodeDecodeError):
-        found = (
-            f"is not UTF-8 text: byte 0x{error.object[error.start]:02x} is none of its characters."
-        )
-        return Problem(str(path), found, "Save the file in UTF-8.")
-    said = "".join(c if c.isprintable() else " " for c in str(error))[:100]
-    is_parquet = path.name.endswith(".parquet")
-    remedy = "" if is_parquet else "Columns are separated by commas, numbers have a decimal point."
-    return Problem(
-        str(path),
-        f"cannot be read as {'Parquet' if is_parquet else 'CSV'}: {said.rstrip('.')}.",
-        remedy,
-    )
 
 
 def _read_rows(path: Path) -> xarray.Dataset:

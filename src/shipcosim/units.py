@@ -11,10 +11,11 @@ from __future__ import annotations
 
 import math
 import re
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import pint
@@ -84,48 +85,57 @@ class UnitError(ValueError):
         self.remedy = remedy
 
 
+_TABLE = """
+1    1
+-    1
+%    0.01
+kg   1                    kg
+g    0.001                kg
+t    1000                 kg
+m    1                    m
+nmi  1852                 m
+s    1                    s
+min  60                   s
+h    3600                 s
+d    86400                s
+A    1                    A
+K    1                    K
+degC 1+273.15             K
+mol  1                    mol
+cd   1                    cd
+rad  1                    rad
+deg  0.017453292519943295 rad
+gon  0.015707963267948967 rad
+rev  6.283185307179586    rad
+rpm  0.10471975511965977  s-1 rad
+kn   0.5144444444444445   m s-1
+Hz   1                    s-1
+N    1                    kg m s-2
+Pa   1                    kg m-1 s-2
+bar  100000               kg m-1 s-2
+J    1                    kg m2 s-2
+W    1                    kg m2 s-3
+V    1                    kg m2 s-3 A-1
+Ohm  1                    kg m2 s-3 A-2
+C    1                    s A
+l    0.001                m3
+"""
+"""Symbol, factor and offset to SI base units, and these with their exponents."""
+
+
 def _unit(name: str, factor: float = 1.0, offset: float = 0.0, **exponents: int) -> Unit:
     return Unit(name, tuple(exponents.get(base, 0) for base in BASE_UNITS), factor, offset)
 
 
-SYMBOLS = {
-    unit.name: unit
-    for unit in (
-        _unit("1"),
-        _unit("-"),
-        _unit("%", 0.01),
-        _unit("kg", kg=1),
-        _unit("g", 1e-3, kg=1),
-        _unit("t", 1e3, kg=1),
-        _unit("m", m=1),
-        _unit("nmi", 1852.0, m=1),
-        _unit("s", s=1),
-        _unit("min", 60.0, s=1),
-        _unit("h", 3600.0, s=1),
-        _unit("d", 86400.0, s=1),
-        _unit("A", A=1),
-        _unit("K", K=1),
-        _unit("degC", 1.0, 273.15, K=1),
-        _unit("mol", mol=1),
-        _unit("cd", cd=1),
-        _unit("rad", rad=1),
-        _unit("deg", math.pi / 180, rad=1),
-        _unit("gon", math.pi / 200, rad=1),
-        _unit("rev", 2 * math.pi, rad=1),
-        _unit("rpm", 2 * math.pi / 60, rad=1, s=-1),
-        _unit("kn", 1852.0 / 3600.0, m=1, s=-1),
-        _unit("Hz", s=-1),
-        _unit("N", kg=1, m=1, s=-2),
-        _unit("Pa", kg=1, m=-1, s=-2),
-        _unit("bar", 1e5, kg=1, m=-1, s=-2),
-        _unit("J", kg=1, m=2, s=-2),
-        _unit("W", kg=1, m=2, s=-3),
-        _unit("V", kg=1, m=2, s=-3, A=-1),
-        _unit("Ohm", kg=1, m=2, s=-3, A=-2),
-        _unit("C", A=1, s=1),
-        _unit("l", 1e-3, m=3),
-    )
-}
+def _unit_of_line(line: str) -> Unit:
+    name, number, *powers = line.split()
+    factor, _, offset = number.partition("+")
+    parts = [re.fullmatch(r"([A-Za-z]+)(-?\d+)?", power) for power in powers]
+    exponents = {part[1]: int(part[2] or 1) for part in parts if part}
+    return _unit(name, float(factor), float(offset or 0.0), **exponents)
+
+
+SYMBOLS = {unit.name: unit for unit in map(_unit_of_line, _TABLE.strip().splitlines())}
 """Units by their symbol, for spellings that no file defines."""
 RADIAN = SYMBOLS["rad"]
 
@@ -448,6 +458,20 @@ def number_in(text: str, target: Unit | None, *, difference: bool = False) -> fl
     factor = source.factor / target.factor
     offset = (source.offset - target.offset) / target.factor
     return number * factor + (0.0 if difference else offset)
+
+
+def value_of(text: str) -> Any:
+    """Value of a text that somebody typed, as TOML has it; what is no TOML is text.
+
+    Examples
+    --------
+    >>> [value_of(text) for text in ("5e5", " true", "10 kn", "'5'")]
+    [500000.0, True, '10 kn', '5']
+    """
+    try:
+        return tomllib.loads(f"value = {text.strip()}")["value"]
+    except (ValueError, RecursionError):
+        return text.strip()
 
 
 def seconds(given: str | float) -> float:

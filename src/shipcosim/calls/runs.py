@@ -46,7 +46,7 @@ from shipcosim.scenario import (
     with_numbers,
     within_run,
 )
-from shipcosim.ssp import System, read_log_config, settings_of_one, step_remarks, with_values
+from shipcosim.ssp import System, read_log_config, settings_for, step_remarks, with_values
 from shipcosim.staging import check_targets, set_file_aside
 
 if TYPE_CHECKING:
@@ -348,7 +348,7 @@ def prepare_run(
     # Parameter sets may have been made for another system: what fits is taken as start values, not as sets.
     system = Reading(components=components, fmus=fmus, strict=strict).system_of_scenario(given)
     fitting, left_out = values_of_sets(parameters, system)
-    start_values = mapping("set", set)
+    start_values = settings_for(system, mapping("set", set))
     with_values(system, start_values, named("set"))
 
     # What runs in place of components' own FMUs is part of the scenario, so that the table repeats the run.
@@ -503,7 +503,7 @@ def prepare_simulation(
         start_time = ship.experiment.start_time if scenario is None and not continues else 0.0
     inputs = fed_by(options.get("inputs"), ship, interpolate, max_gap)
     how = options_of({"start_time": start_time, **options, "inputs": inputs})
-    start_values = settings_of_one(ship, mapping("set", set))
+    start_values = settings_for(ship, mapping("set", set))
     with_values(ship, start_values, named("set"))
     times = without_none(
         {"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval}

@@ -22,19 +22,26 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a console that knows no '≥' shows '?'
-    _refuse_empty(sys.argv[1:])
+    _refuse_unusable(sys.argv[1:])
     gc.set_threshold(NEW_OBJECTS)
     # The process gives all memory back at its end: a last search through all objects takes another tenth.
     atexit.register(gc.freeze)
     run_in_child(lambda: app(prog_name="shipcosim"))
 
 
-def _refuse_empty(arguments: list[str]) -> None:
-    """Exit with 2 where an argument or an option's value is empty: as a path it would be the working folder."""
+def _refuse_unusable(arguments: list[str]) -> None:
+    """Exit with 2 where an argument or an option's value is empty or no UTF-8.
+
+    As a path an empty one would be the working folder. No page or table can hold a name that is no text.
+    """
     for place, argument in enumerate(arguments, start=1):
+        found = ""
         if re.fullmatch(r"(--[\w-]+=)?", argument):
-            found = f"error: argument {place} of the command:\nis empty."
-            sys.stderr.write(f"{found} Give it a value; is a variable of the shell not set?\n")
+            found = "is empty. Give it a value; is a variable of the shell not set?"
+        elif any("\ud800" <= sign <= "\udfff" for sign in argument):
+            found = "is no text in UTF-8. Rename the file."
+        if found:
+            sys.stderr.write(f"error: argument {place} of the command:\n{found}\n")
             sys.exit(2)
 
 

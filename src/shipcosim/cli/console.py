@@ -70,7 +70,7 @@ def progress_of(label: str, duration: float | None = None) -> Iterator[Callable[
     from shipcosim.cli.progress import tenths
 
     columns = [
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         TaskProgressColumn(),
         TextColumn("{task.fields[pace]}"),
@@ -164,7 +164,7 @@ def say_outcome(console: Console, outcome: Outcome) -> None:
 
 def say_page(console: Console, page: Path) -> None:
     """Where the page is."""
-    console.print(f"Page: {shown_path(page)}", markup=False)
+    console.print(f"Page: {shown_path(page)}")
 
 
 def shown_path(path: str | os.PathLike[str]) -> Path:

@@ -9,6 +9,7 @@ import mmap
 import os
 import signal
 import sys
+import time
 from collections.abc import Callable
 
 _DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux
@@ -38,6 +39,8 @@ def run_in_child(work: Callable[[], None]) -> None:
         ctypes.CDLL(None).prctl(_DIE_WITH_PARENT, signal.SIGKILL)
         if os.getppid() != parent:
             os._exit(1)
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            signal.signal(signal.SIGINT, _interrupt_once())
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
         try:
             work()
@@ -46,6 +49,22 @@ def run_in_child(work: Callable[[], None]) -> None:
         return
     status = _wait_for(child, watched)
     _exit_as(status, bool(is_done[0]))
+
+
+def _interrupt_once() -> Callable[..., None]:
+    """Handler of SIGINT: sent to a whole group it comes twice, and the second must not end the clearing up."""
+    last = -_SAME_INTERRUPT
+
+    def interrupt(*_: object) -> None:
+        nonlocal last
+        if time.monotonic() - last > _SAME_INTERRUPT:
+            last = time.monotonic()
+            raise KeyboardInterrupt
+
+    return interrupt
+
+
+_SAME_INTERRUPT = 1.0  # s within which another SIGINT is the same one, passed on. Assumed.
 
 
 def _wait_for(child: int, watched: set[signal.Signals]) -> int:

@@ -89,11 +89,7 @@ def tenths(
         if not console.is_terminal and last < tenth < 10 and is_long:
             last = tenth
             speed = f", {pace}" if pace else ""
-            console.print(
-                f"{label}: {10 * tenth} % after {passed:.0f} s{speed}",
-                markup=False,
-                highlight=False,
-            )
+            console.print(f"{label}: {10 * tenth} % after {passed:.0f} s{speed}", highlight=False)
 
     return report
 
@@ -128,7 +124,7 @@ def shown_progress(steps: Mapping[str, float]) -> Iterator[Callable[..., None]]:
     said = {next(iter(steps))}
     columns = [
         SpinnerColumn(),
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(bar_width=24),
         TaskProgressColumn(),
     ]
@@ -141,7 +137,7 @@ def shown_progress(steps: Mapping[str, float]) -> Iterator[Callable[..., None]]:
         def show(step, done=None, total=None):
             course.reached(step, done, total)
             if not console.is_terminal and step not in said:
-                console.print(numbers.get(step, step), highlight=False, markup=False)
+                console.print(numbers.get(step, step), highlight=False)
             said.add(step)
             bar.update(task, description=numbers.get(step, step), completed=course.share)
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.units import value_of
 
 
 def parsed_settings(settings: Iterable[str]) -> dict[str, Any]:
@@ -28,10 +28,7 @@ def parsed_settings(settings: Iterable[str]) -> dict[str, Any]:
                 )
             )
         problems += _of_twice("--set", name.strip(), values)
-        try:
-            values[name.strip()] = tomllib.loads(f"value = {text.strip()}")["value"]
-        except (ValueError, RecursionError):
-            values[name.strip()] = text.strip()
+        values[name.strip()] = value_of(text)
     if problems:
         raise ShipcosimError(problems)
     return values

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from shipcosim.errors import printable
+from shipcosim.errors import CONTROLS, printable
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -33,7 +33,9 @@ def make_console(*, stderr: bool = False, **options: Any) -> Console:
         def process_renderables(self, renderables):
             return [Printable(one) for one in renderables]
 
-    console = Console(stderr=stderr, **{"highlight": False, **options})
+    # Names of files and components may look like markup or emoji of rich: they stay text.
+    plain = {"highlight": False, "markup": False, "emoji": False}
+    console = Console(stderr=stderr, **{**plain, **options})
     console.push_render_hook(MakePrintable())
     return console
 
@@ -45,4 +47,6 @@ def say(text: object, *, err: bool = False) -> None:
 
 def say_json(content: object) -> None:
     """Print as JSON on stdout."""
-    typer.echo(printable(json.dumps(content, indent=2, ensure_ascii=False)))
+    text = json.dumps(content, indent=2, ensure_ascii=False)
+    # JSON has escapes of its own for characters that control a terminal.
+    typer.echo(CONTROLS.sub(lambda found: json.dumps(found[0])[1:-1], text))

@@ -430,6 +430,9 @@ def marked(value: Any) -> Any:
     return value
 
 
+_OF_MATH = (
+    "floor ceil sin cos tan exp log log1p sqrt tanh asin acos atan sinh cosh log10 atan2 copysign"
+)
 EXAMPLES: dict[str, Callable] = {
     "+": operator.add,
     "-": operator.sub,
@@ -450,27 +453,10 @@ EXAMPLES: dict[str, Callable] = {
     "neg": operator.neg,
     "not": operator.not_,
     "abs": abs,
-    "floor": math.floor,
-    "ceil": math.ceil,
     "round": round,
-    "sin": math.sin,
-    "cos": math.cos,
-    "tan": math.tan,
-    "exp": math.exp,
-    "log": math.log,
-    "log1p": math.log1p,
-    "sqrt": math.sqrt,
-    "tanh": math.tanh,
-    "asin": math.asin,
-    "acos": math.acos,
-    "atan": math.atan,
-    "sinh": math.sinh,
-    "cosh": math.cosh,
-    "log10": math.log10,
-    "atan2": math.atan2,
-    "copysign": math.copysign,
     "number": float,
     "whole": int,
     "where": lambda condition, a, b: a if condition else b,
 }
+EXAMPLES |= {name: getattr(math, name) for name in _OF_MATH.split()}
 """Operations in Python."""

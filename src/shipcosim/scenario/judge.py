@@ -128,7 +128,7 @@ def verdict_on(table: xarray.Dataset, expect: Expectation, unit_of: UnitOf) -> V
     excess = _excess(values, expect)
     # A value that is not finite is worse than any other.
     worst = int(np.argmax(np.where(np.isnan(excess), np.inf, excess)))
-    measure = values[worst, 0] if expect.near is None else np.linalg.norm(values[worst])
+    measure = values[worst, 0] if expect.near is None else np.hypot.reduce(values[worst])
     return Verdict(expect, bool(excess[worst] <= 0.0), float(measure), float(times[rows[worst]]))
 
 
@@ -199,7 +199,7 @@ def _excess(values: np.ndarray, expect: Expectation) -> np.ndarray:
     """Amount by which each row misses the expectation; negative where it holds."""
     # Distance from the target beyond its tolerance.
     if expect.near is not None:
-        return np.linalg.norm(values, axis=1) - expect.within
+        return np.hypot.reduce(values, axis=1) - expect.within
     # Distance beyond the limit on either side.
     below = -np.inf if expect.at_least is None else expect.at_least - values[:, 0]
     above = -np.inf if expect.at_most is None else values[:, 0] - expect.at_most

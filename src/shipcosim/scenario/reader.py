@@ -20,8 +20,9 @@ from shipcosim.scenario.model import Scenario
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
-LONGEST_LINE = 20_000
-"""Characters in a line of a TOML file."""
+MOST_PARTS = 1000
+"""Dots in a key of a TOML file: the parser takes time and memory by their square. A list may be as long as it is."""
+_DOTTED = re.compile(r"""(?:\.\s*+(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')\s*+)++""")
 
 _REMEDIES = {
     "string_type": "It should be a text in quotes.",
@@ -83,12 +84,12 @@ def toml_of(text: str) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        If it is not TOML, or one that takes a reader without limits far too long: lines, brackets and numbers of
+        If it is not TOML, or one that takes a reader without limits far too long: keys, brackets and numbers of
         thousands of parts.
     """
-    # Lines, brackets and numbers of thousands of parts would take the parser far too long.
-    if (longest := max(map(len, text.split("\n")))) > LONGEST_LINE:
-        raise ValueError(f"a line has {longest} characters, at most {LONGEST_LINE} are read")
+    # Keys, brackets and numbers of thousands of parts would take the parser far too long.
+    if any(found[0].count(".") > MOST_PARTS for found in _DOTTED.finditer(text)):
+        raise ValueError(f"a key has more than {MOST_PARTS} parts")
     try:
         content = tomllib.loads(text)
         too_large = any(abs(number) >= 2**64 for number in _whole_numbers(content))
@@ -114,7 +115,11 @@ def _whole_numbers(content: Any) -> Iterator[int]:
 
 def _text(path: Path) -> str:
     try:
+        # A name that is no text fits in no table and on no page.
+        path.name.encode()
         return path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n")
+    except UnicodeEncodeError as error:
+        raise error_at(str(path), "has a name that is no UTF-8.", "Rename the file.") from error
     except OSError as error:
         raise error_at(str(path), f"cannot be read: {error.strerror or error}.") from error
     except UnicodeDecodeError as error:

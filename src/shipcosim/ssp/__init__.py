@@ -20,7 +20,7 @@ from shipcosim.ssp.fmu.reader import read_fmu
 from shipcosim.ssp.osp.log_config import read_log_config
 from shipcosim.ssp.osp.reader import osp_file
 from shipcosim.ssp.osp.writer import Simulator, seconds_text, structure_text
-from shipcosim.ssp.single_fmu import default_step_size, settings_of_one, step_remarks
+from shipcosim.ssp.single_fmu import default_step_size, settings_for, step_remarks
 from shipcosim.ssp.system_files import read_system
 from shipcosim.ssp.xml.archive import unpack
 from shipcosim.ssp.xml.document import AnyPath
@@ -55,7 +55,7 @@ __all__ = [
     "read_log_config",
     "read_system",
     "seconds_text",
-    "settings_of_one",
+    "settings_for",
     "step_remarks",
     "structure_text",
     "unpack",

@@ -1,6 +1,6 @@
 """One FMU as a system: one component with the file's name; its inputs are system inputs."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import replace
 from math import inf
 from pathlib import Path
@@ -19,7 +19,7 @@ from shipcosim.ssp.read.parameters import ParameterSet, ParameterSets
 from shipcosim.ssp.xml.document import AnyPath, Document, Findings, qualified
 from shipcosim.ssp.xml.markup import add
 from shipcosim.ssp.xml.values import Value
-from shipcosim.units import UnitError, seconds, whole_steps
+from shipcosim.units import UnitError, seconds, value_of, whole_steps
 
 IN_TABLES = ("Real", "Integer", "Boolean", "Enumeration")
 """Kinds of inputs that a table can feed; the others keep their start value, which can be set."""
@@ -84,27 +84,41 @@ def _for_component(given: ParameterSet, name: str, fmu: FmuDescription) -> Param
     return replace(given, values=tuple(values))
 
 
-def settings_of_one(system: System, settings: Mapping[str, Value]) -> dict[str, Value]:
-    """Start values by the names of a system of one FMU, where given by the FMU's own names.
+def settings_for(system: System, settings: Mapping[str, Value]) -> dict[str, Value]:
+    """Start values by the names that a system has.
 
     Parameters
     ----------
     system : System
-        Of one FMU; start values of any other come back as they are.
     settings : mapping of str to value
-        By the variable's name, with or without that of the component before it.
+        By full name; in a system of one FMU with or without the component's. Where a name has ``=`` in it, as in
+        ``a=b=7``, the rest of it may stand before the value: the longest name that there is wins.
     """
-    # Systems of other files keep their names.
-    if not system.file.lower().endswith(".fmu"):
-        return dict(settings)
-    ((name, component),) = system.components.items()
+    is_one = system.file.lower().endswith(".fmu")
+    known = {*system.inputs, *system.parameters}
+    for component in system.components.values():
+        names = set(component.variables)
+        known |= {f"{component.name}.{name}" for name in names} | (names if is_one else set())
     named = {}
-    # Inputs belong to the system, all other variables to the component.
     for signal, value in settings.items():
-        variable = signal.removeprefix(f"{name}.")
-        known = variable in component.variables
-        named[variable if variable in system.inputs or not known else f"{name}.{variable}"] = value
+        if isinstance(value, str) and "=" in value:
+            signal, value = _longest_name(f"{signal}={value}", known) or (signal, value)
+        # Inputs of one FMU belong to the system, all other variables to the component.
+        own = f"{next(iter(system.components))}." if is_one else ""
+        variable = signal.removeprefix(own)
+        signal = f"{own}{variable}" if f"{own}{variable}" in known else signal
+        named[variable if variable in system.inputs else signal] = value
     return named
+
+
+def _longest_name(setting: str, known: Container[str]) -> tuple[str, Value] | None:
+    """Name and value of ``name=value`` by the last sign that ends a name that there is."""
+    parts = setting.split("=")
+    for count in range(len(parts) - 1, 0, -1):
+        name = "=".join(parts[:count]).strip()
+        if name in known:
+            return name, value_of("=".join(parts[count:]))
+    return None
 
 
 def _structure(path: Path, fmu: FmuDescription) -> etree._Element:

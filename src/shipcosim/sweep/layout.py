@@ -18,7 +18,7 @@ from shipcosim.scenario import (
     time_complaints,
 )
 from shipcosim.scenario.locations import Keys
-from shipcosim.ssp import System, with_values
+from shipcosim.ssp import System, settings_for, with_values
 from shipcosim.ssp.flatten.swapped import WHERE
 from shipcosim.sweep.levels import Level, Levels
 from shipcosim.sweep.plan import Plan, Swapped
@@ -65,7 +65,7 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
     # The order is that of precedence: parameter sets, then `set`, then the settings of the call.
     fitted = [levels.fitting(name, ("parameters",)) for name in study.parameters]
     values = {signal: value for one in fitted for signal, value in one.items()}
-    values |= levels.checked(study.set, ("set",)) | dict(settings or {})
+    values |= levels.checked(study.set, ("set",)) | settings_for(read, settings or {})
     events = [levels.event(event) for event in study.events]
     levels.check_events(events, ("events",))
     if levels.problems:

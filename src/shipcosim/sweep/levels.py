@@ -6,7 +6,7 @@ import zlib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import floor
+from math import floor, tau
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +20,7 @@ from shipcosim.scenario.model import Value
 from shipcosim.ssp import fitting_values, with_values
 from shipcosim.sweep.reader import problem_of
 from shipcosim.sweep.study_model import MOST_LEVELS, Case, Factor, Study
-from shipcosim.units import Unit, UnitError, amount, number_in, whole_steps
+from shipcosim.units import RADIAN, Unit, UnitError, amount, number_in, whole_steps
 
 if TYPE_CHECKING:
     from shipcosim.scenario import Scenario
@@ -83,7 +83,23 @@ class Levels:
         (label, times), *_ = Counter(level.label for level in levels).most_common(1) or [("", 0)]
         if times > 1:
             self.complain(("factor", number), f"The level {label} is there twice.", "Keep one.")
+            return levels
+        # Angles a whole turn apart are one direction, which would count twice.
+        first: dict[float, Any] = {}
+        for label in [level.label for level in levels] if self._is_angle(number) else ():
+            direction = round(float(label) / tau % 1.0, 9) % 1.0
+            if direction in first:
+                found = f"The levels {first[direction]:g} and {label:g} rad are one direction."
+                self.complain(("factor", number), found, "Keep one.")
+            first.setdefault(direction, label)
         return levels
+
+    def _is_angle(self, number: int) -> bool:
+        """Whether the values of a factor are angles in rad."""
+        factor = self._study.factor[number]
+        signals = [signal for name in factor.signal for signal in self.signals_of(name)]
+        unit = units_of(self._system)(signals[0]) if signals and not factor.at_fork else None
+        return unit == RADIAN
 
     def _made(self, number: int) -> list[Level]:
         factor = self._study.factor[number]

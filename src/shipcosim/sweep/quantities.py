@@ -94,7 +94,7 @@ class Measure:
         values = values_of(table, self.expect[0], rows, self.units.__getitem__)
         # One signal by itself, or the distance √Σ(x - x₀)² of several from a point.
         single: Any = (
-            values[:, 0] if self.expect[0].near is None else np.linalg.norm(values, axis=1)
+            values[:, 0] if self.expect[0].near is None else np.hypot.reduce(values, axis=1)
         )
         value = float(REDUCED[self.reduce](table["time"].values[rows], single, self.argument))
         return value - self.since if self.since else value

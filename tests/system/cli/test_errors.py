@@ -512,7 +512,7 @@ def test_files_of_windows_editors_are_read(call, gunnerus):
         ),
         (LEVELS + "0,10\n0.5,10\n", ["The table goes from 0 s to 0.5 s", "stop earlier"]),
         (LEVELS, ["in.csv:", "no row"]),
-        ("", ["in.csv:", "cannot be read as CSV: Empty CSV file"]),
+        ("", ["in.csv:", "is empty."]),
         (
             LEVELS.replace("rpm [rpm]", "rpms [rpm]") + "0,1\n1,1\n",
             ["no input 'tunnel_rpms'", "'tunnel_rpm'?"],
@@ -535,13 +535,13 @@ def test_files_of_windows_editors_are_read(call, gunnerus):
         ),
         (
             LEVELS + "0,10\n0.5,1,2\n1,10\n",
-            ["Expected 2 columns, got 3", "Columns are separated by commas"],
+            ["row 3:", "has 3 cells, and the header has 2", "separated by commas"],
         ),
         (
             LEVELS + "0,full\n1,full\n",
             ["column 'tunnel_rpm':", "holds texts, not numbers, as 'full'."],
         ),
-        (NOISE, ["in.csv:", "is not UTF-8 text"]),
+        (NOISE, ["in.csv:"]),
         (
             b"time [s],tunnel_rpm [\xb0]\n0,1\n1,1\n",
             ["in.csv: tunnel_rpm:", "cannot convert '°' into 'rpm'"],

@@ -27,7 +27,7 @@ from shipcosim.ssp import (
     default_step_size,
     read_fmu,
     read_system,
-    settings_of_one,
+    settings_for,
     step_remarks,
     with_values,
 )
@@ -53,13 +53,13 @@ def test_it_runs_on_inputs_of_a_table_with_a_value_set(tmp_path, monkeypatch):
 
 def test_parameters_are_named_with_and_without_the_component():
     system = read_system(build_part("gain"))
-    assert settings_of_one(system, {"factor": 2, "gain.shift": 1, "u": 4, "gain.u": 5}) == {
+    assert settings_for(system, {"factor": 2, "gain.shift": 1, "u": 4, "gain.u": 5}) == {
         "gain.factor": 2,
         "gain.shift": 1,
         "u": 5,
     }
     with pytest.raises(sc.ShipcosimError, match="factr"):
-        with_values(system, settings_of_one(system, {"factr": 2}))
+        with_values(system, settings_for(system, {"factr": 2}))
 
 
 @pytest.mark.parametrize(

@@ -666,6 +666,45 @@ def test_a_level_that_is_there_twice_is_refused(complaints, values, level):
 
 
 @pytest.mark.parametrize(
+    ("values", "is_refused"),
+    [
+        ('["-30 deg", "330 deg"]', True),
+        ('["0 deg", "360 deg"]', True),
+        ("[-3.141592653589793, 3.141592653589793]", True),
+        ('["1 deg", "90 deg", "721 deg"]', True),
+        ('["-30 deg", "30 deg"]', False),
+        ('["0 deg", "359 deg"]', False),
+    ],
+)
+def test_angles_a_turn_apart_are_one_direction(tmp_path, values, is_refused):
+    text = DIRECTIONS.replace("VALUES", values)
+    (tmp_path / "round.toml").write_text(text, encoding="utf-8")
+    try:
+        plan_of(read_study(tmp_path / "round.toml"))
+        said = ""
+    except ShipcosimError as error:
+        said = str(error)
+    assert ("rad are one direction. Keep one." in said) == bool(said) == is_refused
+
+
+DIRECTIONS = """
+description = "wind from all round"
+scenario    = "gust"
+stop_time   = "1 s"
+
+[[factor]]
+name   = "from"
+signal = "environment.wind_from"
+values = VALUES
+
+[[quantity]]
+name   = "end"
+signal = "vessel.x"
+reduce = "final"
+"""
+
+
+@pytest.mark.parametrize(
     ("after", "by"),
     [
         ('[[factor]]\nname = "later"\nsignal = "both.u"\nvalues = [5.0, 6.0]', "later"),

@@ -7,6 +7,7 @@ import inspect
 import io
 import os
 import sys
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext, redirect_stderr, redirect_stdout
 from dataclasses import dataclass
@@ -133,6 +134,8 @@ def guarded(function: Callable[..., Conclusion | None]) -> Callable[..., None]:
     def wrapper(*args: Any, debug: bool = False, **kwargs: Any) -> None:
         asked = {name: kwargs[name] for name in Output.__annotations__ if kwargs.get(name)}
         output = Output(**asked)
+        # NumPy's warnings name lines of ours; what overflows is shown as inf, or is an error of its own.
+        warnings.simplefilter("ignore", RuntimeWarning)
         try:
             with output.working():
                 found = function(*args, **kwargs)

@@ -28,12 +28,13 @@ def junit_xml(name: str, checks: Sequence[Check], folder: Path | None = None) ->
     folder : Path, optional
         Of the results, where their pages lie.
     """
+    name = printable(name)
     suite = ElementTree.Element("testsuite", name=name, tests=str(len(checks)), time="0")
     statuses = [check.status for check in checks]
     for status, counted in (("failed", "failures"), ("error", "errors"), ("skipped", "skipped")):
         suite.set(counted, str(statuses.count(status)))
     for check in checks:
-        group = ".".join(filter(None, (name, check.group)))
+        group = printable(".".join(filter(None, (name, check.group))))
         case = ElementTree.SubElement(
             suite, "testcase", classname=group, name=printable(check.name), time="0"
         )
@@ -42,7 +43,7 @@ def junit_xml(name: str, checks: Sequence[Check], folder: Path | None = None) ->
             element = ElementTree.SubElement(case, ELEMENTS[check.status], message=message)
             # Viewers show either the attribute or the text, so both say it all.
             page = "" if folder is None else f"\nPage: {(folder / check.page).as_posix()}"
-            element.text = message + page
+            element.text = message + printable(page)
     root = ElementTree.Element("testsuites")
     root.append(suite)
     ElementTree.indent(root)

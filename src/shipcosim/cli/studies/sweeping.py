@@ -68,7 +68,7 @@ def _progress(plan: Plan) -> Iterator[Callable[[int, int], None]]:
     console = make_console(stderr=True)
     each = plan.duration / max(len(plan), 1)
     columns = [
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         MofNCompleteColumn(),
         TextColumn("{task.fields[pace]}"),
@@ -118,7 +118,7 @@ def print_study(swept: Swept) -> None:
     if "pareto" in swept.tables.get("trials", ()):  # not where no trial is done yet
         _say_trials(console, swept)
     for remark in swept.about.get("remarks", ()):
-        console.print(remark, markup=False)
+        console.print(remark)
     counts = swept.about["runs"]
     errors = swept.runs.loc[swept.runs["error"] != "", "error"]
     if len(errors):
@@ -130,9 +130,7 @@ def print_study(swept: Swept) -> None:
         )
     left = counts["planned"] - counts["done"]
     open_ = f"; {left:,} are left, which the same command does" if left else ""
-    console.print(
-        f"{counts['done']:,} of {counts['planned']:,} runs are done{open_}.", markup=False
-    )
+    console.print(f"{counts['done']:,} of {counts['planned']:,} runs are done{open_}.")
     say_page(console, swept.folder / "report.html")
 
 
@@ -157,7 +155,7 @@ def _say_indices(console: Console, swept: Swept) -> None:
             ]
         )
         more = f", {MOST_IMPORTANT} of {len(part)} parameters" if len(part) > MOST_IMPORTANT else ""
-        console.print(f"Sobol indices of {of}{more}:", markup=False)
+        console.print(f"Sobol indices of {of}{more}:")
         names = [f"{name}{end}" for name in ("total", "first_order") for end in ENDS]
         shown = part.head(MOST_IMPORTANT)[["parameter", *names]].round(2)
         _print_frame(console, swept, cast("pandas.DataFrame", shown))
@@ -173,7 +171,6 @@ def _say_trials(console: Console, swept: Swept) -> None:
     said = f"of {len(trials)} trials no other beats {len(front)}; trial 0 is as shipped."
     console.print(
         f"{', '.join(f'{one.quantity} {one.direction}d' for one in tune.objective)}: {said}",
-        markup=False,
     )
     shown = front.iloc[:: max(-(-len(front) // SHOWN), 1)]
     ours = trials[trials["as_shipped"] & ~trials["trial"].isin(shown["trial"])]

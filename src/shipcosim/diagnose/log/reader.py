@@ -97,6 +97,7 @@ def read_log(
     time, _ = signals.pop("time")
     _check_time(columns.source, time)
     time, signals, more = brought_together(time, signals, columns.joined)
+    _check_restart(columns.source, time, [values for values, _ in signals.values()])
     said += more + _over_the_earth(signals)
     if "latitude" in signals:
         attributes |= _local_position(columns.source, signals, said)
@@ -271,6 +272,32 @@ def _check_time(source, time):
         raise error_at(
             f"{source}, time", "has fewer than two different times.", "A log has many rows."
         )
+
+
+def _check_restart(source, time, signals):
+    """Raise where the clock starts again: sorted by their times, rows of two parts of the log would be mixed."""
+    rows = np.flatnonzero(np.isfinite(time))
+    known = time[rows]
+    back = np.flatnonzero(np.diff(known) < -_RESTART * usual_rise(known, np.inf)) + 1
+    if not len(back):
+        return
+    # Rows of different parts beside each other; the same row twice mixes nothing.
+    part = np.searchsorted(back, np.arange(len(known)), side="right")
+    order = np.argsort(known, kind="stable")
+    is_mixed = np.diff(part[order]) != 0
+    is_same = np.diff(known[order]) == 0.0
+    for values in signals:
+        cells = values[rows][order]
+        is_same &= (cells[1:] == cells[:-1]) | ~np.isfinite(cells[1:] + cells[:-1])
+    if np.sum(is_mixed & ~is_same) > _MOST_MIXED * (len(back) + 1):
+        row = int(rows[back[0]])
+        found = f"goes back from {known[back[0] - 1]:g} to {time[row]:g} s in row {row + 2}, over times that were there."
+        remedy = "Cut the log there: rows of both parts would be mixed."
+        raise error_at(f"{source}, time", found, remedy)
+
+
+_RESTART = 10.0  # usual steps back that are no disorder of single rows. Assumed.
+_MOST_MIXED = 10  # rows of another part beside each other where blocks of rows are only out of order. Assumed.
 
 
 def _shown(columns):

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from xarray import Dataset
 
 from shipcosim.angles import wrap_series
+from shipcosim.report.theme.packing import LARGEST
 from shipcosim.scenario import Expectation, Verdict
 from shipcosim.scenario.judge import rows_of
 
@@ -126,6 +127,6 @@ def _band(time: NDArray, lower: NDArray, upper: NDArray, passed: bool) -> Band:
         time = time[[0, -1]]
         lower = lower[[0, -1]]
         upper = upper[[0, -1]]
-    return Band(
-        np.round(time, 6).tolist(), np.round(lower, 6).tolist(), np.round(upper, 6).tolist(), passed
-    )
+    # Beyond LARGEST a page draws nothing, and rounding would overflow.
+    limits = (np.round(np.clip(one, -LARGEST, LARGEST), 6).tolist() for one in (lower, upper))
+    return Band(np.round(time, 6).tolist(), *limits, passed)

@@ -92,7 +92,7 @@ def judged_distance(
         for signal, target in zip(expect.signal, expect.near, strict=True):
             middle = table[target].values[rows] if isinstance(target, str) else target
             gaps.append(table[signal].values[rows] - middle)
-        distance[rows] = np.linalg.norm(gaps, axis=0)
+        distance[rows] = np.hypot.reduce(gaps, axis=0)
     return distance
 
 

@@ -13,24 +13,28 @@ from shipcosim.ships.estimates.estimate import EstimatedNumber, within
 
 AIR = 1.225  # kg/m3, m/s2
 GRAVITY = 9.81
+_TABLE = """
+car carrier                    | 0.95 0.55 0.60 0.80
+cargo ship, loaded             | 0.85 0.65 0.55 0.40
+cargo ship, containers on deck | 0.85 0.55 0.50 0.40
+container ship, loaded         | 0.90 0.55 0.55 0.40
+destroyer                      | 0.85 0.60 0.65 0.65
+diving support vessel          | 0.90 0.60 0.80 0.55
+drilling vessel                | 1.00 0.85 0.925 0.10
+ferry                          | 0.90 0.45 0.50 0.80
+fishing vessel                 | 0.95 0.70 0.70 0.40
+gas tanker                     | 0.70 0.60 0.65 0.50
+offshore supply vessel         | 0.90 0.55 0.80 0.55
+passenger liner                | 0.90 0.40 0.40 0.80
+research vessel                | 0.85 0.55 0.65 0.60
+speed boat                     | 0.90 0.55 0.60 0.60
+tanker, loaded                 | 0.70 0.90 0.55 0.40
+tanker, in ballast             | 0.70 0.75 0.55 0.40
+tender                         | 0.85 0.55 0.55 0.65
+"""
 BLENDERMANN = {
-    "car carrier": (0.95, 0.55, 0.60, 0.80),
-    "cargo ship, loaded": (0.85, 0.65, 0.55, 0.40),
-    "cargo ship, containers on deck": (0.85, 0.55, 0.50, 0.40),
-    "container ship, loaded": (0.90, 0.55, 0.55, 0.40),
-    "destroyer": (0.85, 0.60, 0.65, 0.65),
-    "diving support vessel": (0.90, 0.60, 0.80, 0.55),
-    "drilling vessel": (1.00, 0.85, 0.925, 0.10),
-    "ferry": (0.90, 0.45, 0.50, 0.80),
-    "fishing vessel": (0.95, 0.70, 0.70, 0.40),
-    "gas tanker": (0.70, 0.60, 0.65, 0.50),
-    "offshore supply vessel": (0.90, 0.55, 0.80, 0.55),
-    "passenger liner": (0.90, 0.40, 0.40, 0.80),
-    "research vessel": (0.85, 0.55, 0.65, 0.60),
-    "speed boat": (0.90, 0.55, 0.60, 0.60),
-    "tanker, loaded": (0.70, 0.90, 0.55, 0.40),
-    "tanker, in ballast": (0.70, 0.75, 0.55, 0.40),
-    "tender": (0.85, 0.55, 0.55, 0.65),
+    kind.strip(): tuple(map(float, numbers.split()))
+    for kind, numbers in (line.split("|") for line in _TABLE.strip().splitlines())
 }
 """Kind of ship: drag across, along with wind from ahead, from astern, and the cross-force parameter."""
 USUAL_KIND = "offshore supply vessel"

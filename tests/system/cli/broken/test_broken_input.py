@@ -1,6 +1,7 @@
 """Broken and hostile input: one error with file and place, no control characters, nothing left behind."""
 
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -185,6 +186,35 @@ def test_a_library_that_ends_the_process_is_no_run_that_went_well(call, how):
 def test_a_command_that_ends_by_itself_keeps_its_exit_code(work, code):
     wait = " or __import__('signal').pause()" if code > 128 else ""
     assert end_of(work + wait) == (code, "")
+
+
+CLEARS_UP = """
+import pathlib, sys, time
+from shipcosim.cli.exit_guard import run_in_child
+from shipcosim.temporary import temporary_folder
+
+def work():
+    with temporary_folder(pathlib.Path(sys.argv[1])):
+        try:
+            print("at work", flush=True)
+            time.sleep(30.0)
+        except KeyboardInterrupt:
+            time.sleep(0.5)
+            sys.exit(130)
+
+run_in_child(work)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux has the process between")
+@pytest.mark.parametrize("send", [os.kill, os.killpg] if sys.platform == "linux" else [])
+def test_an_interrupt_of_the_whole_group_leaves_nothing_behind(tmp_path, send):
+    command = [sys.executable, "-c", CLEARS_UP, str(tmp_path)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, start_new_session=True) as process:
+        assert process.stdout is not None and process.stdout.readline()
+        send(process.pid, signal.SIGINT)
+        assert process.wait(timeout=60) == 130
+    assert not list(tmp_path.iterdir())
 
 
 @given(

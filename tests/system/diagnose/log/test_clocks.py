@@ -38,8 +38,22 @@ def test_seconds_of_a_day_or_week_go_on_past_its_end(read, period, name):
 
 
 def test_a_recorder_that_was_started_again_is_no_midnight(read):
-    log = read("time", [f"{t if t < 150.0 else t - 150.0:.2f}" for t in SECONDS])
-    assert passed(log)[-1] == pytest.approx(149.5)
+    with pytest.raises(ShipcosimError, match="goes back from 149.5 to 0 s .*Cut the log"):
+        read("time", [f"{t if t < 150.0 else t - 150.0:.2f}" for t in SECONDS])
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.25, 40.0])
+def test_rows_of_two_recordings_are_never_mixed(read, shift):
+    times = [*SECONDS[:300], *(SECONDS[:300] + shift)]
+    with pytest.raises(ShipcosimError, match="over times that were there"):
+        read("time", [f"{t:.2f}" for t in times])
+
+
+@pytest.mark.parametrize(("first", "last"), [(100, 120), (20, 60), (250, 300)])
+def test_a_block_of_rows_out_of_order_is_sorted(read, first, last):
+    order = [*range(first), *range(last, 600), *range(first, last)]
+    log = read("time", [f"{SECONDS[row]:.2f}" for row in order])
+    assert np.sort(log["time"].values) == pytest.approx(SECONDS)
 
 
 def test_a_clock_that_is_put_back_by_an_hour_goes_on(read):

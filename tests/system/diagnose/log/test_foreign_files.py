@@ -28,7 +28,7 @@ CASES = {
     "named.csv": (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600), "Excel before 2007"),
     "sheet.ods": (ODS, "LibreOffice.*Save it as .xlsx"),
     "sheet.csv": (ODS, "LibreOffice"),
-    "book.csv": (zipped("xl/workbook.xml"), "does not say so. Name it .xlsx"),
+    "book.csv": (zipped("xl/workbook.xml"), "cannot be read"),
     "logs.csv": (zipped("monday.csv"), "an archive.*Unpack"),
     "log.mat": (b"MATLAB 5.0 MAT-file, Platform: GLNXA64" + bytes(600), "MATLAB.*writetable"),
     "log.txt": (b"MATLAB 5.0 MAT-file, Platform: GLNXA64" + bytes(600), "MATLAB"),
@@ -37,7 +37,7 @@ CASES = {
     "flight.ulg": (b"ULog\x01\x12", "ulog2csv flight.ulg"),
     "table.h5": (b"\x89HDF\r\n\x1a\n", "HDF5"),
     "table.pkl": (b"\x80\x04", "pickle"),
-    "table.json": (b'{"time": [0, 1]}', "JSON"),
+    "table.json": (b"\x00\x01", "zero bytes"),
 }
 
 

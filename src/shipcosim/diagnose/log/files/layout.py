@@ -81,6 +81,8 @@ def layout_of(
     ):
         header = ("", *header)
     rest = [i for i in above if i < at]
+    between = [i for i in above if i > at and not is_comment(lines[i])]
+    first = next((i for i in between if is_figure(cells_in(lines[i], separator)[0])), first)
     return Layout(separator, tuple(header), tuple(units), first, _skipped(rest))
 
 
@@ -126,7 +128,10 @@ def _header(lines, above, separator, width, is_unit):
             text = text.lstrip("#%/! \t")
         row = _header_cells(text, separator, width)
         if row is None:
-            if below is None or i < below - 1:
+            # A row of values of another length is judged with the others.
+            if any(map(is_figure, cells_in(text, separator)[:1])) and not is_comment(lines[i]):
+                below = i
+            elif below is None or i < below - 1:
                 break
             continue
         told = [cell for cell in row if cell]

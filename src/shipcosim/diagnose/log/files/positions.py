@@ -10,11 +10,15 @@ from shipcosim.diagnose.numerics import finite
 
 MINUTES = "ddmm.mmmm"
 """Spelling of the unit of latitudes and longitudes in NMEA 0183: degrees times 100 plus minutes."""
-HEMISPHERES = {"latitude": {"N": 1.0, "S": -1.0}, "longitude": {"E": 1.0, "W": -1.0}}
+HEMISPHERES = {
+    "latitude": {"N": 1.0, "S": -1.0},
+    "longitude": {"E": 1.0, "Ø": 1.0, "Ö": 1.0, "W": -1.0, "V": -1.0},
+}
+"""Signs of a degree by the letter of its side; O is east in German and west in Spanish, so it is none."""
 _TEXT = re.compile(
-    r"\s*(?P<before>[NSEWnsew])?\s*(?P<degrees>[+-]?\d+(?:\.\d+)?)\s*[°ºd*-]?\s*"
+    r"\s*(?P<before>[NSEØÖWVnseøöwv])?\s*(?P<degrees>[+-]?\d+(?:\.\d+)?)\s*[°ºd*-]?\s*"
     r"(?:(?P<minutes>\d+(?:\.\d+)?)\s*['′’´m]?\s*(?:(?P<seconds>\d+(?:\.\d+)?)\s*(?:\"|″|''|s)?\s*)?)?"
-    r"(?P<after>[NSEWnsew])?\s*"
+    r"(?P<after>[NSEØÖWVnseøöwv])?\s*"
 )
 
 
@@ -108,6 +112,6 @@ def degrees_of_texts(cells: np.ndarray, largest: float) -> np.ndarray | None:
         parts = float(match["minutes"] or 0.0) / 60.0 + float(match["seconds"] or 0.0) / 3600.0
         hemisphere = (match["before"] or match["after"] or "N").upper()
         found[row] = np.copysign(abs(degrees) + parts, degrees) * (
-            -1.0 if hemisphere in "SW" else 1.0
+            -1.0 if hemisphere in "SWV" else 1.0
         )
     return found

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from shipcosim.diagnose.log.files.excel import is_workbook
+from shipcosim.dialects import is_text
 from shipcosim.errors import error_at
 
 _SHEET = "Save it as .xlsx or .csv, or convert it: `libreoffice --headless --convert-to xlsx FILE`."
@@ -37,11 +39,6 @@ _BY_NAME = {
     ".hdf5": ("a file of HDF5", _HDF5),
     ".pkl": ("a pickle of Python, which could run code", "Write the table as .csv or .nc."),
     ".zip": ("an archive", "Unpack it, and name the log in it."),
-    ".json": ("JSON", "Write a table: `pandas.read_json(FILE).to_csv('log.csv')`."),
-    ".jsonl": (
-        "JSON, one value a line",
-        "Write a table: `pandas.read_json(FILE, lines=True).to_csv('log.csv')`.",
-    ),
 }
 _BY_CONTENT = (
     (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", ".xls"),
@@ -53,10 +50,7 @@ _BY_CONTENT = (
     (b"SQLite format 3\x00", ".sqlite"),
     (b"ARROW1", ".feather"),
 )
-_ZIPPED = (
-    (b"application/vnd.oasis.opendocument", ".ods"),
-    (b"xl/", "a workbook of Excel whose name does not say so"),
-)
+_SPREADSHEET = b"application/vnd.oasis.opendocument"
 
 
 def refuse_foreign(path: Path) -> None:
@@ -73,12 +67,11 @@ def refuse_foreign(path: Path) -> None:
             head = file.read(512)
     kind = next((kind for mark, kind in _BY_CONTENT if head.startswith(mark)), None)
     suffix = path.suffix.lower()
-    if head.startswith(b"PK\x03\x04") and suffix not in (".xlsx", ".xlsm"):
-        kind = next((kind for mark, kind in _ZIPPED if mark in head), ".zip")
-        if kind not in _BY_NAME:
-            raise error_at(str(path), f"is {kind}.", "Name it .xlsx.")
-    if kind is None and suffix in _BY_NAME and not head.startswith(b"\x1f\x8b"):
-        kind = suffix
+    if head.startswith(b"PK\x03\x04") and not is_workbook(path):
+        kind = ".ods" if _SPREADSHEET in head else ".zip"
+    # A text is read, whatever it is called.
+    if kind is None and not head.startswith(b"\x1f\x8b") and not is_text(head):
+        kind = suffix if suffix in _BY_NAME else None
     if kind is not None:
         what, remedy = _BY_NAME[kind]
         raise error_at(

@@ -13,14 +13,17 @@ import numpy as np
 from shipcosim.diagnose.log.files.cells import numbers_of, with_unit, without_fillers
 from shipcosim.diagnose.log.files.excel import is_workbook, text_of_sheet
 from shipcosim.diagnose.log.files.file_layout import FileLayout
+from shipcosim.diagnose.log.files.json_records import is_json, text_of_records
 from shipcosim.diagnose.log.files.layout import Layout, layout_of
 from shipcosim.diagnose.log.files.matlab import columns_of_matlab, is_matlab
 from shipcosim.diagnose.log.files.nmea import columns_of_sentences, holds_sentences
 from shipcosim.diagnose.log.files.refused_formats import refuse_foreign
 from shipcosim.diagnose.log.files.text import text_of
+from shipcosim.diagnose.log.files.times import seconds_of_parts
 from shipcosim.diagnose.log.names.units import is_unit, name_and_unit
 from shipcosim.dialects import NOTHING, cells_in, decimal_of, is_comment
 from shipcosim.errors import Problem, ShipcosimError, error_at, reading
+from shipcosim.series import ending_of, read_columns
 
 _FEW = (
     0.01  # share of rows of another length that are left out; more make the file no table. Assumed.
@@ -80,9 +83,7 @@ def _read(path: Path, form: FileLayout) -> LogColumns:
         raise error_at(str(path), "is a folder without tables.", "Name the file of a log.")
     if not path.is_file():
         raise error_at(str(path), "there is no such file.")
-    if path.suffix.lower() in (".nc", ".parquet"):
-        from shipcosim.series import read_columns
-
+    if ending_of(path) in (".nc", ".parquet"):
         columns = read_columns(path)
         values = {name: values for name, (values, _) in columns.items()}
         return LogColumns(str(path), values, {name: unit for name, (_, unit) in columns.items()})
@@ -91,6 +92,9 @@ def _read(path: Path, form: FileLayout) -> LogColumns:
     refuse_foreign(path)
     if is_workbook(path):
         text, said = text_of_sheet(path, form.sheet)
+        form = form.model_copy(update={"separator": "\t"})
+    elif is_json(path):
+        text, said = text_of_records(path)
         form = form.model_copy(update={"separator": "\t"})
     else:
         text, said = text_of(path, form.encoding)
@@ -122,6 +126,11 @@ def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
             values[name], units[name] = found
     if decimal == ",":
         said.append("Numbers are read with a decimal comma.")
+    if "time" not in values and (found := seconds_of_parts(values)):
+        parts, values["time"] = found
+        units["time"] = "s"
+        values = {name: cells for name, cells in values.items() if name not in parts}
+        said.append(f"Time is made of {', '.join(parts)}.")
     return LogColumns(source, values, units, (*layout.remarks, *said), doubled)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import zlib
+import re
 from pathlib import Path
 
 from shipcosim.diagnose.log.names.vocabulary import word_parts
@@ -25,16 +25,15 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
     Raises
     ------
     ShipcosimError
-        If it cannot be read, is no text, or not in this encoding.
+        If it is no text, or not in this encoding.
     """
-    try:
-        content = unpacked_bytes(path)
-    except (OSError, EOFError, zlib.error) as error:
-        raise error_at(str(path), f"cannot be read: {error}.") from error
-    except MemoryError as error:
-        raise error_at(str(path), "is larger than the memory.", "Read a part of it.") from error
+    content = unpacked_bytes(path)
     if not content.strip(b"\x00 \r\n\t"):
         raise error_at(str(path), "is empty.", "Each row is a time and its values.")
+    # A logger that loses power leaves blocks of zero bytes; no encoding has four of them within a text.
+    size = len(content)
+    content = re.sub(rb"\x00{4,}", b"", content)
+    said = [f"{size - len(content)} zero bytes left out."] if len(content) < size else []
     # Decode, and refuse what is no text.
     used = encoding or _encoding_of(content)
     try:
@@ -46,8 +45,9 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
         raise error_at(
             str(path), "is no text: it holds zero bytes.", "Tables are text, .xlsx or .nc."
         )
-    is_usual = encoding is not None or used in ("utf-8", "utf-8-sig")
-    return text.removeprefix("\ufeff"), [] if is_usual else [f"Read as {used}, as it is not UTF-8."]
+    if encoding is None and used not in ("utf-8", "utf-8-sig"):
+        said.append(f"Read as {used}, as it is not UTF-8.")
+    return text.removeprefix("\ufeff"), said
 
 
 def _encoding_of(content: bytes) -> str:

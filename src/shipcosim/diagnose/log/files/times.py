@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from datetime import datetime
 from functools import cache
-from itertools import product
+from itertools import product, takewhile
 from typing import Any
 
 import numpy as np
@@ -19,52 +20,23 @@ _SINCE = 3e8  # s after 1970 that a log can be from: 1979 to 2103
 _UNTIL = 4.2e9
 DAY = 86400.0
 _DATES = {
-    "ymd": (
-        "%Y-%m-%d",
-        "%Y/%m/%d",
-        "%Y.%m.%d",
-        "%Y%m%d",
-        "%Y:%m:%d",
-        "%y-%m-%d",
-        "%y/%m/%d",
-        "%y%m%d",
-        "%Y %m %d",
-    ),
-    "dmy": (
-        "%d/%m/%Y",
-        "%d-%m-%Y",
-        "%d.%m.%Y",
-        "%d/%m/%y",
-        "%d-%m-%y",
-        "%d.%m.%y",
-        "%d-%b-%Y",
-        "%d %b %Y",
-        "%d-%b-%y",
-    )
-    + ("%d/%b/%Y", "%d %B %Y", "%d. %b %Y", "%a %d %b %Y", "%d%m%Y", "%d%m%y"),
-    "mdy": (
-        "%m/%d/%Y",
-        "%m-%d-%Y",
-        "%m/%d/%y",
-        "%m-%d-%y",
-        "%b %d %Y",
-        "%b %d, %Y",
-        "%B %d, %Y",
-        "%a %b %d %Y",
-    ),
+    "ymd": "%Y-%m-%d|%Y/%m/%d|%Y.%m.%d|%Y%m%d|%Y:%m:%d|%y-%m-%d|%y/%m/%d|%y%m%d|%Y %m %d",
+    "dmy": "%d/%m/%Y|%d-%m-%Y|%d.%m.%Y|%d/%m/%y|%d-%m-%y|%d.%m.%y|%d-%b-%Y|%d %b %Y|%d-%b-%y|%d/%b/%Y|%d %B %Y|"
+    "%d. %b %Y|%a %d %b %Y|%d%m%Y|%d%m%y",
+    "mdy": "%m/%d/%Y|%m-%d-%Y|%m/%d/%y|%m-%d-%y|%b %d %Y|%b %d, %Y|%B %d, %Y|%a %b %d %Y",
 }
-_CLOCKS = (
-    "%H:%M:%S.%f",
-    "%H:%M:%S",
-    "%H:%M",
-    "%I:%M:%S.%f %p",
-    "%I:%M:%S %p",
-    "%I:%M %p",
-    "%H%M%S.%f",
-    "%H%M%S",
+_CLOCKS = "%H:%M:%S.%f|%H:%M:%S|%H:%M|%I:%M:%S.%f %p|%I:%M:%S %p|%I:%M %p|%H%M%S.%f|%H%M%S".split(
+    "|"
 )
 _BETWEEN = (" ", "T", "_", ", ", ",", "-", "  ")
 _ZONE = re.compile(r"\s*(?:Z|UTC|GMT|[+-]00:?00)$", re.IGNORECASE)
+_HOURS = (
+    "WET+00 WEST+01 BST+01 CET+01 CEST+02 MEZ+01 MESZ+02 EET+02 EEST+03 JST+09 AEST+10 AEDT+11 EST-05 EDT-04 CDT-05 "
+    "MDT-06 PST-08 PDT-07"
+)
+_ZONES = {zone[:-3]: f"{zone[-3:]}:00" for zone in _HOURS.split()}
+"""Zones with one meaning; CST, MST and IST have several."""
+_NAMED_ZONE = re.compile(rf"(?<=:\d\d)(?P<fraction>[.,]\d+)?\s*(?P<zone>{'|'.join(_ZONES)})$")
 _OTHER_ZONE = re.compile(r"(?<=:\d\d)(?P<fraction>\.\d+)?\s*(?P<zone>[+-]\d\d:?\d\d)$")
 _ONE_COLON = re.compile(r"^(?P<minutes>\d{1,3}):(?P<seconds>[0-5]?\d)(?P<fraction>\.\d+)?$")
 _COLON_FRACTION = re.compile(r"^(?P<clock>.*\d\d:\d\d:\d\d):(?P<fraction>\d{1,9})$")
@@ -140,7 +112,7 @@ def seconds_of(
     # Try every form of date and clock; day and month can give two readings.
     readings = {}
     for key, dates in _DATES.items():
-        for date, (between, clock) in product(dates, product(_BETWEEN, _CLOCKS)):
+        for date, (between, clock) in product(dates.split("|"), product(_BETWEEN, _CLOCKS)):
             form = f"{date}{between}{clock}"
             if key not in readings and (order or key) == key and _fits(known, form):
                 parsed = pandas.to_datetime(cells, format=form, errors="coerce")
@@ -156,6 +128,51 @@ def seconds_of(
         times = times - zone
         times = times - finite(times)[0]
     return times, said
+
+
+def seconds_of_parts(columns: Mapping[str, np.ndarray]) -> tuple[list[str], np.ndarray] | None:
+    """Times of which year, month, day, hour, and perhaps minute and second stand in columns beside each other.
+
+    Parameters
+    ----------
+    columns : mapping of str to (n,) array
+        In their order.
+
+    Returns
+    -------
+    list of str and (n,) array, or None
+        The columns, and seconds since 1970.
+    """
+    import pandas
+
+    names = list(columns)
+    for start in range(len(names)):
+        beside = zip(names[start:], _PARTS.items(), strict=False)
+        parts = dict(
+            takewhile(
+                lambda pair: pair[0].lower().removesuffix(" (2)") in pair[1][1].split(), beside
+            )
+        )
+        if len(parts) < 4 or any(columns[name].dtype.kind != "f" for name in parts):
+            continue
+        numbers = {part: columns[name] for name, (part, _) in parts.items()}
+        numbers["year"] = numbers["year"] + np.where(numbers["year"] < 100.0, 2000.0, 0.0)
+        stamps = pandas.to_datetime(pandas.DataFrame(numbers), errors="coerce")
+        seconds = (stamps - pandas.Timestamp(1970, 1, 1)).dt.total_seconds()
+        if seconds.notna().any():
+            return list(parts), seconds.to_numpy(float)
+    return None
+
+
+_PARTS = {
+    "year": "yy yyyy yr year år jahr",
+    "month": "mm mo month måned monat",
+    "day": "dd dy day dag tag",
+    "hour": "hh hr hour stunde",
+    "minute": "mm mn mi min minute minutt",
+    "second": "ss sc sec second sekund sekunde",
+}
+"""Names of columns that hold parts of a time, in their order."""
 
 
 @cache
@@ -185,6 +202,9 @@ def _whole(parsed, cells):
 def _uniform(cells) -> tuple[Any, np.ndarray | None]:
     """Stamps without their zone, with a point before the fraction everywhere or nowhere; what zones are ahead. [s]"""
     texts = cells.where(cells.notna(), None).astype("str").str.strip().where(cells.notna())
+    texts = texts.str.replace(
+        _NAMED_ZONE, lambda found: (found["fraction"] or "") + _ZONES[found["zone"]], regex=True
+    )
     is_utc = texts.str.contains(_ZONE, na=False)
     texts = texts.str.replace(_ZONE, "", regex=True)
     ahead = None
