@@ -13,7 +13,14 @@ from shipcosim.native.checking import refuse_other_results
 from shipcosim.native.compiler import libraries
 from shipcosim.native.error_texts import line_of
 from shipcosim.native.number_rows import Flat, attributes_like, made_like
-from shipcosim.native.record_cache import Record, keep_record, kept_record, key_of, record_of
+from shipcosim.native.record_cache import (
+    Record,
+    keep_record,
+    kept_record,
+    key_of,
+    record_of,
+    refusal_of,
+)
 from shipcosim.native.recording import typed
 from shipcosim.native.source import source_of
 from shipcosim.native.symbols import Untraceable
@@ -184,18 +191,28 @@ def _recorded(fmu, time, step_size) -> _Recorded | Untraceable:
     """Record a component, or take its record from the cache."""
     try:
         shape = shape_of(fmu)
-        numbers = [*shape.numbers, time, step_size]
         key = key_of(fmu, shape)
-        # A record in the cache was compared with Python when it was made: no key, no new
-        # comparison.
-        if (record := kept_record(key, numbers)) is not None:
-            return _Recorded(fmu, shape, record, "")
+    except Exception as error:
+        return Untraceable(_why(error))
+    numbers = [*shape.numbers, time, step_size]
+    if (record := kept_record(key, numbers)) is not None:
+        if record.refusal:
+            return Untraceable(record.refusal)
+        # It was compared with Python when it was made: no key, no new comparison.
+        return _Recorded(fmu, shape, record, "")
+    try:
         step = trace(fmu, shape, time, step_size)
         return _Recorded(fmu, shape, record_of(step, source_of(step), numbers), key)
-    except Untraceable as reason:
-        return Untraceable(f"{line_of(reason)}{reason}")
     except Exception as error:  # whatever a model says to a symbol in place of a number
-        return Untraceable(f"{line_of(error)}{type(error).__name__}: {error}")
+        if isinstance(error, Untraceable):
+            keep_record(key, refusal_of(_why(error), numbers))
+        return Untraceable(_why(error))
+
+
+def _why(error: Exception) -> str:
+    """Why a component cannot be recorded, with the place in its code."""
+    name = "" if isinstance(error, Untraceable) else f"{type(error).__name__}: "
+    return f"{line_of(error)}{name}{error}"
 
 
 def _checked(recorded: _Recorded, library, time, step_size) -> CompiledStep | Untraceable:

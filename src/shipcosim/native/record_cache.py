@@ -48,21 +48,24 @@ class KeptCall(NamedTuple):
 
 @dataclass(frozen=True)
 class Record:
-    """The record of a compiled step.
+    """The record of a compiled step, or of one that cannot be compiled.
 
     Parameters
     ----------
     source : str
-        Its C text.
+        Its C text; empty where there is a refusal.
     calls : list of KeptCall
         Functions that stay in Python.
-    guards : dict of int to float
-        Places in the memory on whose numbers the code relies, and those numbers.
+    guards : dict of int to str
+        Places in the memory on whose numbers the code relies, and those numbers, rounded.
+    refusal : str
+        Why the step cannot be compiled; empty where it can.
     """
 
     source: str
     calls: list[KeptCall]
-    guards: dict[int, float]
+    guards: dict[int, str]
+    refusal: str = ""
 
     @cached_property
     def examples(self) -> list[Flat]:
@@ -85,6 +88,11 @@ def record_of(step: Step, source: str, numbers: Sequence[float]) -> Record:
     return Record(
         source, calls, {place: _rounded(numbers[place]) for place in sorted(_guarded(step))}
     )
+
+
+def refusal_of(why: str, numbers: Sequence[float]) -> Record:
+    """The record of a step that cannot be compiled from some numbers: finding that out may take ten seconds."""
+    return Record("", [], {place: _rounded(number) for place, number in enumerate(numbers)}, why)
 
 
 def key_of(fmu: Any, shape: Shape) -> str:
@@ -159,7 +167,7 @@ def _guarded(step: Step) -> set[int]:
 
 
 def _rounded(number):
-    return float(f"{number:.9g}")
+    return f"{number:.9g}"  # as a text, so that NaN equals NaN
 
 
 def _path(key) -> Path:

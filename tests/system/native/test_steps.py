@@ -194,6 +194,20 @@ def reason(body, **more):
     return str(step)
 
 
+def test_a_refusal_is_kept_for_the_same_numbers(monkeypatch):
+    def body(self, t, h):
+        self.y = self.x + clock.perf_counter()
+
+    said = reason(body)
+    traced = []
+    monkeypatch.setattr("shipcosim.native.component.trace", lambda *given: traced.append(given))
+    assert reason(body) == said
+    assert traced == []
+    # Other numbers may take another way.
+    reason(body, start=lambda self: setattr(self, "x", 2.0))
+    assert len(traced) == 1
+
+
 def test_what_grows_is_named():
     def start(self):
         self.seen = []

@@ -128,5 +128,5 @@ def _band(time: NDArray, lower: NDArray, upper: NDArray, passed: bool) -> Band:
         lower = lower[[0, -1]]
         upper = upper[[0, -1]]
     # Beyond LARGEST a page draws nothing, and rounding would overflow.
-    limits = (np.round(np.clip(one, -LARGEST, LARGEST), 6).tolist() for one in (lower, upper))
-    return Band(np.round(time, 6).tolist(), *limits, passed)
+    below, above = (np.clip(one, -LARGEST, LARGEST).round(6).tolist() for one in (lower, upper))
+    return Band(np.round(time, 6).tolist(), below, above, passed)
