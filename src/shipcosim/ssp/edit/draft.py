@@ -50,6 +50,7 @@ class Draft:
         self.package.held[self.path] = document
         self._described: dict[tuple[Path, int], FmuDescription | None] = {}
         self._assembled: tuple[System | None, Findings] | None = None
+        self._assembled_from: dict[Path, bytes | Path] = {}
         self._changing = False
         self.assemble()
         self._came_with = set(self.package.located)
@@ -110,12 +111,26 @@ class Draft:
         """Like `assemble`, but read only once after each change."""
         if self._assembled is None:
             self._assembled = self.assemble()
+            self._assembled_from = self._content()
         return self._assembled
 
     def reassembled(self) -> tuple[System | None, Findings]:
         """Like `assembled`, after a change within a block of `changes`."""
-        self._assembled = None
+        self._forget_old()
         return self.assembled()
+
+    def _forget_old(self) -> None:
+        """Forget the assembled system if its files say something else by now."""
+        # To compare texts takes milliseconds, to assemble a system some tenths of a second.
+        if self._assembled_from != self._content():
+            self._assembled = None
+
+    def _content(self) -> dict[Path, bytes | Path]:
+        """What the files say from which the system is assembled."""
+        return {
+            path: etree.tostring(held.root) if isinstance(held, Document) else held
+            for path, held in self.package.held.items()
+        }
 
     def fmu_of(self, element: etree._Element) -> FmuDescription | None:
         """Description of a component's FMU; None for other elements, or if it cannot be read."""
@@ -141,7 +156,7 @@ class Draft:
             try:
                 yield
             finally:
-                self._assembled = None
+                self._forget_old()
             return
         # Errors that the system already had do not count.
         before = self._snapshot()
