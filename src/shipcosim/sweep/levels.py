@@ -98,8 +98,12 @@ class Levels:
         """Whether the values of a factor are angles in rad."""
         factor = self._study.factor[number]
         signals = [signal for name in factor.signal for signal in self.signals_of(name)]
-        unit = units_of(self._system)(signals[0]) if signals and not factor.at_fork else None
-        return unit == RADIAN
+        if not signals or factor.at_fork:
+            return False
+        try:
+            return units_of(self._system)(signals[0]) == RADIAN
+        except ShipcosimError:
+            return False  # a name that the system does not have is reported where it is set
 
     def _made(self, number: int) -> list[Level]:
         factor = self._study.factor[number]

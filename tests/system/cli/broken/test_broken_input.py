@@ -189,7 +189,8 @@ def test_a_command_that_ends_by_itself_keeps_its_exit_code(work, code):
 
 
 CLEARS_UP = """
-import pathlib, sys, time
+import pathlib, signal, sys, time
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's job in the background ignores it
 from shipcosim.cli.exit_guard import run_in_child
 from shipcosim.temporary import temporary_folder
 
