@@ -263,7 +263,8 @@ class Page:
             for m in messages
             if m["method"] == "Network.requestWillBeSent"
         ]
-        return [url for url in urls if not url.startswith(("file:", "data:", "blob:", "chrome:"))]
+        inside = ("file:", "data:", "blob:", "chrome:", "chrome-untrusted:")  # the last: a new tab
+        return [url for url in urls if not url.startswith(inside)]
 
     def seconds(self):
         """When the page was loaded, and when all that is in view was drawn. [s]"""

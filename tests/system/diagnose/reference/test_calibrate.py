@@ -93,7 +93,8 @@ def test_a_reference_that_predicts_worse_than_the_system_is_refused(made):
     (log, _) = made[0].logs
     position = {"after": (1.0, 2.0, 9.0), "before": (1.0, 2.0, 3.0)}
     worse = replace(log, errors=replace(log.errors, position=position))
-    assert "by 9 m, the ship as the system has her by 3 m" in _reasons_not_to_trust([worse], {})[0]
+    (why,) = _reasons_not_to_trust([worse], {})
+    assert "misses the log by 9 m. The ship as the system has her misses it by 3 m." in why
     assert _reasons_not_to_trust([log], {"monday": []}) == []
 
 
