@@ -246,7 +246,7 @@ def test_a_stranger_that_nothing_of_a_log_feeds_is_refused_with_what_would_be_ri
     for target in ("left.shaft", "left.way", "left.swing"):
         ship.disconnect(target)
     with pytest.raises(
-        ShipcosimError, match=r"'left' \(screw\) puts a load on 'boat'.*named 'left_rpm'"
+        ShipcosimError, match=r"'left' \(screw\) puts a load on 'boat'.*its speed by 'left_rpm'"
     ):
         ship_model_of(ship.checked())
 
