@@ -1,7 +1,7 @@
-"""Writes fmus/drift_predictor/weights/regions.toml: 90 % regions of its variants, calibrated on worlds 200 to 239.
+"""Writes fmus/drift_predictor/weights/regions.toml: 90 % regions of its variants, calibrated on worlds 200 to 299.
 
-Run `python docs/generators/write_regions.py` after the weights or the models of prediction have changed; it takes some
-ten minutes. Those of the kinetic predictor are printed, for ssp/ships/gunnerus-33m9/predictor.toml.
+Run `python docs/generators/write_regions.py` after the weights or the models of prediction have changed; it takes half
+an hour. Those of the kinetic predictor are printed, for ssp/ships/gunnerus-33m9/predictor.toml.
 """
 
 import sys
@@ -14,8 +14,8 @@ from prediction.regions import calibrated, scores  # noqa: E402
 from shipcosim.learn.prediction.worlds import draw, sail_all  # noqa: E402
 
 FILE = ROOT / "fmus" / "drift_predictor" / "weights" / "regions.toml"
-SEEDS = range(200, 240)
-HEAD = "# Regions with 90 % of the truths, by variant; written by docs/generators/write_regions.py, worlds 200-239.\n"
+SEEDS = range(200, 300)
+HEAD = "# Regions with 90 % of the truths, by variant; written by docs/generators/write_regions.py, worlds 200-299.\n"
 
 
 def regions(records, variant=None):

@@ -16,7 +16,7 @@ from shipcosim.cosim import RunOptions, simulate
 from shipcosim.learn.prediction.worlds import KNOWN, PARAMETERS, SYSTEM, Record
 from shipcosim.learn.regions import SHARE, conformal
 from shipcosim.learn.true_ships import system_with
-from shipcosim.models.prediction.regions import HORIZONS, JUST_LOST
+from shipcosim.models.prediction.regions import HORIZONS, JUST_LOST, LONG_LOST
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
 from shipcosim.ssp import read_system, with_values
@@ -27,15 +27,18 @@ UNCALIBRATED = {
         for kind in ("position", "heading")
         for horizon in HORIZONS
     },
-    "later_position_share": 1.0,
-    "later_heading_share": 1.0,
+    **{
+        f"{phase}_{kind}_share": 1.0
+        for phase in ("first", "later")
+        for kind in ("position", "heading")
+    },
 }
 """Regions of width 1."""
 
 
 @dataclass(frozen=True)
 class Scores:
-    """Errors of one record's predictions over the factors by which the predictor widens its regions.
+    """Errors of one record's predictions, against the truth, over the factors by which the predictor widens its regions.
 
     Parameters
     ----------
@@ -57,7 +60,6 @@ def scores(
     record: Record,
     fmu: str = "predictor",
     *,
-    by_truth: bool = False,
     settings: Mapping[str, float | str | bool] | None = None,
 ) -> Scores:
     """Run a predictor over a record, and score its predictions after the loss of thrust.
@@ -68,8 +70,6 @@ def scores(
         Of a world.
     fmu : str
         Name of a predictor's FMU, which gets the numbers of the system's predictor.
-    by_truth : bool
-        Errors against the truth, for tests. Regions are calibrated against what the ship knows of herself afterwards.
     settings : mapping of str, optional
         Parameters of the FMU that differ from those of the system's predictor: its variant, for one.
 
@@ -83,14 +83,12 @@ def scores(
     made = np.rint(np.asarray(table[f"{fmu}.predicted_at"])).astype(int)
     kept = np.flatnonzero((made > record.lost_at) & (np.diff(made, prepend=-1) > 0))
     made = made[kept]
-    # Regions are calibrated by the ship's later estimates; tests may use the truth.
-    reached = record.truth if by_truth else record.known
     position = np.full((len(kept), 3), np.nan)
     heading = np.full((len(kept), 3), np.nan)
     # Errors at each horizon; NaN where the record ends before it.
     for i, horizon in enumerate(int(h) for h in HORIZONS):
         inside = made + horizon < len(record.time)
-        then = reached[made[inside] + horizon]
+        then = record.truth[made[inside] + horizon]
         x, y, psi = (
             np.asarray(table[f"{fmu}.{name}_{horizon}"])[kept][inside] for name in ("x", "y", "psi")
         )
@@ -125,27 +123,25 @@ def calibrated(found: Sequence[Scores]) -> dict[str, float]:
     Returns
     -------
     dict of str to float
-        Parameters of `models.prediction.regions.RegionParameters`. The shares of a long drift are the largest of the
-        horizons.
+        Parameters of `models.prediction.regions.RegionParameters`. Each share is of all horizons together.
     """
     # Level for n independent worlds (split conformal).
     level = min(1.0, SHARE * (1.0 + 1.0 / len(found)))
+    lost_for = np.concatenate([s.lost_for for s in found])
+    phase = np.digitize(lost_for, (JUST_LOST, LONG_LOST), right=True)
     widths = {}
     for kind in ("position", "heading"):
-        later = []
-        # Width soon after the loss, and how much wider it is later.
-        for i, horizon in enumerate(HORIZONS):
-            phases = [
-                np.concatenate(
-                    [getattr(s, kind)[(s.lost_for >= JUST_LOST) == late, i] for s in found]
-                )
-                for late in (False, True)
-            ]
-            early, rest = (conformal(scores, level) for scores in phases)
-            widths[f"{kind}_half_width_{horizon:.0f}"] = early
-            later.append(rest / early)
-        # One share serves all horizons, so the largest.
-        widths[f"later_{kind}_share"] = max(later)
+        errors = np.concatenate([getattr(s, kind) for s in found])
+        # Widths in the drift by horizon, and how much wider or narrower all are before and after it.
+        of_drift = [conformal(scores, level) for scores in errors[phase == 1].T]
+        widths |= {
+            f"{kind}_half_width_{horizon:.0f}": width
+            for horizon, width in zip(HORIZONS, of_drift, strict=True)
+        }
+        for name, which in (("first", 0), ("later", 2)):
+            widths[f"{name}_{kind}_share"] = conformal(
+                (errors[phase == which] / of_drift).ravel(), level
+            )
     return widths
 
 

@@ -18,8 +18,10 @@ from shipcosim.models.core.parameters import quantity
 
 FORESIGHT = 10.0
 """How far ahead the predictions of the own record were made. [s]"""
-JUST_LOST = 20.0
-"""Time from the loss of thrust in which regions are those of a ship that has just lost it. [s]"""
+JUST_LOST = 5.0
+"""Up to this time after the loss of thrust regions are those of a ship that has just lost it. [s]"""
+LONG_LOST = 60.0
+"""After this time without thrust they are those of a long drift. [s]"""
 HORIZONS = (10.0, 30.0, 60.0)
 """Horizons of the calibrated widths. [s]"""
 
@@ -28,7 +30,7 @@ _NONE = "neutral: not calibrated"
 
 @dataclass(frozen=True, kw_only=True)
 class RegionParameters:
-    """Sizes of the regions about predictions 10, 30 and 60 s ahead, of a ship that has just lost all thrust."""
+    """Sizes of the regions about predictions 10, 30 and 60 s ahead, of a ship that lost all thrust 5 to 60 s ago."""
 
     position_half_width_10: float = quantity(
         0.0, "m", "radius of 90 % of the places in 10 s", _NONE, minimum=0.0
@@ -49,17 +51,31 @@ class RegionParameters:
         0.0, "rad", "half-width of 90 % of the headings in 60 s", _NONE, minimum=0.0
     )
 
+    first_position_share: float = quantity(
+        1.0,
+        "1",
+        "factor on the radii in the first 5 s after the loss of thrust",
+        "neutral",
+        minimum=0.0,
+    )
+    first_heading_share: float = quantity(
+        1.0,
+        "1",
+        "factor on the half-widths of heading in the first 5 s after the loss of thrust",
+        "neutral",
+        minimum=0.0,
+    )
     later_position_share: float = quantity(
         1.0,
         "1",
-        "factor on the radii from 20 s after the loss of thrust on",
+        "factor on the radii later than 60 s after the loss of thrust",
         "neutral",
         minimum=0.0,
     )
     later_heading_share: float = quantity(
         1.0,
         "1",
-        "factor on the half-widths of heading from 20 s after the loss of thrust on",
+        "factor on the half-widths of heading later than 60 s after the loss of thrust",
         "neutral",
         minimum=0.0,
     )
@@ -71,10 +87,10 @@ class RegionParameters:
         minimum=1e-3,
     )
     ordinary_heading_error: float = quantity(
-        0.03,
+        0.01,
         "rad",
         "own error of 10 s at which the half-widths of heading are 1.4 times as large",
-        "chosen by seeds 300-311",
+        "chosen by seeds 200-323",
         minimum=1e-4,
     )
     error_time: float = quantity(
@@ -128,7 +144,7 @@ def own_errors(
 
 
 def widening(errors: Vector, lost_for: Arithmetic, *, regions: RegionParameters) -> Vector:
-    """Factors on the calibrated widths: larger by the own errors, smaller in a long drift, 0 while thrusters act.
+    """Factors on the calibrated widths: larger by the own errors, others at first and later, 0 while thrusters act.
 
     Parameters
     ----------
@@ -145,13 +161,24 @@ def widening(errors: Vector, lost_for: Arithmetic, *, regions: RegionParameters)
         For radii and for half-widths of heading. [1]
     """
     found = []
-    for error, ordinary, later in (
-        (errors[0], regions.ordinary_position_error, regions.later_position_share),
-        (errors[1], regions.ordinary_heading_error, regions.later_heading_share),
+    for error, ordinary, first, later in (
+        (
+            errors[0],
+            regions.ordinary_position_error,
+            regions.first_position_share,
+            regions.later_position_share,
+        ),
+        (
+            errors[1],
+            regions.ordinary_heading_error,
+            regions.first_heading_share,
+            regions.later_heading_share,
+        ),
     ):
         # √(1 + (error / ordinary)²): 1 for small errors, 1.4 at the ordinary one, then
         # proportional.
         grown = sqrt(1.0 + (error / ordinary) * (error / ordinary))
-        # No region while thrusters act; a smaller one after the first seconds of a drift.
-        found.append(grown * where(lost_for < 0.0, 0.0, where(lost_for < JUST_LOST, 1.0, later)))
+        # No region while thrusters act; then by the time since they were lost.
+        drifting = where(lost_for > JUST_LOST, where(lost_for > LONG_LOST, later, 1.0), first)
+        found.append(grown * where(lost_for < 0.0, 0.0, drifting))
     return found[0], found[1]

@@ -7,7 +7,12 @@ import pytest
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.prediction.regions import RegionParameters, own_errors, widening
 
-REGIONS = RegionParameters(later_position_share=0.6, later_heading_share=0.5)
+REGIONS = RegionParameters(
+    first_position_share=1.2,
+    first_heading_share=1.3,
+    later_position_share=0.6,
+    later_heading_share=0.5,
+)
 
 
 def test_own_errors_are_an_exponential_mean_of_the_distance_to_where_she_was_foreseen():
@@ -22,10 +27,13 @@ def test_own_errors_are_an_exponential_mean_of_the_distance_to_where_she_was_for
     assert errors == pytest.approx((5.0 * reached, 0.2 * reached))
 
 
-def test_no_region_while_thrusters_act_and_smaller_ones_in_a_long_drift():
+def test_no_region_while_thrusters_act_and_others_just_after_the_loss_and_in_a_long_drift():
     assert widening((1.0, 0.1), -1.0, regions=REGIONS) == (0.0, 0.0)
-    assert widening((0.0, 0.0), 5.0, regions=REGIONS) == (1.0, 1.0)
-    assert widening((0.0, 0.0), 50.0, regions=REGIONS) == (0.6, 0.5)
+    for first in (0.0, 1.0, 5.0):
+        assert widening((0.0, 0.0), first, regions=REGIONS) == (1.2, 1.3)
+    for drifting in (6.0, 60.0):
+        assert widening((0.0, 0.0), drifting, regions=REGIONS) == (1.0, 1.0)
+    assert widening((0.0, 0.0), 61.0, regions=REGIONS) == (0.6, 0.5)
 
 
 def test_large_own_errors_widen_in_proportion():
