@@ -21,7 +21,7 @@ from shipcosim.cosim.engines.adapter import EngineError, Job, is_linear, run_on,
 from shipcosim.cosim.engines.python_imports import imports_undone
 from shipcosim.cosim.master.plan import End, label
 from shipcosim.cosim.master.signals import Modifier
-from shipcosim.errors import Problem, ShipcosimError, error_at
+from shipcosim.errors import Problem, error_at, raise_errors
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import Connection, System
@@ -44,10 +44,11 @@ def run(system: System, scenario: Scenario, options: RunOptions) -> xarray.Datas
     check_installed()
     job = Job(system, scenario, options)
     added = sums(job.connections)
-    if problems := unsupported(
-        "ecos", job, lambda c: "it is added to others" if c in added else None, _problems(job)
-    ):
-        raise ShipcosimError(problems)
+    raise_errors(
+        unsupported(
+            "ecos", job, lambda c: "it is added to others" if c in added else None, _problems(job)
+        )
+    )
     about = {"ecospy_version": version("ecospy"), "remarks": json.dumps([REMARK])}
     return run_on("ecos", EcosSession, job, about)
 

@@ -7,7 +7,7 @@ from math import lcm
 from shipcosim.cosim.master.signals import InputConnection
 from shipcosim.cosim.slaves.interface_type import interface_type_of, missing_interface_type
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, raise_errors
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import Connection, System, Variable
 from shipcosim.ssp.flatten.array_sizes import RESIZE, resized
@@ -161,8 +161,7 @@ def make_plan(
     problems = [
         p for c in system.components.values() for p in _component_problems(c, base, duration)
     ]
-    if problems := problems + list(_connection_problems(system)):
-        raise ShipcosimError(problems)
+    raise_errors(problems + list(_connection_problems(system)))
     # Variables that events change need a row of their own, even if nothing feeds them.
     ends = {system.split(signal) for event in scenario.events for _, signal, _ in event.changes}
     ends |= {system.split(signal) for signal in modified}

@@ -4,6 +4,7 @@ import os
 import re
 from collections.abc import Mapping, Sequence
 from ctypes import Array, byref, c_char, c_char_p, c_size_t, c_uint, c_void_p, cast
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +48,7 @@ class LibrarySlave(Slave):
     """
 
     _prefix: str
+    _form = "Slave"  # or "Model": which of FMPy's classes loads it
     _state_calls: Mapping[str, str]
     _fmu: Any  # FMPy's
     component: Any
@@ -64,7 +66,8 @@ class LibrarySlave(Slave):
         # Loading may change the working directory; it is restored in any case.
         here = os.getcwd()
         try:
-            self._fmu = self._load(
+            fmpy_class = f"FMU{self._prefix[-1]}{self._form}"
+            self._fmu = getattr(import_module(f"fmpy.{self._prefix}"), fmpy_class)(
                 guid=token,
                 modelIdentifier=identifier,
                 unzipDirectory=str(folder),
@@ -262,11 +265,6 @@ class LibrarySlave(Slave):
     def _note(self, status, text):
         if status != OK and len(self._messages) < MOST_MESSAGES:
             self._messages.append((status, text))
-
-    @staticmethod
-    def _load(**arguments: Any) -> Any:
-        """FMPy's object for an FMU of this version."""
-        raise NotImplementedError
 
     def _instantiate(self) -> None:
         """Instantiate the FMU, with logging."""
