@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.cosim.engines.adapter import EngineError, Job, is_linear, run_on, sums, unsupported
+from shipcosim.cosim.engines.adapter import EngineError, Job, run_on, sums, unsupported
 from shipcosim.cosim.engines.python_imports import imports_undone
 from shipcosim.cosim.master.plan import End, label
 from shipcosim.cosim.master.signals import Modifier
@@ -94,7 +94,7 @@ class Transformation:
     def __call__(self, value: float) -> float:
         value = _modified(value, self.source)
         # Skip the transformation where it is none, so that values stay exact.
-        if is_linear(self.connection):
+        if self.connection.is_linear:
             value = self.connection.factor * value + self.connection.offset
         return _modified(value, self.target)
 
@@ -195,7 +195,7 @@ class EcosSession:
         for connection in self._job.connections:
             kind = self._job.plan.variable(connection.source).kind
             ends = _identifier(connection.source), _identifier(connection.target)
-            if is_linear(connection) or modified & {connection.source, connection.target}:
+            if connection.is_linear or modified & {connection.source, connection.target}:
                 transformation = Transformation(connection)
                 self._transformations[connection.source].append(transformation)
                 self._transformations[connection.target].append(transformation)

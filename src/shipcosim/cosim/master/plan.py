@@ -202,11 +202,7 @@ def _sorted_connections(plan, from_table):
 
 def _kinds(system):
     # One FMU with wide integers widens the integers of the whole system: an exchange has one type.
-    types = {
-        variable.type
-        for component in system.components.values()
-        for variable in component.variables.values()
-    }
+    types = {variable.type for component, variable in system.all_variables()}
     return KINDS | ({"Integer": "Long", "Enumeration": "Long"} if types.intersection(WIDE) else {})
 
 
@@ -271,7 +267,7 @@ def passes_own_start(connection: Connection, system: System) -> bool:
     own = system.components[component]
     return (
         variable not in own.start
-        and (connection.factor, connection.offset) == (1.0, 0.0)
+        and not connection.is_linear
         and own.start_value(variable) == start
     )
 
@@ -293,25 +289,23 @@ def _lay_out(plan, by_input):
     """Give each value a row: outputs first, since inputs refer to their rows."""
     # Any variable can be a source, for example a parameter that feeds another component.
     sources = {connection.source for connections in by_input.values() for connection in connections}
-    for component in plan.system.components.values():
-        for variable in component.variables.values():
-            end = (component.name, variable.name)
-            kind = plan.kind(variable)
-            if kind is not None and (variable.causality == "output" or end in sources):
-                plan.layouts[kind].outputs.append(end)
+    for component, variable in plan.system.all_variables():
+        end = (component.name, variable.name)
+        kind = plan.kind(variable)
+        if kind is not None and (variable.causality == "output" or end in sources):
+            plan.layouts[kind].outputs.append(end)
     # Inputs have a row if something feeds or changes them; others keep their start value in the
     # FMU.
-    for component in plan.system.components.values():
-        for variable in component.variables.values():
-            end = component.name, variable.name
-            if end in by_input or (end in plan.modified and variable.causality != "output"):
-                layout = plan.layouts[plan.kind(variable)]
-                layout.inputs.append(end)
-                # The first connection carries the others as terms of a sum.
-                first, *more = [
-                    _input_connection(plan, layout, end, c) for c in by_input.get(end, [None])
-                ]
-                layout.connections.append(replace(first, added=tuple(more)))
+    for component, variable in plan.system.all_variables():
+        end = component.name, variable.name
+        if end in by_input or (end in plan.modified and variable.causality != "output"):
+            layout = plan.layouts[plan.kind(variable)]
+            layout.inputs.append(end)
+            # The first connection carries the others as terms of a sum.
+            first, *more = [
+                _input_connection(plan, layout, end, c) for c in by_input.get(end, [None])
+            ]
+            layout.connections.append(replace(first, added=tuple(more)))
 
 
 def _input_connection(plan, layout, end, connection):

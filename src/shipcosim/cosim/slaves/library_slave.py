@@ -4,7 +4,6 @@ import os
 import re
 from collections.abc import Mapping, Sequence
 from ctypes import Array, byref, c_char, c_char_p, c_size_t, c_uint, c_void_p, cast
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -63,11 +62,14 @@ class LibrarySlave(Slave):
         self._is_container = (Path(folder) / "resources" / "container.json").is_file()
         if problem := library_problem(folder, self._prefix[-1], identifier):
             raise SlaveError(problem)
+        from fmpy import fmi1, fmi2, fmi3
+
+        versions = {"fmi1": fmi1, "fmi2": fmi2, "fmi3": fmi3}
+        fmpy_class = getattr(versions[self._prefix], f"FMU{self._prefix[-1]}{self._form}")
         # Loading may change the working directory; it is restored in any case.
         here = os.getcwd()
         try:
-            fmpy_class = f"FMU{self._prefix[-1]}{self._form}"
-            self._fmu = getattr(import_module(f"fmpy.{self._prefix}"), fmpy_class)(
+            self._fmu = fmpy_class(
                 guid=token,
                 modelIdentifier=identifier,
                 unzipDirectory=str(folder),
