@@ -32,7 +32,7 @@ from shipcosim.dialects import (
     separator_of,
     unicode_of,
 )
-from shipcosim.errors import Problem, ShipcosimError, error_at, reading, shortened
+from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors, reading, shortened
 from shipcosim.units import UnitError, spelled_conversion, spelled_unit
 
 if TYPE_CHECKING:
@@ -84,12 +84,13 @@ def make_table(
     import xarray
 
     columns = list(columns)
-    if uneven := [
-        Problem(n, f"has {len(v)} rows, time has {len(time)}.")
-        for n, v, *_ in columns
-        if len(v) != len(time)
-    ]:
-        raise ShipcosimError(uneven)
+    raise_errors(
+        [
+            Problem(n, f"has {len(v)} rows, time has {len(time)}.")
+            for n, v, *_ in columns
+            if len(v) != len(time)
+        ]
+    )
     variables = {
         name: ("time", values, {"units": unit, "long_name": long_name})
         for name, values, unit, long_name in columns
@@ -185,8 +186,7 @@ def read_columns(path: str | os.PathLike) -> dict[str, tuple[np.ndarray, str]]:
             return {name: found for name, found in columns.items() if len(found[0])}
         columns = _read_columns(path)
     problems = _repeated(path, [name for name, _, _ in columns])
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     return {name: (values, unit) for name, unit, values in columns}
 
 
@@ -407,8 +407,7 @@ def _read_netcdf(path: Path) -> xarray.Dataset:
                 f"{path}, 'time'", "holds no times of rows.", "Each row is a time and its values."
             )
         )
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     return table
 
 
@@ -578,8 +577,7 @@ def _read_rows(path: Path) -> xarray.Dataset:
     problems += _repeated(path, names)
     if "time" not in names:
         problems.append(_no_time(path, names))
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     signals = {name: (name, values, unit, "") for name, unit, values in columns}
     _, time, unit, _ = signals.pop("time")
     return make_table(time * _seconds_in(unit, path), signals.values())

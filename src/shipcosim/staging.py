@@ -14,7 +14,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 
-from shipcosim.errors import Problem, ShipcosimError, error_at
+from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors
 from shipcosim.temporary import temporary_folder
 
 WRITING = "writing the page"
@@ -46,8 +46,7 @@ def check_targets(folder: Path | None, file: Path | None = None) -> None:
             Problem(str(file), text, "Choose another file for the state (--store).")
             for text in found
         ]
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
 
 
 def _complaints(folder: Path, must_exist: bool = False) -> list[str]:

@@ -105,8 +105,7 @@ def in_seconds(arguments: Mapping[str, Any], names: Iterable[str]) -> dict[str, 
                 found[name] = seconds(found[name])
             except UnitError as error:
                 problems.append(Problem(name, error.found, error.remedy))
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     return found
 
 
@@ -119,8 +118,7 @@ def fmus_of(components: Components) -> dict[str, Path]:
             found[name] = find("fmu", fmu, "component").resolve()
         except ShipcosimError as error:
             problems += error.problems
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     return found
 
 
@@ -172,8 +170,7 @@ class Reading:
         """The system of a scenario, checked, with the parameter sets and FMUs of both."""
         from shipcosim.cosim import system_of
 
-        if missing := check_files(scenario):
-            raise ShipcosimError(missing)
+        raise_errors(check_files(scenario))
         return system_of(
             scenario,
             parameters=[Path(one) for one in listed(self.parameters)],
@@ -412,8 +409,7 @@ def check_inputs(
         problems.append(Problem(str(channels), "There is no such channel file.", remedy))
     if causes is not None and not Path(causes).is_dir():
         problems.append(Problem(str(causes), "There is no such folder of causes.", remedy))
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
 
 
 def name_of_log(source: Any) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Any, TypeVar, cast
 
-from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
+from shipcosim.errors import Problem, error_at, raise_errors, suggestion
 from shipcosim.options import RunKeywords
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -42,8 +42,7 @@ def with_known_keywords(function: Function) -> Function:
             for k in keywords
             if k not in known
         ]
-        if unknown:
-            raise ShipcosimError(unknown)
+        raise_errors(unknown)
         try:
             signature.bind(*arguments, **keywords)
         except TypeError as error:

@@ -229,9 +229,8 @@ def with_record(
         name for event in scenario.events for name in (*event.override, *event.bias, *event.reset)
     }
     variables = {
-        f"{component.name}.{name}": variable.causality
-        for component in system.components.values()
-        for name, variable in component.variables.items()
+        f"{component.name}.{variable.name}": variable.causality
+        for component, variable in system.all_variables()
     }
     recorded = [
         name

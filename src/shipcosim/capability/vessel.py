@@ -18,7 +18,7 @@ from shipcosim.capability.thrust import (
     Thruster,
     nominal_thrust,
 )
-from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
+from shipcosim.errors import Problem, error_at, raise_errors, suggestion
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import DriftParameters
@@ -119,8 +119,7 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
     problems = [
         p for name in units for p in _problems(ship, name, units[name], values[_file(name)])
     ]
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     known = {name: _real(body, name) for name in ("length", "breadth", "draught")}
     # Shape and areas come from the ship's file, main dimensions from the system's parameter set.
     hull = Hull(**values[HULL_FILE], **known)

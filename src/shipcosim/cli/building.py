@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from shipcosim import library
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, ShipcosimError, raise_errors, suggestion
 from shipcosim.fmi.export.builder import build_fmu
 from shipcosim.native.export.packing import build_native_fmu
 from shipcosim.native.export.targets import targets_of
@@ -62,8 +62,7 @@ def build_named(
             problems += error.problems
         if progress:
             progress(done, len(jobs))
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     return built
 
 
@@ -122,8 +121,7 @@ def build_native(
             problems += error.problems
         if progress:
             progress(done, len(jobs))
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     return built, left
 
 

@@ -74,9 +74,9 @@ def progress_of(label: str, duration: float | None = None) -> Iterator[Callable[
         BarColumn(),
         TaskProgressColumn(),
         TextColumn("{task.fields[pace]}"),
+        TimeRemainingColumn(),
     ]
     console = make_console(stderr=True, highlight=True)
-    columns.append(TimeRemainingColumn())
     with Progress(
         *columns, console=console, transient=True, disable=not console.is_terminal
     ) as bar:

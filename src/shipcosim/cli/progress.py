@@ -127,8 +127,9 @@ def shown_progress(steps: Mapping[str, float]) -> Iterator[Callable[..., None]]:
         TextColumn("{task.description}", markup=False),
         BarColumn(bar_width=24),
         TaskProgressColumn(),
+        TimeElapsedColumn(),
+        _time_left(course),
     ]
-    columns += [TimeElapsedColumn(), _time_left(course)]
     with Progress(
         *columns, console=console, transient=True, disable=not console.is_terminal
     ) as bar:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, raise_errors
 from shipcosim.units import value_of
 
 
@@ -29,8 +29,7 @@ def parsed_settings(settings: Iterable[str]) -> dict[str, Any]:
             )
         problems += _of_twice("--set", name.strip(), values)
         values[name.strip()] = value_of(text)
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     return values
 
 
@@ -53,8 +52,7 @@ def parsed_components(given: Iterable[str]) -> dict[str, str]:
             problems.append(
                 Problem("--component", f"'{pair}' swaps nothing.", "Right would be component=FMU.")
             )
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     return found
 
 

@@ -19,7 +19,7 @@ from shipcosim.cli.console import (
 )
 from shipcosim.cli.outcomes.exits import INTERRUPTED, Conclusion
 from shipcosim.cosim import Interrupted
-from shipcosim.errors import ShipcosimError
+from shipcosim.errors import ShipcosimError, raise_errors
 from shipcosim.native import is_installed
 from shipcosim.results.run import VERDICT
 from shipcosim.staging import set_aside
@@ -63,8 +63,7 @@ def prepare_folder(files: Mapping[str, Path], asked: Mapping[str, Any]) -> dict[
             prepared[name] = prepare_run(file, **asked)
         except ShipcosimError as error:
             problems += error.problems
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     return prepared
 
 

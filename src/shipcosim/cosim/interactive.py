@@ -35,8 +35,7 @@ def changeable_inputs(system: System) -> list[str]:
     """Inputs and tunable parameters of all components: each gets a row, so that it can be changed."""
     return [
         label((component.name, variable.name))
-        for component in system.components.values()
-        for variable in component.variables.values()
+        for component, variable in system.all_variables()
         if (variable.causality == "input" or variable.variability == "tunable")
         and variable.kind in ("Real", "Integer", "Boolean")
     ]

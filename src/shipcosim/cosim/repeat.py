@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from shipcosim.cosim.master.inputs import digest
 from shipcosim.cosim.master.result import fingerprint, hashes
 from shipcosim.cosim.master.run import run
-from shipcosim.errors import Problem, ShipcosimError, error_at
+from shipcosim.errors import Problem, error_at, raise_errors
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.series import read_table
@@ -61,8 +61,7 @@ def repeat(
             system or Path("ssp") / facts["system"], fmus=folders, components=swapped
         )
     # Everything must be the same: wiring, FMUs and inputs. Start values are set below.
-    if problems := list(_differences(facts, system, inputs)):
-        raise ShipcosimError(problems)
+    raise_errors(_differences(facts, system, inputs))
     # The table holds all start values, so the system's own do not matter.
     starts = {
         name: value

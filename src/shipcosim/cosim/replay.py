@@ -16,7 +16,7 @@ from shipcosim.cosim.master.run import RunError, Simulation
 from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
-from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
+from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors, suggestion
 from shipcosim.options import CountProgress, RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.series import conversion
@@ -93,8 +93,7 @@ def replay(
             "replay", "starts is no list of times.", "Give the time of each segment's start."
         )
     # All FMUs run in this process.
-    if problems := module_clashes(system, late_alone=True):
-        raise ShipcosimError(problems)
+    raise_errors(module_clashes(system, late_alone=True))
     # Plan all segments first, so that all errors are reported before a long computation.
     segments = _Segments(system, inputs, times, duration, step_size, output_interval, states or {})
     segments.check()
@@ -117,8 +116,7 @@ class _Segments:
 
     def __init__(self, system, inputs, starts, duration, step_size, output_interval, states):
         step_size = step_size or system.experiment.step_size
-        if problems := list(_bad_times(starts, duration, step_size, output_interval)):
-            raise ShipcosimError(problems)
+        raise_errors(_bad_times(starts, duration, step_size, output_interval))
         self.system = system
         self.starts = starts
         self.duration = duration

@@ -151,8 +151,7 @@ class _Runs:
         table: Callable = make_table,
     ):
         # All FMUs run in this process.
-        if problems := module_clashes(system, late_alone=True):
-            raise ShipcosimError(problems)
+        raise_errors(module_clashes(system, late_alone=True))
         self._system = system
         self._options = options
         self._reduce = reduce

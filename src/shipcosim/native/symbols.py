@@ -34,6 +34,10 @@ def _binary(op, kind=None):
     return forward, backward
 
 
+def _unary(op, kind="d"):
+    return lambda self: self.function(op, kind)
+
+
 class Symbol:
     """One value of a recording.
 
@@ -130,14 +134,9 @@ class Symbol:
     def __abs__(self):
         return self.function("abs", "d" if self.kind == "d" else "i")
 
-    def __invert__(self):
-        return self.function("not", "b")
-
-    def __floor__(self):
-        return self.function("floor", "i")
-
-    def __ceil__(self):
-        return self.function("ceil", "i")
+    __invert__ = _unary("not", "b")
+    __floor__ = _unary("floor", "i")
+    __ceil__ = _unary("ceil", "i")
 
     def __round__(self, digits: int | None = None):
         return self.recording.value("round", "i" if digits is None else "d", self, digits or 0)
@@ -176,32 +175,15 @@ class Symbol:
 
     # what NumPy's functions call on the elements of an array of objects
 
-    def sin(self):
-        return self.function("sin")
-
-    def cos(self):
-        return self.function("cos")
-
-    def tan(self):
-        return self.function("tan")
-
-    def exp(self):
-        return self.function("exp")
-
-    def log(self):
-        return self.function("log")
-
-    def log1p(self):
-        return self.function("log1p")
-
-    def sqrt(self):
-        return self.function("sqrt")
-
-    def tanh(self):
-        return self.function("tanh")
-
-    def floor(self):
-        return self.function("floor")
+    sin = _unary("sin")
+    cos = _unary("cos")
+    tan = _unary("tan")
+    exp = _unary("exp")
+    log = _unary("log")
+    log1p = _unary("log1p")
+    sqrt = _unary("sqrt")
+    tanh = _unary("tanh")
+    floor = _unary("floor")
 
     def arctan2(self, other: Any) -> Symbol:
         return self.combined("atan2", self, other, "d")

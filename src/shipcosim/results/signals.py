@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from fnmatch import fnmatchcase
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, raise_errors, suggestion
 
 
 def chosen(names: Iterable[str], wanted: Sequence[str]) -> list[str]:
@@ -39,8 +39,7 @@ def chosen(names: Iterable[str], wanted: Sequence[str]) -> list[str]:
             problems.append(
                 Problem(str(one), "There is no such signal or component.", _remedy(known, str(one)))
             )
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     return list(found)
 
 

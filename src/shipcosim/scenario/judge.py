@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shipcosim.angles import TURN, wrap_series
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, raise_errors, suggestion
 from shipcosim.scenario.amounts import UnitOf, expectation_in_numbers, unit_complaints
 from shipcosim.scenario.locations import problem_at
 from shipcosim.scenario.model import Expectation, Scenario
@@ -99,8 +99,7 @@ def judge(table: xarray.Dataset, scenario: Scenario) -> list[Verdict]:
         for signal in expect.signals
         if signal not in table
     ]
-    if missing:
-        raise ShipcosimError(missing)
+    raise_errors(missing)
     # Units as the table states them, since it may come from another tool.
     unit_of = lambda signal: find_unit(table[signal].attrs.get("units") or None)  # noqa: E731
     wrong = [
@@ -108,8 +107,7 @@ def judge(table: xarray.Dataset, scenario: Scenario) -> list[Verdict]:
         for number, expect in enumerate(scenario.expect)
         for key, *complaint in unit_complaints(expect, unit_of)
     ]
-    if wrong:
-        raise ShipcosimError(wrong)
+    raise_errors(wrong)
     return [
         verdict_on(table, expectation_in_numbers(expect, unit_of), unit_of)
         for expect in scenario.expect

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
+from shipcosim.errors import Problem, error_at, raise_errors, suggestion
 from shipcosim.scenario.model import Event, Value
 from shipcosim.series import write_file
 
@@ -80,8 +80,7 @@ def read_osp_scenario(
         end = None if content.get("end") is None else _seconds(content["end"], "end")
     except ValueError as error:
         problems.append(Problem(str(path), *error.args))
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     # Where libcosim acts unexpectedly, a remark.
     remarks += _doubts(path, due, end, step_size)
     # At the end everything returns to its source.

@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
+from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors, suggestion
 from shipcosim.ships.entries import Quantity
 from shipcosim.ships.estimates.hull import HullDimensions
 from shipcosim.ships.file import KINDS, ShipFile
@@ -132,8 +132,7 @@ def describe(path: str | Path, file: ShipFile | None = None) -> Described:
     # Hull first: thrusters use its density and dimensions.
     vessel = vessel_of(said, form, path, problems)
     units = units_of_ship(said.thrusters, form, said.source, path, problems)
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     name = path.parent.name if path.name == "ship.toml" else path.stem
     return Described(name=name, path=path, file=said, form=form, vessel=vessel, units=units)
 

@@ -11,7 +11,7 @@ from dataclasses import MISSING, Field, dataclass, fields
 from pathlib import Path
 from typing import Any, TypeVar
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, ShipcosimError, raise_errors, suggestion
 from shipcosim.ships.capability_numbers import capability_entries
 from shipcosim.ships.described import describe
 from shipcosim.ships.entries import Quantity, table_entry
@@ -70,8 +70,7 @@ class Ship:
         }
         for name, kinds in components.items():
             self._find_unknown(name, kinds, problems)
-        if problems:
-            raise ShipcosimError(problems)
+        raise_errors(problems)
         return found
 
     def parameters(self, kind: type[Kind], component: str) -> Kind:
@@ -95,8 +94,7 @@ class Ship:
         """
         problems: list[Problem] = []
         values = self._values(component, (kind,), problems)
-        if problems:
-            raise ShipcosimError(problems)
+        raise_errors(problems)
         return kind(**{name: quantity.value for name, quantity in values.items()})
 
     def _values(

@@ -2,9 +2,10 @@
 
 import math
 import re
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
+
+from pydantic import BeforeValidator
 
 from shipcosim import units
 
@@ -34,10 +35,8 @@ class Given:
     uncertainty: tuple[float, ...] = ()
 
 
-def reader(
-    unit: str, *, least: float | None = None, most: float | None = None
-) -> Callable[[Any], Given | None]:
-    """Function that reads a number with a unit and bounds, for a pydantic record.
+def reader(unit: str, *, least: float | None = None, most: float | None = None) -> BeforeValidator:
+    """Reads a number with a unit and bounds, for a pydantic record.
 
     Parameters
     ----------
@@ -48,7 +47,7 @@ def reader(
 
     Returns
     -------
-    callable
+    BeforeValidator
         It raises a ValueError with what would be right.
     """
 
@@ -70,7 +69,7 @@ def reader(
             )
         return given
 
-    return read
+    return BeforeValidator(read)
 
 
 def number_in(found: Any, unit: str) -> float:

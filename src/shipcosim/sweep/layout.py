@@ -9,7 +9,7 @@ from typing import Any
 
 from shipcosim import library
 from shipcosim.cosim import system_of
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, ShipcosimError, raise_errors, suggestion
 from shipcosim.scenario import (
     Scenario,
     check_files,
@@ -68,8 +68,7 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
     values |= levels.checked(study.set, ("set",)) | settings_for(read, settings or {})
     events = [levels.event(event) for event in study.events]
     levels.check_events(events, ("events",))
-    if levels.problems:
-        raise ShipcosimError(levels.problems)
+    raise_errors(levels.problems)
     # Shared values and events go into the scenario, so that each run holds only what is its own.
     changed = {
         "components": components,
@@ -88,8 +87,7 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
     problems = [*levels.problems, *problems, *_of_summaries(study), *_of_fork(study, scenario)]
     problems += _of_replaced(study, found, samples)
     problems += [one for one in check_scenario(scenario, system) if one.severity == "error"]
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     # One checked system for each combination of swapped FMUs.
     systems = {
         swapped: _swapped(study, scenario, swapped, system, build)
@@ -113,8 +111,7 @@ def _scenario(study: Study) -> tuple[Scenario, float]:
     changed = {name: time for name, time in times.items() if time is not None}
     planned = scenario.stop_time
     scenario = scenario.model_copy(update=changed)
-    if missing := check_files(scenario):
-        raise ShipcosimError(missing)
+    raise_errors(check_files(scenario))
     if wrong := [one for one in time_complaints(scenario) if one[-1] == "error"]:
         keys = [keys if keys[0] in changed else tuple(changed)[:1] for keys, *_ in wrong]
         raise ShipcosimError(
@@ -142,8 +139,7 @@ def _system(
         except ShipcosimError as error:
             found = f"There is no FMU '{fmu}', by this name or beside the study."
             problems.append(problem_of(study, keys[name], found, error.problems[0].remedy))
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     try:
         return system_of(scenario, components=paths, build=build)
     # Problems with swapped FMUs are reported at their line in the study.

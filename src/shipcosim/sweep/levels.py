@@ -321,11 +321,10 @@ def start_value(system: System, signal: str) -> Value:
 
 def seeds_of(system: System) -> Iterator[str]:
     """Parameters that are seeds, by their name."""
-    for component in system.components.values():
-        for variable in component.variables.values():
-            is_seed = variable.name == "seed" or variable.name.endswith("_seed")
-            if is_seed and variable.causality == "parameter" and variable.kind == "Integer":
-                yield f"{component.name}.{variable.name}"
+    for component, variable in system.all_variables():
+        is_seed = variable.name == "seed" or variable.name.endswith("_seed")
+        if is_seed and variable.causality == "parameter" and variable.kind == "Integer":
+            yield f"{component.name}.{variable.name}"
 
 
 def _drawn(seed: int, level: int, signal: str) -> int:

@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from shipcosim import library
-from shipcosim.errors import Problem, ShipcosimError, error_at
+from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors
 from shipcosim.scenario.locations import AnyKeys, line_of, location_of
 from shipcosim.scenario.reader import complaint_of, read_toml
 from shipcosim.ssp import AnyPath
@@ -100,8 +100,7 @@ def study_of(source: Source) -> Study:
     if study.sample is not None and study.tune is not None:
         found = "A study has either [sample] or [tune]."
         problems.append(problem_of(study, ("tune",), found, "Take one out."))
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     return study
 
 

@@ -269,9 +269,9 @@ def _fits(text: str, system: "System") -> bool:
 
 
 def _outputs(system: "System") -> Iterator[str]:
-    for component in system.components.values():
-        names = (v.name for v in component.variables.values() if v.causality == "output")
-        yield from (f"{component.name}.{name}" for name in names)
+    for component, variable in system.all_variables():
+        if variable.causality == "output":
+            yield f"{component.name}.{variable.name}"
 
 
 def _own_system() -> str | None:

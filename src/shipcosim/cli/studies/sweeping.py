@@ -72,8 +72,8 @@ def _progress(plan: Plan) -> Iterator[Callable[[int, int], None]]:
         BarColumn(),
         MofNCompleteColumn(),
         TextColumn("{task.fields[pace]}"),
+        TimeRemainingColumn(),
     ]
-    columns.append(TimeRemainingColumn())
     console.print(f"{plan.study.name}: {len(plan):,} runs of {each:,.0f} s.")
     with Progress(
         *columns, console=console, transient=True, disable=not console.is_terminal

@@ -370,7 +370,7 @@ def _unsupported_connection(job, connection):
         return "it maps values"
     if kinds[0] != kinds[1]:
         return f"it goes from {kinds[0]} to {kinds[1]}"
-    if kinds[0] != "Real" and is_linear(connection):
+    if kinds[0] != "Real" and connection.is_linear:
         return f"it transforms values of type {kinds[0]}"
     return None
 
@@ -379,11 +379,6 @@ def sums(connections: list[Connection]) -> list[Connection]:
     """Connections whose values are added to others in an input."""
     count = Counter(connection.target for connection in connections)
     return [connection for connection in connections if count[connection.target] > 1]
-
-
-def is_linear(connection: Connection) -> bool:
-    """True if a connection changes values by factor and offset."""
-    return (connection.factor, connection.offset) != (1.0, 0.0)
 
 
 def indices(job: Job, name: str, kind: str) -> tuple[list[int], list[Variable]]:

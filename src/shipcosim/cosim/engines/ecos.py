@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.cosim.engines.adapter import EngineError, Job, is_linear, run_on, sums, unsupported
+from shipcosim.cosim.engines.adapter import EngineError, Job, run_on, sums, unsupported
 from shipcosim.cosim.engines.python_imports import imports_undone
 from shipcosim.cosim.master.plan import End, label
 from shipcosim.cosim.master.signals import Modifier
-from shipcosim.errors import Problem, ShipcosimError, error_at
+from shipcosim.errors import Problem, error_at, raise_errors
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import Connection, System
@@ -44,10 +44,11 @@ def run(system: System, scenario: Scenario, options: RunOptions) -> xarray.Datas
     check_installed()
     job = Job(system, scenario, options)
     added = sums(job.connections)
-    if problems := unsupported(
-        "ecos", job, lambda c: "it is added to others" if c in added else None, _problems(job)
-    ):
-        raise ShipcosimError(problems)
+    raise_errors(
+        unsupported(
+            "ecos", job, lambda c: "it is added to others" if c in added else None, _problems(job)
+        )
+    )
     about = {"ecospy_version": version("ecospy"), "remarks": json.dumps([REMARK])}
     return run_on("ecos", EcosSession, job, about)
 
@@ -93,7 +94,7 @@ class Transformation:
     def __call__(self, value: float) -> float:
         value = _modified(value, self.source)
         # Skip the transformation where it is none, so that values stay exact.
-        if is_linear(self.connection):
+        if self.connection.is_linear:
             value = self.connection.factor * value + self.connection.offset
         return _modified(value, self.target)
 
@@ -194,7 +195,7 @@ class EcosSession:
         for connection in self._job.connections:
             kind = self._job.plan.variable(connection.source).kind
             ends = _identifier(connection.source), _identifier(connection.target)
-            if is_linear(connection) or modified & {connection.source, connection.target}:
+            if connection.is_linear or modified & {connection.source, connection.target}:
                 transformation = Transformation(connection)
                 self._transformations[connection.source].append(transformation)
                 self._transformations[connection.target].append(transformation)

@@ -68,9 +68,14 @@ def _run(host, path, scenario, set_name, system):
     # The outputs that a tool can return: numbers and flags of components.
     grid = time_grid_of(scenario)
     outputs = {
-        f"{name}.{v.name}": (name, v.name, v.value_reference, v.kind, v.unit or "")
-        for name, component in system.components.items()
-        for v in component.variables.values()
+        f"{component.name}.{v.name}": (
+            component.name,
+            v.name,
+            v.value_reference,
+            v.kind,
+            v.unit or "",
+        )
+        for component, v in system.all_variables()
         if v.causality == "output" and v.kind in KINDS
     }
     job = {

@@ -28,7 +28,7 @@ from shipcosim.cosim.engines.osp_job import (
 )
 from shipcosim.cosim.engines.python_imports import imports_undone
 from shipcosim.cosim.master.plan import End
-from shipcosim.errors import ShipcosimError, error_at
+from shipcosim.errors import error_at, raise_errors
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System
@@ -48,8 +48,7 @@ def run(system: System, scenario: Scenario, options: RunOptions) -> xarray.Datas
     """Run a checked system on libcosim. See `shipcosim.cosim.simulate`."""
     check_installed()
     job = Job(system, scenario, options)
-    if problems := unsupported_by_libcosim(job):
-        raise ShipcosimError(problems)
+    raise_errors(unsupported_by_libcosim(job))
     return run_on("libcosim", LibcosimSession, job, {"libcosimpy_version": version("libcosimpy")})
 
 

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Callable, Iterator, Mapping
 
-from shipcosim.cosim.engines.adapter import Job, is_linear, sums, unsupported
+from shipcosim.cosim.engines.adapter import Job, sums, unsupported
 from shipcosim.cosim.master.events import SignalChange
 from shipcosim.errors import Problem
 from shipcosim.ssp import Connection, Simulator, seconds_text, structure_text
@@ -92,7 +92,7 @@ def _complaint_of(job: Job) -> Callable[[Connection], str | None]:
         # OSP has functions for a linear transformation and for a sum, but not for both in one.
         return (
             "it is transformed and added to others"
-            if connection in added and is_linear(connection)
+            if connection in added and connection.is_linear
             else None
         )
 

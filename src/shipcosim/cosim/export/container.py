@@ -149,7 +149,7 @@ def _repeated(system):
 
 def _connection_faults(connection, system, targets):
     """Sentences on what the container would do differently for a connection."""
-    if (connection.factor, connection.offset) != (1.0, 0.0):
+    if connection.is_linear:
         yield (
             f"the value is multiplied by {connection.factor:g} and {connection.offset:g} added "
             "(unit conversion or linear transformation)."

@@ -134,24 +134,23 @@ def _common_start(system, signal, ends, problems):
 
 def _variables(system, fed):
     """Outputs and parameters of the components, and inputs that nothing feeds."""
-    for component in system.components.values():
-        for variable in component.variables.values():
-            end = component.name, variable.name
-            if variable.causality in ("input", "parameter") and end not in fed:
-                start = component.start_value(variable.name)
-            elif variable.causality == "output":
-                start = None
-            else:
-                continue
-            yield ContainerVariable(
-                label(end),
-                variable.causality,
-                variable,
-                (end,),
-                start,
-                variable.unit,
-                variable.description,
-            )
+    for component, variable in system.all_variables():
+        end = component.name, variable.name
+        if variable.causality in ("input", "parameter") and end not in fed:
+            start = component.start_value(variable.name)
+        elif variable.causality == "output":
+            start = None
+        else:
+            continue
+        yield ContainerVariable(
+            label(end),
+            variable.causality,
+            variable,
+            (end,),
+            start,
+            variable.unit,
+            variable.description,
+        )
 
 
 def _is_shown(one, system, problems, severity):

@@ -10,7 +10,7 @@ from shipcosim.cosim.engines.adapter import Job
 from shipcosim.cosim.engines.osp_job import event_of, structure_of, unsupported_by_libcosim
 from shipcosim.cosim.master.events import SignalChange
 from shipcosim.cosim.master.plan import KINDS
-from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors
+from shipcosim.errors import Problem, error_at, raise_errors
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario, check_scenario, units_of, with_numbers
 from shipcosim.scenario.osp import scenario_text
@@ -58,8 +58,7 @@ def osp_files(
     scenario = with_numbers(scenario, units_of(system))
     job = Job(system, scenario, RunOptions())
     problems = [*unsupported_by_libcosim(job), *_values_problems(job)]
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     # FMUs get plain names in the folder, and the structure refers to them by these.
     names = _file_names(system)
     sources = {

@@ -510,6 +510,3 @@ class _CompiledLoop:
 
     def _whole(self, numbers):
         return self._pointer(np.array(list(numbers), dtype=np.int64))
-
-    def _real(self, numbers):
-        return self._pointer(np.array(list(numbers), dtype=float))

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES, Slave
-from shipcosim.ssp import Variable
+from shipcosim.ssp import Connection, Variable
 
 
 @dataclass
@@ -68,26 +68,15 @@ class ParameterConnection:
     ----------
     source, target : Port
         Its ends.
-    factor, offset : float
-        Linear transformation; 1 and 0 leave the value untouched.
-    mapping : mapping, optional
-        Replaces values before that; those that are not in it stay as they are.
+    how : Connection
+        What happens to the value on the way.
     """
 
-    def __init__(
-        self,
-        source: Port,
-        target: Port,
-        factor: float = 1.0,
-        offset: float = 0.0,
-        mapping: Mapping | None = None,
-    ):
+    def __init__(self, source: Port, target: Port, how: Connection):
         self.place = f"{source.slave.name}.{source.variable.name} -> {target.slave.name}.{target.variable.name}"
         self._source = source.slave
         self._target = target.slave
-        self._factor = factor
-        self._offset = offset
-        self._mapping = mapping or {}
+        self._how = how
         self._from = np.zeros(1, dtype=BUFFER_TYPES[source.kind])
         self._to = np.zeros(1, dtype=BUFFER_TYPES[target.kind])
         self._get = source.slave.getter(source.kind, [source.variable], self._from)
@@ -98,9 +87,11 @@ class ParameterConnection:
         """Pass the value on; true if it has changed."""
         self._source.check("Get", self._get())
         # The mapping comes first, then the linear transformation, as SSP orders them.
-        value = self._mapping.get(self._from[0].item(), self._from[0].item())
-        if (self._factor, self._offset) != (1.0, 0.0):
-            value = self._factor * value + self._offset
+        value = self._from[0].item()
+        if self._how.mapping is not None:
+            value = self._how.mapping.get(value, value)
+        if self._how.is_linear:
+            value = self._how.factor * value + self._how.offset
         # The start iterates until nothing changes, so each transfer reports a change.
         changed = not self._is_made or value != self._to[0]
         self._to[0], self._is_made = value, True

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.errors import Problem, ShipcosimError, error_at, shortened, suggestion
+from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors, shortened, suggestion
 from shipcosim.series import conversion
 
 if TYPE_CHECKING:
@@ -65,8 +65,7 @@ def input_values(table: xarray.Dataset, system: System, times: np.ndarray) -> di
 def _values(table, system, times):
     clock = table["time"].values.astype(float)
     problems = [*_unknown(table, system), *_clock_problems(clock)]
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     # Only rows that the run needs are checked: gaps and NaN elsewhere do no harm.
     rows = _rows(clock, times)
     problems = list(_gaps(table, clock[rows]))
@@ -77,8 +76,7 @@ def _values(table, system, times):
             fed[str(name)] = _column(table[name][rows], system.inputs[name], clock[rows], times)
         except ShipcosimError as error:
             problems += [Problem(f"inputs: {name}", p.found, p.remedy) for p in error.problems]
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     return fed
 
 
@@ -117,8 +115,7 @@ def interpolated(table: xarray.Dataset, system: System, names: Iterable[str]) ->
             )
         for name in matching:
             table[name].attrs["interpolation"] = "linear"
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     return table
 
 

@@ -144,8 +144,7 @@ def make_parameter_connections(plan: Plan, components: Components) -> list[Param
         return Port(_instance(components, end).slave, plan.variable(end), plan.kind_of(end))
 
     return [
-        ParameterConnection(port(c.source), port(c.target), c.factor, c.offset, c.mapping)
-        for c in plan.parameter_connections
+        ParameterConnection(port(c.source), port(c.target), c) for c in plan.parameter_connections
     ]
 
 

@@ -7,7 +7,7 @@ from math import lcm
 from shipcosim.cosim.master.signals import InputConnection
 from shipcosim.cosim.slaves.interface_type import interface_type_of, missing_interface_type
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, raise_errors
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import Connection, System, Variable
 from shipcosim.ssp.flatten.array_sizes import RESIZE, resized
@@ -161,8 +161,7 @@ def make_plan(
     problems = [
         p for c in system.components.values() for p in _component_problems(c, base, duration)
     ]
-    if problems := problems + list(_connection_problems(system)):
-        raise ShipcosimError(problems)
+    raise_errors(problems + list(_connection_problems(system)))
     # Variables that events change need a row of their own, even if nothing feeds them.
     ends = {system.split(signal) for event in scenario.events for _, signal, _ in event.changes}
     ends |= {system.split(signal) for signal in modified}
@@ -203,11 +202,7 @@ def _sorted_connections(plan, from_table):
 
 def _kinds(system):
     # One FMU with wide integers widens the integers of the whole system: an exchange has one type.
-    types = {
-        variable.type
-        for component in system.components.values()
-        for variable in component.variables.values()
-    }
+    types = {variable.type for component, variable in system.all_variables()}
     return KINDS | ({"Integer": "Long", "Enumeration": "Long"} if types.intersection(WIDE) else {})
 
 
@@ -272,7 +267,7 @@ def passes_own_start(connection: Connection, system: System) -> bool:
     own = system.components[component]
     return (
         variable not in own.start
-        and (connection.factor, connection.offset) == (1.0, 0.0)
+        and not connection.is_linear
         and own.start_value(variable) == start
     )
 
@@ -294,25 +289,23 @@ def _lay_out(plan, by_input):
     """Give each value a row: outputs first, since inputs refer to their rows."""
     # Any variable can be a source, for example a parameter that feeds another component.
     sources = {connection.source for connections in by_input.values() for connection in connections}
-    for component in plan.system.components.values():
-        for variable in component.variables.values():
-            end = (component.name, variable.name)
-            kind = plan.kind(variable)
-            if kind is not None and (variable.causality == "output" or end in sources):
-                plan.layouts[kind].outputs.append(end)
+    for component, variable in plan.system.all_variables():
+        end = (component.name, variable.name)
+        kind = plan.kind(variable)
+        if kind is not None and (variable.causality == "output" or end in sources):
+            plan.layouts[kind].outputs.append(end)
     # Inputs have a row if something feeds or changes them; others keep their start value in the
     # FMU.
-    for component in plan.system.components.values():
-        for variable in component.variables.values():
-            end = component.name, variable.name
-            if end in by_input or (end in plan.modified and variable.causality != "output"):
-                layout = plan.layouts[plan.kind(variable)]
-                layout.inputs.append(end)
-                # The first connection carries the others as terms of a sum.
-                first, *more = [
-                    _input_connection(plan, layout, end, c) for c in by_input.get(end, [None])
-                ]
-                layout.connections.append(replace(first, added=tuple(more)))
+    for component, variable in plan.system.all_variables():
+        end = component.name, variable.name
+        if end in by_input or (end in plan.modified and variable.causality != "output"):
+            layout = plan.layouts[plan.kind(variable)]
+            layout.inputs.append(end)
+            # The first connection carries the others as terms of a sum.
+            first, *more = [
+                _input_connection(plan, layout, end, c) for c in by_input.get(end, [None])
+            ]
+            layout.connections.append(replace(first, added=tuple(more)))
 
 
 def _input_connection(plan, layout, end, connection):

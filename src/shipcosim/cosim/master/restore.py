@@ -13,7 +13,7 @@ from shipcosim.cosim.master.time_grid import TimeGrid
 from shipcosim.cosim.slaves.interface_type import interface_type_of
 from shipcosim.cosim.slaves.pythonfmu_code import stores_registered_alone
 from shipcosim.cosim.slaves.slave import SlaveError
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, raise_errors
 from shipcosim.scenario import Scenario
 from shipcosim.snapshot import Snapshot
 from shipcosim.ssp import System
@@ -50,8 +50,7 @@ def check_storable(system: System) -> None:
             found = f"{fmu.path.name} stores its registered variables alone: PythonFMU loses what else it keeps."
             remedy = "Give its class _get_fmu_state and _set_fmu_state, or run the system without storing it."
             problems.append(Problem(component.name, found, remedy))
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
 
 
 def check_fit(snapshot: Snapshot, system: System, scenario: Scenario) -> None:
@@ -72,8 +71,7 @@ def check_fit(snapshot: Snapshot, system: System, scenario: Scenario) -> None:
         problems += _changed_fmus(snapshot, system, where) or _changed_values(
             snapshot, system, where
         )
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
 
 
 def _changed_fmus(snapshot, system, where):

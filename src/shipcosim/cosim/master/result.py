@@ -89,37 +89,30 @@ def _passed_on(values, connection):
         values = np.array(
             [connection.mapping.get(v, v) for v in values.tolist()], dtype=values.dtype
         )
-    if (connection.factor, connection.offset) != (1.0, 0.0):
+    if connection.is_linear:
         values = connection.factor * values + connection.offset
     return values
 
 
 def _variables(plan, values, n):
     """Columns of the components' outputs and external values, in the order of system and FMUs."""
-    for component in plan.system.components.values():
-        for variable in component.variables.values():
-            end = (component.name, variable.name)
-            kind = plan.kind(variable)
-            column = values.get(end)
-            # An input that nothing feeds is constant: its start value.
-            if (
-                column is None
-                and kind
-                and variable.causality == "input"
-                and end not in plan.connected
-            ):
-                start = component.start_value(variable.name) or 0
-                column = np.full(n, start, dtype=bool if kind == "Boolean" else BUFFER_TYPES[kind])
-            if column is not None and variable.causality in ("input", "output", "parameter"):
-                yield label(end), column, variable.unit or "", variable.description
+    for component, variable in plan.system.all_variables():
+        end = (component.name, variable.name)
+        kind = plan.kind(variable)
+        column = values.get(end)
+        # An input that nothing feeds is constant: its start value.
+        if column is None and kind and variable.causality == "input" and end not in plan.connected:
+            start = component.start_value(variable.name) or 0
+            column = np.full(n, start, dtype=bool if kind == "Boolean" else BUFFER_TYPES[kind])
+        if column is not None and variable.causality in ("input", "output", "parameter"):
+            yield label(end), column, variable.unit or "", variable.description
 
 
 def start_values(system: System) -> dict:
     """Start values of all parameters, and of everything else that the system sets, by signal."""
     return {
         label((component.name, variable.name)): component.start_value(variable.name)
-        for component in system.components.values()
-        for variable in component.variables.values()
+        for component, variable in system.all_variables()
         if variable.causality == "parameter" or variable.name in component.start
     }
 

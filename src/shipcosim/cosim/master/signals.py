@@ -37,6 +37,11 @@ class InputConnection:
     added: tuple[InputConnection, ...] = ()
 
     @property
+    def is_linear(self) -> bool:
+        """Whether factor and offset change values."""
+        return (self.factor, self.offset) != (1.0, 0.0)
+
+    @property
     def terms(self) -> tuple[InputConnection, ...]:
         """The connections that make up a sum; none where nothing is added."""
         return (replace(self, added=()), *self.added) if self.added else ()
@@ -50,7 +55,7 @@ class InputConnection:
             if self.mapping is None
             else np.array([self.mapping.get(v, v) for v in values.tolist()])
         )
-        if (self.factor, self.offset) != (1.0, 0.0):
+        if self.is_linear:
             passed = self.factor * passed + self.offset
         return passed.astype(values.dtype)
 
@@ -264,11 +269,7 @@ class _ConnectionGroup:
         self.is_all = len(rows) == n
         self.sources = np.array([connection.source for connection in due], dtype=int)
         # Only transformed rows are multiplied: others stay exact to the last bit.
-        linear = [
-            i
-            for i, connection in enumerate(due)
-            if (connection.factor, connection.offset) != (1.0, 0.0)
-        ]
+        linear = [i for i, connection in enumerate(due) if connection.is_linear]
         self.linear = np.array(linear, dtype=int)
         self.factor = np.array([due[i].factor for i in linear])
         self.offset = np.array([due[i].offset for i in linear])

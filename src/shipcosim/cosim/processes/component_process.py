@@ -102,9 +102,9 @@ class ComponentProcess:
             raise RunEnded if result is RunEnded else SlaveError(result)
         return result
 
-    def notify(self, what: str, function: str, *arguments: Any) -> None:
-        """Send a request without an answer; an error comes with the next answer."""
-        self._within(what, self._timeout, send, self._requests, (False, function, *arguments))
+    def notify(self, what: str, *arguments: Any) -> None:
+        """Send a request to set values, without an answer; an error comes with the next answer."""
+        self._within(what, self._timeout, send, self._requests, (False, "set", *arguments))
 
     def _within(self, what, limit, action, *arguments: Any):
         # The watchdog compares this deadline with the clock, and ends the process if it is late.

@@ -55,7 +55,7 @@ class RemoteSlave(Slave):
         # No answer is awaited, so that all components can be sent their inputs at once.
         def set_all():
             self._finish()
-            self._process.notify(what, "set", what, number, buffer.tobytes())
+            self._process.notify(what, what, number, buffer.tobytes())
             return OK
 
         return set_all

@@ -9,7 +9,6 @@ Reference: FMI 1.0.1 for co-simulation, section 3; FMI 1.0.1 for model exchange,
 from ctypes import byref, c_char, c_double, c_int, c_size_t
 from functools import partial
 from math import inf
-from typing import Any
 
 import numpy as np
 
@@ -103,18 +102,12 @@ class Slave1(LibrarySlave):
     def _symbol(self, function):
         return f"{self._identifier}_fmi{function}"
 
-    @staticmethod
-    def _load(**arguments) -> Any:
-        from fmpy.fmi1 import FMU1Slave
-
-        slave = FMU1Slave(**arguments)
-        for name in ("InitializeSlave", "DoStep"):  # FMPy 0.3.32 takes their status for a text
-            getattr(slave.dll, f"{arguments['modelIdentifier']}_fmi{name}").restype = c_int
-        return slave
-
     def _instantiate(self):
         from fmpy import calloc, fmi1, free
 
+        # FMPy 0.3.32 takes the status of these for a text.
+        for name in ("InitializeSlave", "DoStep") if self._form == "Slave" else ():
+            getattr(self._fmu.dll, self._symbol(name)).restype = c_int
         callbacks = fmi1.fmi1CallbackFunctions()
         callbacks.allocateMemory = fmi1.fmi1CallbackAllocateMemoryTYPE(calloc)
         callbacks.freeMemory = fmi1.fmi1CallbackFreeMemoryTYPE(free)
@@ -142,19 +135,17 @@ class Model1(ModelExchange, Slave1):
         """Raise SlaveError: models of FMI 1.0 cannot be reset."""
         raise SlaveError("A model of FMI 1.0 cannot be reset.")
 
-    def _sizes(self):
-        return self._description.n_states, self._description.n_event_indicators
-
     def _leave_initialisation(self):
-        self._mode = EVENT
+        self.mode = EVENT
 
     def _enter_event_mode(self):
-        self._mode = EVENT
+        self.mode = EVENT
 
     def _leave_event_mode(self):
-        self._mode = CONTINUOUS
+        self.mode = CONTINUOUS
 
-    def _completed_step(self):
+    def completed_step(self) -> bool:
+        """Tell the FMU that a solver step is done; true if it asks for an event."""
         event = c_char()
         self.call("CompletedIntegratorStep", byref(event))
         return event.value != FALSE
@@ -173,9 +164,3 @@ class Model1(ModelExchange, Slave1):
         from fmpy.fmi1 import fmi1EventInfo
 
         return fmi1EventInfo()
-
-    @staticmethod
-    def _load(**arguments) -> Any:
-        from fmpy.fmi1 import FMU1Model
-
-        return FMU1Model(**arguments)

@@ -6,7 +6,6 @@ Reference: FMI 2.0.4, section 4.
 from contextlib import suppress
 from ctypes import byref, c_double, c_int, c_size_t
 from functools import partial
-from typing import Any
 from urllib.parse import unquote_to_bytes
 
 import numpy as np
@@ -82,12 +81,6 @@ class Slave2(LibrarySlave):
             c_size_t(len(variables)),
             pointer.from_buffer(buffer),
         )
-
-    @staticmethod
-    def _load(**arguments) -> Any:
-        from fmpy.fmi2 import FMU2Slave
-
-        return FMU2Slave(**arguments)
 
     def _instantiate(self):
         from fmpy import calloc, fmi2, free

@@ -192,12 +192,6 @@ class Slave3(LibrarySlave):
             values = _start_values(variable, 0) if kept is None else kept
             group.values[first : first + len(values)] = values
 
-    @staticmethod
-    def _load(**arguments) -> Any:
-        from fmpy.fmi3 import FMU3Slave
-
-        return FMU3Slave(**arguments)
-
     def _instantiate(self):
         self._array_values = {}  # values that arrays were set to, by value reference
         self._fmu.instantiate(

@@ -47,6 +47,7 @@ class LibrarySlave(Slave):
     """
 
     _prefix: str
+    _form = "Slave"  # or "Model": which of FMPy's classes loads it
     _state_calls: Mapping[str, str]
     _fmu: Any  # FMPy's
     component: Any
@@ -61,10 +62,14 @@ class LibrarySlave(Slave):
         self._is_container = (Path(folder) / "resources" / "container.json").is_file()
         if problem := library_problem(folder, self._prefix[-1], identifier):
             raise SlaveError(problem)
+        from fmpy import fmi1, fmi2, fmi3
+
+        versions = {"fmi1": fmi1, "fmi2": fmi2, "fmi3": fmi3}
+        fmpy_class = getattr(versions[self._prefix], f"FMU{self._prefix[-1]}{self._form}")
         # Loading may change the working directory; it is restored in any case.
         here = os.getcwd()
         try:
-            self._fmu = self._load(
+            self._fmu = fmpy_class(
                 guid=token,
                 modelIdentifier=identifier,
                 unzipDirectory=str(folder),
@@ -262,11 +267,6 @@ class LibrarySlave(Slave):
     def _note(self, status, text):
         if status != OK and len(self._messages) < MOST_MESSAGES:
             self._messages.append((status, text))
-
-    @staticmethod
-    def _load(**arguments: Any) -> Any:
-        """FMPy's object for an FMU of this version."""
-        raise NotImplementedError
 
     def _instantiate(self) -> None:
         """Instantiate the FMU, with logging."""

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from ctypes import POINTER, byref, c_bool, c_double, c_int, c_size_t
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -83,17 +83,27 @@ class ModelExchange(LibrarySlave):
         Inputs that follow other components within a step, as `shipcosim.cosim.slaves.coupled` carries them over.
     close_group : callable or None
         Frees the solver of the group that this one makes the steps of; called when this one is freed.
+    tolerance : float
+        Relative tolerance of the solver that its default experiment asks for.
+    mode : str or None
+        Event mode, continuous-time mode, or None before the end of the initialisation.
+    next_event : float
+        Time of its next event; infinite where it knows none. [s]
+    n_states : int
+        Number of continuous states; known from the end of the initialisation on.
     """
 
+    _form = "Model"
     DERIVATIVES = "GetDerivatives"
     NOMINALS = "GetNominalsOfContinuousStates"
 
     def __init__(self, name: str, folder: Path, fmu: FmuDescription):
         self._description = fmu
         self._capabilities = fmu.interfaces["ModelExchange"]
-        self._mode: str | None = None
+        self.tolerance = fmu.experiment.get("tolerance", TOLERANCE)
+        self.mode: str | None = None
         self._solver: Cvode | None = None
-        self._next_event = inf
+        self.next_event = inf
         self._is_event_done = False
         self.followed: frozenset[tuple[str, str]] = frozenset()
         self.close_group: Callable[[], None] | None = None
@@ -112,10 +122,10 @@ class ModelExchange(LibrarySlave):
             values = buffer.tobytes()
             held_values = values if held.all() else buffer[held].tobytes()
             # Unchanged inputs need no call. Changes of followed inputs alone need no event either.
-            if values == last or (self._mode == CONTINUOUS and held_values == last_held):
+            if values == last or (self.mode == CONTINUOUS and held_values == last_held):
                 return OK
             # A jump of an input is an event: FMI allows discontinuities only in event mode.
-            if self._mode == CONTINUOUS:
+            if self.mode == CONTINUOUS:
                 self._enter_event_mode()
             self._is_event_done = False
             last = values
@@ -145,16 +155,14 @@ class ModelExchange(LibrarySlave):
 
         # Number of states and indicators may depend on parameters, so ask now.
         self._leave_initialisation()
-        self._n, self._n_indicators = self._sizes()
-        if self._n > MOST_STATES:
+        self.n_states, self._n_indicators = self._sizes()
+        if self.n_states > MOST_STATES:
             raise SlaveError(
-                f"It has {self._n} continuous states; at most {MOST_STATES} are integrated."
+                f"It has {self.n_states} continuous states; at most {MOST_STATES} are integrated."
             )
-        # The FMU's default experiment may ask for its own tolerance.
-        tolerance = self._description.experiment.get("tolerance", TOLERANCE)
         self._close_solver()
         self._solver = solver = Cvode(
-            self._n, self._derivatives, self._n_indicators, self._indicators, tolerance
+            self.n_states, self._derivatives, self._n_indicators, self._indicators, self.tolerance
         )
         self._states = solver.states.ctypes.data_as(POINTER(c_double))
         self._events = EventIndicators(self._n_indicators, self._get_indicators)
@@ -164,7 +172,7 @@ class ModelExchange(LibrarySlave):
     def reset(self) -> None:
         """Bring the instance back to where it was when it was made."""
         self._close_solver()
-        self._mode = None
+        self.mode = None
         super().reset()
 
     def free(self) -> None:
@@ -173,26 +181,6 @@ class ModelExchange(LibrarySlave):
         super().free()
 
     # ------------------------------------------------------- what a group with one solver needs
-
-    @property
-    def n_states(self) -> int:
-        """Number of continuous states; known from the end of the initialisation on."""
-        return self._n
-
-    @property
-    def tolerance(self) -> float:
-        """Relative tolerance of the solver that its default experiment asks for."""
-        return self._description.experiment.get("tolerance", TOLERANCE)
-
-    @property
-    def mode(self) -> str | None:
-        """Event mode, continuous-time mode, or None before the end of the initialisation."""
-        return self._mode
-
-    @property
-    def next_event(self) -> float:
-        """Time of its next event; infinite where it knows none. [s]"""
-        return self._next_event
 
     def plain_setter(self, kind: str, variables: Variables, buffer: np.ndarray) -> Call:
         """Prepared call that sets variables of one kind without an event."""
@@ -210,15 +198,11 @@ class ModelExchange(LibrarySlave):
 
     def derivatives_into(self, derivatives: np.ndarray) -> int:
         """Get the derivatives into an (n_states,) array; return the solver's status."""
-        if not self._n:
+        if not self.n_states:
             return 0
         return self._status_for_solver(
-            self.DERIVATIVES, derivatives.ctypes.data_as(POINTER(c_double)), self._n
+            self.DERIVATIVES, derivatives.ctypes.data_as(POINTER(c_double)), self.n_states
         )
-
-    def completed_step(self) -> bool:
-        """Tell the FMU that a solver step is done; true if it asks for an event."""
-        return self._completed_step()
 
     def handle_event(self, time: float) -> None:
         """Handle the event that is due, and stay in event mode."""
@@ -230,14 +214,16 @@ class ModelExchange(LibrarySlave):
         """Enter continuous time at a time; fill states and nominal values, (n_states,) arrays."""
         self._time = time
         # After a changed input the event iteration is still due.
-        if self._mode == EVENT:
+        if self.mode == EVENT:
             if not self._is_event_done:
                 self._iterate_event()
             self._leave_event_mode()
         # An event may have changed the states: read them back.
-        if self._n:
-            self.call("GetContinuousStates", states.ctypes.data_as(POINTER(c_double)), self._n)
-            self.call(self.NOMINALS, nominals.ctypes.data_as(POINTER(c_double)), self._n)
+        if self.n_states:
+            self.call(
+                "GetContinuousStates", states.ctypes.data_as(POINTER(c_double)), self.n_states
+            )
+            self.call(self.NOMINALS, nominals.ctypes.data_as(POINTER(c_double)), self.n_states)
 
     def _close_solver(self):
         if self.close_group is not None:
@@ -255,15 +241,15 @@ class ModelExchange(LibrarySlave):
         n_events = 0
         counted_from = time
         # Inputs set since the last step have put the FMU into event mode.
-        if self._mode == EVENT:
+        if self.mode == EVENT:
             self._time = time
             self._enter_continuous_time()
         while True:
             # A time event may be due at once, also at the end of the step.
-            if self._next_event > self._time + near:
+            if self.next_event > self._time + near:
                 if self._time >= end - near:
                     return
-                stop = min(end, self._next_event)
+                stop = min(end, self.next_event)
                 # An indicator that is zero now has its sign a little later.
                 if self._events.may_be_zero:
                     is_event = self._pass_zero(min(self._time + farthest, stop))
@@ -299,7 +285,7 @@ class ModelExchange(LibrarySlave):
         # The FMU's last evaluation may lie elsewhere, at a trial point of the solver.
         self._set_time_and_states(self._time, self._states)
         # Step event: the FMU asks for one. State event: an indicator has changed its sign.
-        if self._completed_step() or self._events.has_changed():
+        if self.completed_step() or self._events.has_changed():
             return True
         # A root is often exactly zero. FMUs that compare with < and > see no change there.
         self._events.may_be_zero = has_root
@@ -313,9 +299,9 @@ class ModelExchange(LibrarySlave):
         """
         self._events.may_be_zero = False
         start = self._time
-        states = np.ctypeslib.as_array(self._states, (max(self._n, 1),))
+        states = np.ctypeslib.as_array(self._states, (max(self.n_states, 1),))
         before = states.copy()
-        rates = np.zeros(max(self._n, 1))
+        rates = np.zeros(max(self.n_states, 1))
         self.derivatives_into(rates)
         # The first try is a few roundings of the time long.
         past = 2 * np.spacing(max(abs(start), farthest - start))
@@ -339,7 +325,7 @@ class ModelExchange(LibrarySlave):
     def _iterate_event(self):
         """Event iteration: update the discrete states until they no longer change."""
         for _ in range(MOST_ITERATIONS):
-            needs_update, terminates, self._next_event = self._update_discrete_states()
+            needs_update, terminates, self.next_event = self._update_discrete_states()
             if terminates:
                 raise RunEnded
             if not needs_update:
@@ -351,35 +337,30 @@ class ModelExchange(LibrarySlave):
 
     def _enter_continuous_time(self):
         """Continue in continuous time, from the FMU's present states and nominal values."""
-        if not self._is_event_done:
-            self._iterate_event()
-        self._leave_event_mode()
-        nominals = np.ones(self._n)
-        if self._n:
-            self.call("GetContinuousStates", self._states, self._n)
-            self.call(self.NOMINALS, nominals.ctypes.data_as(POINTER(c_double)), self._n)
+        assert self._solver is not None  # since the initialisation
+        nominals = np.ones(self.n_states)
+        self.enter_continuous(self._time, self._solver.states, nominals)
         # A zero gets its sign when time goes on.
         self._events.keep()
-        assert self._solver is not None  # since the initialisation
         self._solver.start(self._time, nominals)
 
     def _enter_event_mode(self):
         self.call("EnterEventMode")
-        self._mode = EVENT
+        self.mode = EVENT
 
     def _leave_event_mode(self):
         self.call("EnterContinuousTimeMode")
-        self._mode = CONTINUOUS
+        self.mode = CONTINUOUS
 
     def _leave_initialisation(self):
         self.call("ExitInitializationMode")
-        self._mode = EVENT
+        self.mode = EVENT
 
     def _sizes(self) -> tuple[int, int]:
         """Numbers of continuous states and of event indicators."""
-        raise NotImplementedError
+        return self._description.n_states, self._description.n_event_indicators
 
-    def _completed_step(self) -> bool:
+    def completed_step(self) -> bool:
         """Tell the FMU that a solver step is done; true if it asks for an event."""
         raise NotImplementedError
 
@@ -388,7 +369,7 @@ class ModelExchange(LibrarySlave):
 
     def _derivatives(self, time, states, derivatives):
         self._set_time_and_states(time, states)
-        return self._status_for_solver(self.DERIVATIVES, derivatives, self._n)
+        return self._status_for_solver(self.DERIVATIVES, derivatives, self.n_states)
 
     def _indicators(self, time, states, values):
         self._set_time_and_states(time, states)
@@ -396,8 +377,8 @@ class ModelExchange(LibrarySlave):
 
     def _set_time_and_states(self, time, states):
         self.call("SetTime", time)
-        if self._n:
-            self.call("SetContinuousStates", states, self._n)
+        if self.n_states:
+            self.call("SetContinuousStates", states, self.n_states)
 
     def _status_for_solver(self, function, values, n):
         """Status for the solver: if the FMU discards, the solver tries a smaller step."""
@@ -413,16 +394,7 @@ class ModelExchange(LibrarySlave):
 class Model2(ModelExchange, Slave2):
     """An instance of an FMU of FMI 2.0 for model exchange."""
 
-    @staticmethod
-    def _load(**arguments) -> Any:
-        from fmpy.fmi2 import FMU2Model
-
-        return FMU2Model(**arguments)
-
-    def _sizes(self):
-        return self._description.n_states, self._description.n_event_indicators
-
-    def _completed_step(self):
+    def completed_step(self):
         if is_true(self._capabilities.get("completedIntegratorStepNotNeeded")):
             return False
         event = c_int()
@@ -448,12 +420,6 @@ class Model3(ModelExchange, Slave3):
 
     DERIVATIVES = "GetContinuousStateDerivatives"
 
-    @staticmethod
-    def _load(**arguments) -> Any:
-        from fmpy.fmi3 import FMU3Model
-
-        return FMU3Model(**arguments)
-
     def _sizes(self):
         sizes = c_size_t(), c_size_t()
         for function, size in zip(
@@ -462,7 +428,7 @@ class Model3(ModelExchange, Slave3):
             self.call(function, byref(size))
         return sizes[0].value, sizes[1].value
 
-    def _completed_step(self):
+    def completed_step(self):
         if not is_true(self._capabilities.get("needsCompletedIntegratorStep")):
             return False
         event = c_bool()

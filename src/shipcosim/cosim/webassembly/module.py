@@ -116,7 +116,7 @@ def _written(cls: Any, component: Component) -> str:
     words = sys.modules[f"{package}.shipcosim.fmi.failures"].text_of
     with understood(package):
         variant = variant_of(cls, component.start, cls.default_step_size)
-        return source_of_model(cls, component.fmu.path.stem, "", [variant], words)
+        return source_of_model(cls, component.fmu.path.stem, [variant], words)
 
 
 def _guid(text: str) -> str:

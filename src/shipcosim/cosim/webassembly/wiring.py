@@ -124,11 +124,10 @@ class Wiring:
     def _table(self, head: str, rows: Sequence[str]) -> None:
         self._lines += [f"{head} = {{", *(f"    {row}," for row in rows), "};"]
 
-    def _array(self, name: str, kind: str, values: Iterable[Any], changes: bool = False) -> str:
+    def _array(self, name: str, kind: str, values: Iterable[Any]) -> str:
         """Write an array and return its name; one number more, since C has no empty ones."""
         numbers = [literal(float(v)) if kind == "double" else str(int(v)) for v in values]
-        const = "" if changes else "const "
-        self._lines.append(f"static {const}{kind} {name}[] = {{{', '.join([*numbers, '0'])}}};")
+        self._lines.append(f"static const {kind} {name}[] = {{{', '.join([*numbers, '0'])}}};")
         return name
 
     def _exchange(self, number: int, kind: str, exchange: Exchange) -> str:

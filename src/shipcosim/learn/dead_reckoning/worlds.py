@@ -182,7 +182,6 @@ def scenario_of(
     world: World,
     duration: float = DURATION,
     losses: Sequence[tuple[float, float]] = (),
-    variant: str = "kinetic",
 ) -> Scenario:
     """The run of a world: the wind changes over seven minutes, then holds.
 
@@ -194,8 +193,6 @@ def scenario_of(
         How long. [s]
     losses : sequence of two floats
         From when to when GNSS is lost, and DP rides on dead reckoning. [s]
-    variant : str
-        What reckons then.
 
     Returns
     -------
@@ -220,7 +217,7 @@ def scenario_of(
         "sensors.position_1_north": world.position_bias[0],
         "sensors.position_1_east": world.position_bias[1],
         "sensors.compass_1_offset": world.compass_error,
-        "reckoning.variant": variant,
+        "reckoning.variant": "kinetic",
     }
     # Targets of speed and direction, given at time 0 and reached at these rates.
     wind = {
@@ -249,7 +246,6 @@ def recorded(
     duration: float,
     progress: Progress,
     losses: Sequence[tuple[float, float]] = (),
-    variant: str = "kinetic",
 ) -> Record:
     """Records of worlds by co-simulation, one after the other.
 
@@ -261,7 +257,7 @@ def recorded(
         How long each. [s]
     progress : callable
         Is told how many are done, and of how many.
-    losses, variant
+    losses
         As in `scenario_of`.
 
     Returns
@@ -273,7 +269,7 @@ def recorded(
     tables = []
     system = system_of(scenario_of(worlds[0], duration))
     for number, world in enumerate(worlds, 1):
-        tables.append(simulate(system, scenario_of(world, duration, losses, variant)))
+        tables.append(simulate(system, scenario_of(world, duration, losses)))
         progress(number, len(worlds))
 
     def stacked(signal):

@@ -63,7 +63,7 @@ def build_native_fmu(
             found = list(_variants(cls, examples))
             variants = [variant for variant, _ in found]
             values = [given for _, given in found]
-            text = source_of_model(cls, script.stem, "", variants, words)
+            text = source_of_model(cls, script.stem, variants, words)
         try:
             # The GUID is the hash of description and text without a GUID: the same model gives the
             # same GUID. It then goes into both.

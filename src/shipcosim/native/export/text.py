@@ -22,16 +22,14 @@ _VALUES = re.compile(r"\b(?:[vpc]|start_|step_)[0-9]+\b")
 TYPES = {"Real": "REAL", "Integer": "INTEGER", "Boolean": "BOOLEAN", "String": "STRING"}
 
 
-def source_of_model(
-    cls: Any, identifier: str, guid: str, variants: Sequence[Variant], words: Callable
-) -> str:
-    """Write the whole C text of an FMU.
+def source_of_model(cls: Any, identifier: str, variants: Sequence[Variant], words: Callable) -> str:
+    """Write the whole C text of an FMU, without its GUID, which depends on it.
 
     Parameters
     ----------
     cls : type of Fmu
         The class.
-    identifier, guid : str
+    identifier : str
         As in the model description.
     variants : sequence of Variant
         At least one.
@@ -61,7 +59,7 @@ def source_of_model(
     ]
     head = [
         f"#define IDENTIFIER {c_text(identifier)}",
-        f"#define GUID {c_text(guid)}",
+        '#define GUID ""',
         # Sizes for the C runtime: one instance has room for the largest variant.
         f"enum {{ N_VARIABLES = {len(cls.variables)}, N_VARIANTS = {len(variants)}, N_OUTPUTS = {len(outputs)},",
         f"       MOST_MEMORY = {max(variant.size for variant in variants)}, MOST_KEPT = {max(kept)} }};",
@@ -151,9 +149,7 @@ class ModelWriter(Writer):
         """Write the function and, before it, the functions that it calls."""
         called = []
         for call in self.recording.calls:
-            name, text = _Procedure(
-                procedure_of(call), "kept", self._words, self._others
-            ).named_function()
+            name, text = _Procedure(procedure_of(call), self._words, self._others).named_function()
             self._names.append(name)
             called.append(text)
         self._block(self.step.root, 1, self._finish)
@@ -220,8 +216,8 @@ class ModelWriter(Writer):
 class _Procedure(ModelWriter):
     """Writes a function with cached results: arguments in `m`, results in `k`."""
 
-    def __init__(self, procedure: Any, name: str, words: Callable, others: dict[str, str]):
-        super().__init__(procedure, name, words, lambda place: place, 0, others)
+    def __init__(self, procedure: Any, words: Callable, others: dict[str, str]):
+        super().__init__(procedure, "kept", words, lambda place: place, 0, others)
 
     def named_function(self) -> tuple[str, str]:
         """Its name and text; the text is empty if an equal function exists."""

@@ -12,7 +12,7 @@ from urllib.parse import quote
 
 import lxml.etree as etree
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, raise_errors
 from shipcosim.ssp.edit.parameter_sets import Sets
 from shipcosim.ssp.edit.write import relocated, write_file
 from shipcosim.ssp.flatten.assemble import assemble_package
@@ -166,8 +166,7 @@ class Draft:
             yield
             # New errors undo the whole block, as any other exception does.
             fresh = [p for p in dict.fromkeys(self.reassembled()[1].errors) if not known[p.found]]
-            if fresh:
-                raise ShipcosimError(fresh)
+            raise_errors(fresh)
         except BaseException:
             # Return to the state before the block.
             self.package.held.clear()

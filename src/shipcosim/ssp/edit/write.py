@@ -76,25 +76,24 @@ def parameters_of(system: System) -> list[ParameterValue]:
         By component, in the order of its FMU; arrays and parameters without a start value are left out.
     """
     found = []
-    for component in system.components.values():
-        for variable in component.variables.values():
-            value = component.start_value(variable.name)
-            if variable.causality not in ("parameter", "structuralParameter"):
-                continue
-            if value is None or variable.dimensions:
-                continue
-            # An SSV holds an enumeration's value as the name of its item.
-            names = {number: item for item, number in variable.items.items()}
-            found.append(
-                ParameterValue(
-                    f"{component.name}.{variable.name}",
-                    variable.kind,
-                    names.get(value, value) if variable.kind == "Enumeration" else value,
-                    find_unit(variable.unit, component.fmu.units),
-                    variable.description,
-                    tolerance=component.tolerances.get(variable.name),
-                )
+    for component, variable in system.all_variables():
+        value = component.start_value(variable.name)
+        if variable.causality not in ("parameter", "structuralParameter"):
+            continue
+        if value is None or variable.dimensions:
+            continue
+        # An SSV holds an enumeration's value as the name of its item.
+        names = {number: item for item, number in variable.items.items()}
+        found.append(
+            ParameterValue(
+                f"{component.name}.{variable.name}",
+                variable.kind,
+                names.get(value, value) if variable.kind == "Enumeration" else value,
+                find_unit(variable.unit, component.fmu.units),
+                variable.description,
+                tolerance=component.tolerances.get(variable.name),
             )
+        )
     return found
 
 

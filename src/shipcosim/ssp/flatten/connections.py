@@ -42,6 +42,11 @@ class Connection:
     initial: bool = False
     place: str = ""
 
+    @property
+    def is_linear(self) -> bool:
+        """Whether factor and offset change values; where not, they stay exact to the last bit."""
+        return (self.factor, self.offset) != (1.0, 0.0)
+
 
 def connect(tree: Hierarchy, findings: Findings) -> tuple[Connection, ...]:
     """Connections of a hierarchy.

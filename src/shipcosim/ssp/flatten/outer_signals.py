@@ -78,6 +78,7 @@ class OuterSignals:
             value = self.components[name or ""].start_value(variable)
             if value is None or connection.mapping is not None or connection.factor == 0.0:
                 return None
-            linear = (connection.factor, connection.offset) != (1.0, 0.0)
-            starts.add((value - connection.offset) / connection.factor if linear else value)
+            starts.add(
+                (value - connection.offset) / connection.factor if connection.is_linear else value
+            )
         return starts.pop() if len(starts) == 1 else None

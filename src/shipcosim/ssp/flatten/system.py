@@ -1,7 +1,7 @@
 """A system ready to run: flat, checked, with values in the units of the FMUs."""
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -132,6 +132,12 @@ class System:
     def __repr__(self) -> str:
         counts = f"{len(self.components)} components, {len(self.connections)} connections"
         return f"<System {self.name!r}: {counts}>"
+
+    def all_variables(self) -> Iterator[tuple[Component, Variable]]:
+        """Every variable, after its component, in the order of system and FMUs."""
+        for component in self.components.values():
+            for variable in component.variables.values():
+                yield component, variable
 
     def split(self, signal: str, where: str = "") -> End:
         """Component and variable that a signal's name means.

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from math import isfinite
 
-from shipcosim.errors import ShipcosimError
+from shipcosim.errors import ShipcosimError, raise_errors
 from shipcosim.ssp.flatten.start_values import check_bounds
 from shipcosim.ssp.flatten.system import Signal, System, alias_remarks
 from shipcosim.ssp.fmu.description import Variable
@@ -64,8 +64,7 @@ def with_values(system: System, values: Mapping[str, Value], where: str = "") ->
             findings.error(
                 place, "It is no input of the system.", f"Inputs: {', '.join(inputs) or 'none'}."
             )
-    if findings.errors:
-        raise ShipcosimError(findings.errors)
+    raise_errors(findings.errors)
     # Of two names of one variable the last that is set holds, so the order of start values counts too.
     changed = {
         name: replace(component, start=starts[name])

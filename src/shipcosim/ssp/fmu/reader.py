@@ -84,9 +84,7 @@ def describe_fmu(
         return None
     version = root.get("fmiVersion", "")[:1]
     # A description that breaks its schema is refused.
-    before = len(findings.errors)
-    validate(root, f"fmi{version}", file, findings)
-    if len(findings.errors) > before:
+    if not validate(root, f"fmi{version}", file, findings):
         return None  # a description that breaks its schema is not worth guessing at
     return _description(Document(file, root), Path(path), names, findings)
 

@@ -144,7 +144,7 @@ class ConnectionReader:
             )
         else:
             # Functions convert on purpose; plain connections in other units deserve a remark.
-            if (connection.factor, connection.offset) == (1.0, 0.0):
+            if not connection.is_linear:
                 self._compare_units(connection, names)
             self.connections.append(connection)
 

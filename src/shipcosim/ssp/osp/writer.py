@@ -113,7 +113,7 @@ def _connections(
             sums.append(f'<Sum name="{name}" inputCount="{len(feeding)}"/>')
             joined += [_signal(c.source, name, f"in[{i}]") for i, c in enumerate(feeding)]
             joined.append(_signal(target, name, "out"))
-        elif (first.factor, first.offset) != (1.0, 0.0):
+        elif first.is_linear:
             name = free_name(f"linear_{len(linear)}", taken)
             how = f'factor="{first.factor!r}" offset="{first.offset!r}"'
             linear.append(f'<LinearTransformation name="{name}" {how}/>')

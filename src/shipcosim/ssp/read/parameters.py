@@ -194,10 +194,8 @@ def read_parameter_set(document: Document, findings: Findings) -> ParameterSet:
     if not has_root(document, "ssv:ParameterSet", findings):
         return ParameterSet("", (), document.file)
     # Read values only from a document that keeps its schema.
-    before = len(findings.errors)
-    validate(root, "ssv", document.file, findings)
+    sound = validate(root, "ssv", document.file, findings)
     values = {}
-    sound = len(findings.errors) == before
     # Units first: values refer to them.
     units = noted_units(document, children(root, "ssv:Units", "ssc:Unit"), findings)
     for element in children(root, "ssv:Parameters", "ssv:Parameter") if sound else ():
@@ -296,12 +294,9 @@ def read_mapping(document: Document, findings: Findings) -> tuple[MappingEntry, 
     if not has_root(document, "ssm:ParameterMapping", findings):
         return ()
     # Read entries only from a document that keeps its schema.
-    before = len(findings.errors)
-    validate(document.root, "ssm", document.file, findings)
+    sound = validate(document.root, "ssm", document.file, findings)
     entries = {}
-    for element in (
-        children(document.root, "ssm:MappingEntry") if len(findings.errors) == before else ()
-    ):
+    for element in children(document.root, "ssm:MappingEntry") if sound else ():
         source = element.get("source", "")
         target = element.get("target", "")
         place = document.place(element, f"{source} -> {target}")
@@ -396,9 +391,7 @@ def read_dictionary(document: Document, findings: Findings) -> dict[str, Diction
     if not has_root(document, "ssb:SignalDictionary", findings):
         return {}
     root = document.root
-    before = len(findings.errors)
-    validate(root, "ssb", document.file, findings)
-    if len(findings.errors) > before:
+    if not validate(root, "ssb", document.file, findings):
         return {}
     # Units and enumerations first: entries refer to them.
     units = noted_units(document, children(root, "ssb:Units", "ssc:Unit"), findings)

@@ -52,11 +52,10 @@ def read_structure(document: Document, findings: Findings) -> Structure | None:
         return None
     # A missing system is reported once, by the schema or here.
     root = document.root
-    before = len(findings.errors)
-    validate(root, "ssd", document.file, findings)
+    sound = validate(root, "ssd", document.file, findings)
     system = child(root, "ssd:System")
     if system is None:
-        if len(findings.errors) == before:
+        if sound:
             findings.error(
                 document.place(root), "There is no System in it.", "Add <System name=...>."
             )

@@ -7,7 +7,7 @@ from shipcosim.ssp.xml.schemas import names_of, report_schema, schema_of
 from shipcosim.ssp.xml.version_2 import validate_2
 
 
-def validate(root: etree._Element, schema: str, file: str, findings: Findings) -> None:
+def validate(root: etree._Element, schema: str, file: str, findings: Findings) -> bool:
     """Check an element against a schema of FMPy, or SSP 2.0 as `shipcosim.ssp.xml.version_2` does.
 
     Parameters
@@ -20,8 +20,15 @@ def validate(root: etree._Element, schema: str, file: str, findings: Findings) -
         Name for messages.
     findings : Findings
         Takes what is wrong.
+
+    Returns
+    -------
+    bool
+        Whether there are no errors; flaws and remarks do not count.
     """
+    before = len(findings.errors)
     if schema.startswith("ss") and root.get("version", "").startswith("2."):
         validate_2(root, schema, file, findings)
     else:
         report_schema(schema_of(schema), names_of(schema), root, file, findings)
+    return len(findings.errors) == before
