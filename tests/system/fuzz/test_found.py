@@ -1,11 +1,15 @@
 """What fuzzing has found, each as the smallest file that did it."""
 
+import gc
 import json
 import random
 import struct
+import sys
 import time
+from contextlib import suppress
 
 import h5py
+import numpy as np
 import pytest
 from fuzz.damage_xml import many
 from fuzz.endless import HEAD, TAIL, endless_connections, endless_systems
@@ -13,7 +17,10 @@ from fuzz.seeds import seeds, zipped
 from fuzz.typed import running
 
 from shipcosim.checks import check_any
+from shipcosim.diagnose.log.reader import columns_of, read_log
+from shipcosim.diagnose.log.runs import run_as_log
 from shipcosim.errors import MOST_SHOWN, Problem, ShipcosimError
+from shipcosim.series import read_table
 from shipcosim.snapshot import read_snapshot
 
 
@@ -197,3 +204,45 @@ def test_a_stored_state_nested_a_hundred_thousand_levels_deep(tmp_path):
     (tmp_path / "x.state").write_bytes(zipped(files | {"snapshot.json": b"[" * 100_000}))
     with pytest.raises(ShipcosimError, match="is no snapshot of a run"):
         read_snapshot(tmp_path / "x.state")
+
+
+def test_messages_of_nmea_2000_whose_fields_are_of_any_type_are_left_out(tmp_path):
+    message = {"timestamp": "2022-10-27T08:00:00", "pgn": 127250, "src": 1, "fields": {}}
+    lines = [{**message, "timestamp": f"2022-10-27T08:00:{k:02d}"} for k in range(60)]
+    for k, line in enumerate(lines):
+        line["fields"] = {"Heading": float(k), "Reference": "True"}
+    lines[7] = {**message, "pgn": {}}
+    lines[8] = {**message, "fields": 1.5}
+    lines[9] = {**message, "fields": {"Heading": 10**400}}
+    lines[10] = {**message, "src": []}
+    (tmp_path / "log.jsonl").write_text("\n".join(map(json.dumps, lines)))
+    columns = columns_of(tmp_path / "log.jsonl")
+    assert columns.remarks[-1].endswith("4 lines that are no message left out.")
+    assert len(columns.values["time"]) == 56
+
+
+def test_sensors_that_each_write_one_row_at_one_time_are_no_log(tmp_path):
+    (tmp_path / "x.csv").write_bytes(b"time,north,east,heading\n0,1,,\n0,,2,\n1,,,3\n")
+    assert read_log(tmp_path / "x.csv").sizes["time"] == 3
+    found, _ = checked(tmp_path, {"x.csv": b"time,north,east,heading\n0,1,,\n0,,2,\n0,,,3\n"})
+    assert "fewer than two different times" in found
+
+
+def test_a_netcdf_file_whose_root_is_damaged_is_refused_without_a_traceback(tmp_path, monkeypatch):
+    with h5py.File(tmp_path / "x.nc", "w", track_order=True) as file:
+        file.create_dataset("time", data=np.arange(9.0)).make_scale("time")
+        file["vessel.psi"] = np.zeros(9)
+    ignored = []
+    monkeypatch.setattr(sys, "unraisablehook", ignored.append)
+    sound = (tmp_path / "x.nc").read_bytes()
+    # The first object in the file is the root; every byte of it is damaged in turn.
+    start = sound.index(b"OHDR")
+    for place in range(start, start + 60):
+        damaged = bytearray(sound)
+        damaged[place] ^= 0xFF
+        (tmp_path / "x.nc").write_bytes(damaged)
+        for read in (read_log, read_table, lambda path: run_as_log(path, "vessel", ())):
+            with suppress(ShipcosimError):
+                read(tmp_path / "x.nc")
+    gc.collect()
+    assert not ignored
