@@ -33,6 +33,7 @@ from shipcosim.dialects import (
     unicode_of,
 )
 from shipcosim.errors import Problem, ShipcosimError, error_at, reading, shortened
+from shipcosim.temporary import temporary_folder
 from shipcosim.units import UnitError, spelled_conversion, spelled_unit
 
 if TYPE_CHECKING:
@@ -229,20 +230,16 @@ def write_file(path: str | os.PathLike, content: bytes) -> None:
         If it cannot be written.
     """
     path = Path(path)
-    part = path.parent / f".{path.name}.{os.getpid()}.part"
     try:
-        with part.open("wb") as file:
-            file.write(content)
-        os.replace(part, path)
+        with temporary_folder(path.parent, unfinished=True) as folder:
+            part = Path(folder, path.name)
+            part.write_bytes(content)
+            os.replace(part, path)
     except OSError as error:
-        part.unlink(missing_ok=True)
         size = f"{len(content) / 1e6:.1f} MB"
         raise error_at(
             str(path), f"cannot be written: {error.strerror or error}.", f"{size} are needed."
         ) from error
-    except BaseException:
-        part.unlink(missing_ok=True)
-        raise
 
 
 def write_json(content: Mapping[str, Any], path: str | os.PathLike) -> None:
@@ -362,11 +359,7 @@ def _open_netcdf(path: Path) -> xarray.Dataset:
     import xarray
 
     _check_declared(path)
-    options = {
-        "engine": "h5netcdf",
-        "phony_dims": "access",
-    }  # the second keeps h5netcdf from a warning
-    with xarray.open_dataset(path, decode_times=False, **options) as table:
+    with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as table:
         table = table.load()
     own = {
         name: variable.attrs.pop(OWN_NAME)

@@ -6,6 +6,7 @@ import random
 import struct
 import sys
 import time
+import warnings
 from contextlib import suppress
 
 import h5py
@@ -19,7 +20,7 @@ from fuzz.typed import running
 from shipcosim.checks import check_any
 from shipcosim.diagnose.log.reader import columns_of, read_log
 from shipcosim.diagnose.log.runs import run_as_log
-from shipcosim.errors import MOST_SHOWN, Problem, ShipcosimError
+from shipcosim.errors import MOST_SHOWN, Problem, ShipcosimError, reading
 from shipcosim.series import read_table
 from shipcosim.snapshot import read_snapshot
 
@@ -246,3 +247,19 @@ def test_a_netcdf_file_whose_root_is_damaged_is_refused_without_a_traceback(tmp_
                 read(tmp_path / "x.nc")
     gc.collect()
     assert not ignored
+
+
+def test_a_log_of_one_complete_row_and_one_without_a_longitude_are_read(tmp_path):
+    header = b"time,north,east,heading,surge,sway,yaw_rate\n"
+    found, _ = checked(tmp_path, {"x.csv": header + b"0,1,1,1,1,1,1\n1,,,,2,,\n2,,3,,,,\n"})
+    assert "x.csv" in found and "cannot be read" not in found
+    # A longitude in a unit of something else is not used.
+    header = b"time [s],latitude [deg],longitude [kg],heading [deg]\n"
+    found, _ = checked(tmp_path, {"y.csv": header + b"0,63,10,1\n1,63,10,2\n2,63,10,3\n"})
+    assert "'longitude' is not used" in found
+
+
+def test_what_a_library_warns_of_while_it_reads_is_not_shown(tmp_path):
+    with warnings.catch_warnings(record=True) as caught, reading(tmp_path / "x.nc"):
+        warnings.warn("phony dimensions", UserWarning, stacklevel=1)
+    assert not caught

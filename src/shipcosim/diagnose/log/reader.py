@@ -99,7 +99,7 @@ def read_log(
     time, signals, more = brought_together(time, signals, columns.joined)
     _check_restart(columns.source, time, [values for values, _ in signals.values()])
     said += more + _over_the_earth(signals)
-    if "latitude" in signals:
+    if LARGEST.keys() <= signals.keys():
         attributes |= _local_position(columns.source, signals, said)
     said += _without_value(columns.source, signals)
     attributes["column_remarks"] = [
