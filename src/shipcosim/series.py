@@ -236,9 +236,10 @@ def write_file(path: str | os.PathLike, content: bytes) -> None:
             part.write_bytes(content)
             os.replace(part, path)
     except OSError as error:
-        size = f"{len(content) / 1e6:.1f} MB"
         raise error_at(
-            str(path), f"cannot be written: {error.strerror or error}.", f"{size} are needed."
+            str(path),
+            f"cannot be written: {error.strerror or error}.",
+            f"{len(content) / 1e6:.1f} MB are needed.",
         ) from error
 
 

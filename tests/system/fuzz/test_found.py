@@ -3,6 +3,7 @@
 import gc
 import json
 import random
+import shutil
 import struct
 import sys
 import time
@@ -213,7 +214,7 @@ def test_messages_of_nmea_2000_whose_fields_are_of_any_type_are_left_out(tmp_pat
     for k, line in enumerate(lines):
         line["fields"] = {"Heading": float(k), "Reference": "True"}
     lines[7] = {**message, "pgn": {}}
-    lines[8] = {**message, "fields": 1.5}
+    lines[8] = {**message, "pgn": 129025, "fields": 1.5}
     lines[9] = {**message, "fields": {"Heading": 10**400}}
     lines[10] = {**message, "src": []}
     (tmp_path / "log.jsonl").write_text("\n".join(map(json.dumps, lines)))
@@ -263,3 +264,30 @@ def test_what_a_library_warns_of_while_it_reads_is_not_shown(tmp_path):
     with warnings.catch_warnings(record=True) as caught, reading(tmp_path / "x.nc"):
         warnings.warn("phony dimensions", UserWarning, stacklevel=1)
     assert not caught
+
+
+TABLE = "time [s],north [m],east [m],heading [deg],surge [m/s]\n0,0,0,0,1\n1,1,0,0,1\n2,2,0,0,1\n"
+
+
+@pytest.mark.parametrize(
+    "encoding", [f"utf-{bits}-{order}" for bits in (16, 32) for order in ("le", "be")]
+)
+def test_unicode_without_a_byte_order_mark_is_read(tmp_path, encoding):
+    found, _ = checked(tmp_path, {"x.csv": TABLE.encode(encoding)})
+    assert f"Read as {encoding}" in found and "cannot" not in found
+    assert read_table(tmp_path / "x.csv").sizes["time"] == 3
+
+
+@pytest.mark.parametrize("name", ["x.json", "x.yaml"])
+def test_a_table_under_the_name_of_a_scenario_of_osp_is_a_log(tmp_path, name):
+    assert checked(tmp_path, {name: TABLE.encode()})[0] == ""
+    found, _ = checked(tmp_path, {name: b'{"events": '})
+    assert "cannot be read as" in found
+
+
+def test_a_ship_with_a_negative_mass_is_refused(root, tmp_path):
+    shutil.copytree(root / "ssp/ships/kvlcc2", tmp_path / "ship")
+    file = tmp_path / "ship/ship.toml"
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text.replace("{ value = 2486.0", "{ value = -1e10"), encoding="utf-8")
+    assert "the mass matrix is not positive" in "\n".join(map(str, check_any(str(file))))

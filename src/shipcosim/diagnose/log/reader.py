@@ -129,6 +129,7 @@ def columns_of(log: str | os.PathLike, form: FileLayout | None = None) -> LogCol
         What was said of the file.
     """
     path = Path(log)
+    form = form or FileLayout()
     with reading(path):
         # A bag or a folder holds several tables, with a clock in each.
         if is_bag(path) or is_messages(path):
@@ -136,7 +137,7 @@ def columns_of(log: str | os.PathLike, form: FileLayout | None = None) -> LogCol
             return joined(path, tables, dict.fromkeys(tables, Channel(column="time")))
         files = tables_in(path)
         if not files:
-            return spread(read_file(path, form), form or FileLayout())
+            return spread(read_file(path, form), form)
         tables = {name: columns_of(file, form) for name, file in files.items()}
         times = {
             name: next(

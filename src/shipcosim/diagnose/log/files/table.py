@@ -59,14 +59,14 @@ class LogColumns:
     joined: bool = False
 
 
-def read_file(path: Path, form: FileLayout | None = None) -> LogColumns:
+def read_file(path: Path, form: FileLayout) -> LogColumns:
     """Columns of a file.
 
     Parameters
     ----------
     path : Path
         Text of any dialect or sentences of NMEA, also compressed by gzip; .xlsx; .nc; .parquet; .mat.
-    form : FileLayout, optional
+    form : FileLayout
         What was said of it.
 
     Raises
@@ -74,7 +74,6 @@ def read_file(path: Path, form: FileLayout | None = None) -> LogColumns:
     ShipcosimError
         If there is no such file, it is no table, or could be read in two ways.
     """
-    form = form or FileLayout()
     if path.is_dir():
         raise error_at(str(path), "is a folder without tables.", "Name the file of a log.")
     if not path.is_file():
