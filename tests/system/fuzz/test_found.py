@@ -129,9 +129,9 @@ def test_a_log_whose_clock_jumps_to_the_end_of_time(tmp_path):
         ("kilo.toml", ("a" + ".a" * 999 + "\n") * 1000, "Expected '='"),
         ("digits.toml", "stop_time = " + "9" * 5000, "thousands of digits"),
         ("bits.toml", "stop_time = 0x" + "f" * 5000, "more than 64 bits"),
-        ("deep.json", "[" * 100_000, "recursion"),
-        ("deep.yaml", "[" * 20_000, "nested deeper than 100"),
-        ("large.yaml", "a: " + "b" * 2_000_000, "too large"),
+        ("deep.json", '{"events": ' + "[" * 100_000, "recursion"),
+        ("deep.yaml", "events: " + "[" * 20_000, "nested deeper than 100"),
+        ("large.yaml", "events: " + "b" * 2_000_000, "too large"),
     ],
 )
 def test_texts_that_a_reader_does_not_come_to_an_end_with(tmp_path, name, text, said):
