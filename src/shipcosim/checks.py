@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shipcosim import library
-from shipcosim.errors import Problem, ShipcosimError, error_at
+from shipcosim.errors import Problem, ShipcosimError, error_at, reading
 
 if TYPE_CHECKING:
     from shipcosim.ssp import System
@@ -24,6 +24,7 @@ OF_CAUSE = {"cause", "sentence"}
 OF_SCENARIO = {"system", "stop_time", "step_size", "events", "expect", "set"}
 """Keys that only a .toml of one kind has."""
 OSP_SCENARIOS = (".json", ".yaml", ".yml")
+NEAR = 1 << 16  # bytes: before its events a scenario has a description and defaults
 TABLES = (".csv", ".csv.gz", ".nc", ".parquet")
 LOGS = (
     ".txt",
@@ -72,15 +73,21 @@ def check_any(file: str, channels: Path | None = None, hosts: Iterable[str] = ()
             return check_ship_file(path)
         if path.suffix == ".toml":
             return _CHECKS[kind_of_toml(path)](path)
-        if path.suffix.lower() in OSP_SCENARIOS:
+        if path.suffix.lower() in OSP_SCENARIOS and _names_events(path):
             return check_osp_scenario(path)
-        if path.name.lower().endswith(LOGS):
+        if path.name.lower().endswith((*LOGS, *OSP_SCENARIOS)):
             return check_log(path, channels)
         if path.name.endswith(TABLES):
             return check_log(path, channels) if channels or _is_log(path) else check_table(path)
         return _check_system_file(file, path)
     except ShipcosimError as error:
         return error.problems
+
+
+def _names_events(path: Path) -> bool:
+    """Whether a file speaks of events near its beginning, as a scenario of OSP; records of a log do not."""
+    with reading(path), path.open("rb") as file:
+        return b"events" in file.read(NEAR)
 
 
 def check_ship_file(path: Path) -> list[Problem]:

@@ -41,13 +41,16 @@ def unicode_of(content: bytes) -> str:
 
     Examples
     --------
-    >>> [unicode_of("time".encode(name)) for name in ("utf-8", "utf-16", "utf-16-le")]
-    ['utf-8', 'utf-16', 'utf-16-le']
+    >>> [unicode_of("time".encode(name)) for name in ("utf-8", "utf-16", "utf-16-le", "utf-32-be")]
+    ['utf-8', 'utf-16', 'utf-16-le', 'utf-32-be']
     """
     for mark, name in _BYTE_ORDERS:
         if content.startswith(mark):
             return name
     first = content[:400]
+    # Of four bytes of UTF-32 three are zero, of two of UTF-16 one.
+    if first.count(0) > 0.6 * len(first):
+        return "utf-32-le" if first[0] else "utf-32-be"
     if len(first) > 3 and first[1::2].count(0) > 0.6 * len(first[1::2]):
         return "utf-16-le"
     if len(first) > 3 and first[0::2].count(0) > 0.6 * len(first[0::2]):

@@ -2,6 +2,7 @@
 
 import os
 import re
+import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -120,7 +121,9 @@ def reading(
         Those from inside go through; all others become "cannot be read: ...".
     """
     try:
-        yield
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of libraries, in words and places of theirs
+            yield
     except ShipcosimError:
         raise
     except MemoryError as error:

@@ -33,6 +33,7 @@ from shipcosim.dialects import (
     unicode_of,
 )
 from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors, reading, shortened
+from shipcosim.temporary import temporary_folder
 from shipcosim.units import UnitError, spelled_conversion, spelled_unit
 
 if TYPE_CHECKING:
@@ -229,20 +230,17 @@ def write_file(path: str | os.PathLike, content: bytes) -> None:
         If it cannot be written.
     """
     path = Path(path)
-    part = path.parent / f".{path.name}.{os.getpid()}.part"
     try:
-        with part.open("wb") as file:
-            file.write(content)
-        os.replace(part, path)
+        with temporary_folder(path.parent, unfinished=True) as folder:
+            part = Path(folder, path.name)
+            part.write_bytes(content)
+            os.replace(part, path)
     except OSError as error:
-        part.unlink(missing_ok=True)
-        size = f"{len(content) / 1e6:.1f} MB"
         raise error_at(
-            str(path), f"cannot be written: {error.strerror or error}.", f"{size} are needed."
+            str(path),
+            f"cannot be written: {error.strerror or error}.",
+            f"{len(content) / 1e6:.1f} MB are needed.",
         ) from error
-    except BaseException:
-        part.unlink(missing_ok=True)
-        raise
 
 
 def write_json(content: Mapping[str, Any], path: str | os.PathLike) -> None:
@@ -349,6 +347,8 @@ def _check_declared(path: Path) -> None:
     import h5py
 
     with h5py.File(path) as file:
+        # Where this attribute cannot be read, h5netcdf leaves a half-made file that prints a traceback when it goes.
+        file.attrs.get("_nc3_strict")
         declared = sum(part.nbytes for part in file.values() if isinstance(part, h5py.Dataset))
     if declared > LARGEST_TABLE:
         raise ValueError(

@@ -15,7 +15,7 @@ MAY_IMPORT = {
     "snapshot": {"errors", "series", "scenario", "ssp"},
     "options": {"errors", "snapshot"},
     "dialects": {"errors"},
-    "series": {"dialects", "errors", "units"},
+    "series": {"dialects", "errors", "temporary", "units"},
     "fmi": {"models", "errors", "temporary", "units"},
     "interfaces": {"fmi", "models", "angles"},
     "library": {"fmi", "errors", "temporary"},

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import shipcosim as sc
-from shipcosim.diagnose.log.files.table import read_file
+from shipcosim.diagnose.log.reader import columns_of
 from shipcosim.series import make_table, read_table, write_table
 
 STRANGE = [
@@ -61,7 +61,7 @@ def test_strange_names_are_kept(strange, tmp_path):
         for file in ("result.nc", "result.csv"):
             again = read_table(tmp_path / "out" / file)
             assert list(again.data_vars) == list(done.table.data_vars)
-        assert set(read_file(tmp_path / "out" / "result.csv").values) == {
+        assert set(columns_of(tmp_path / "out" / "result.csv").values) == {
             "time",
             *map(str, done.table.data_vars),
         }

@@ -1,11 +1,17 @@
 """What fuzzing has found, each as the smallest file that did it."""
 
+import gc
 import json
 import random
+import shutil
 import struct
+import sys
 import time
+import warnings
+from contextlib import suppress
 
 import h5py
+import numpy as np
 import pytest
 from fuzz.damage_xml import many
 from fuzz.endless import HEAD, TAIL, endless_connections, endless_systems
@@ -13,7 +19,10 @@ from fuzz.seeds import seeds, zipped
 from fuzz.typed import running
 
 from shipcosim.checks import check_any
-from shipcosim.errors import MOST_SHOWN, Problem, ShipcosimError
+from shipcosim.diagnose.log.reader import columns_of, read_log
+from shipcosim.diagnose.log.runs import run_as_log
+from shipcosim.errors import MOST_SHOWN, Problem, ShipcosimError, reading
+from shipcosim.series import read_table
 from shipcosim.snapshot import read_snapshot
 
 
@@ -120,9 +129,9 @@ def test_a_log_whose_clock_jumps_to_the_end_of_time(tmp_path):
         ("kilo.toml", ("a" + ".a" * 999 + "\n") * 1000, "Expected '='"),
         ("digits.toml", "stop_time = " + "9" * 5000, "thousands of digits"),
         ("bits.toml", "stop_time = 0x" + "f" * 5000, "more than 64 bits"),
-        ("deep.json", "[" * 100_000, "recursion"),
-        ("deep.yaml", "[" * 20_000, "nested deeper than 100"),
-        ("large.yaml", "a: " + "b" * 2_000_000, "too large"),
+        ("deep.json", '{"events": ' + "[" * 100_000, "recursion"),
+        ("deep.yaml", "events: " + "[" * 20_000, "nested deeper than 100"),
+        ("large.yaml", "events: " + "b" * 2_000_000, "too large"),
     ],
 )
 def test_texts_that_a_reader_does_not_come_to_an_end_with(tmp_path, name, text, said):
@@ -197,3 +206,88 @@ def test_a_stored_state_nested_a_hundred_thousand_levels_deep(tmp_path):
     (tmp_path / "x.state").write_bytes(zipped(files | {"snapshot.json": b"[" * 100_000}))
     with pytest.raises(ShipcosimError, match="is no snapshot of a run"):
         read_snapshot(tmp_path / "x.state")
+
+
+def test_messages_of_nmea_2000_whose_fields_are_of_any_type_are_left_out(tmp_path):
+    message = {"timestamp": "2022-10-27T08:00:00", "pgn": 127250, "src": 1, "fields": {}}
+    lines = [{**message, "timestamp": f"2022-10-27T08:00:{k:02d}"} for k in range(60)]
+    for k, line in enumerate(lines):
+        line["fields"] = {"Heading": float(k), "Reference": "True"}
+    lines[7] = {**message, "pgn": {}}
+    lines[8] = {**message, "pgn": 129025, "fields": 1.5}
+    lines[9] = {**message, "fields": {"Heading": 10**400}}
+    lines[10] = {**message, "src": []}
+    (tmp_path / "log.jsonl").write_text("\n".join(map(json.dumps, lines)))
+    columns = columns_of(tmp_path / "log.jsonl")
+    assert columns.remarks[-1].endswith("4 lines that are no message left out.")
+    assert len(columns.values["time"]) == 56
+
+
+def test_sensors_that_each_write_one_row_at_one_time_are_no_log(tmp_path):
+    (tmp_path / "x.csv").write_bytes(b"time,north,east,heading\n0,1,,\n0,,2,\n1,,,3\n")
+    assert read_log(tmp_path / "x.csv").sizes["time"] == 3
+    found, _ = checked(tmp_path, {"x.csv": b"time,north,east,heading\n0,1,,\n0,,2,\n0,,,3\n"})
+    assert "fewer than two different times" in found
+
+
+def test_a_netcdf_file_whose_root_is_damaged_is_refused_without_a_traceback(tmp_path, monkeypatch):
+    with h5py.File(tmp_path / "x.nc", "w", track_order=True) as file:
+        file.create_dataset("time", data=np.arange(9.0)).make_scale("time")
+        file["vessel.psi"] = np.zeros(9)
+    ignored = []
+    monkeypatch.setattr(sys, "unraisablehook", ignored.append)
+    sound = (tmp_path / "x.nc").read_bytes()
+    # The first object in the file is the root; every byte of it is damaged in turn.
+    start = sound.index(b"OHDR")
+    for place in range(start, start + 60):
+        damaged = bytearray(sound)
+        damaged[place] ^= 0xFF
+        (tmp_path / "x.nc").write_bytes(damaged)
+        for read in (read_log, read_table, lambda path: run_as_log(path, "vessel", ())):
+            with suppress(ShipcosimError):
+                read(tmp_path / "x.nc")
+    gc.collect()
+    assert not ignored
+
+
+def test_a_log_of_one_complete_row_and_one_without_a_longitude_are_read(tmp_path):
+    header = b"time,north,east,heading,surge,sway,yaw_rate\n"
+    found, _ = checked(tmp_path, {"x.csv": header + b"0,1,1,1,1,1,1\n1,,,,2,,\n2,,3,,,,\n"})
+    assert "x.csv" in found and "cannot be read" not in found
+    # A longitude in a unit of something else is not used.
+    header = b"time [s],latitude [deg],longitude [kg],heading [deg]\n"
+    found, _ = checked(tmp_path, {"y.csv": header + b"0,63,10,1\n1,63,10,2\n2,63,10,3\n"})
+    assert "'longitude' is not used" in found
+
+
+def test_what_a_library_warns_of_while_it_reads_is_not_shown(tmp_path):
+    with warnings.catch_warnings(record=True) as caught, reading(tmp_path / "x.nc"):
+        warnings.warn("phony dimensions", UserWarning, stacklevel=1)
+    assert not caught
+
+
+TABLE = "time [s],north [m],east [m],heading [deg],surge [m/s]\n0,0,0,0,1\n1,1,0,0,1\n2,2,0,0,1\n"
+
+
+@pytest.mark.parametrize(
+    "encoding", [f"utf-{bits}-{order}" for bits in (16, 32) for order in ("le", "be")]
+)
+def test_unicode_without_a_byte_order_mark_is_read(tmp_path, encoding):
+    found, _ = checked(tmp_path, {"x.csv": TABLE.encode(encoding)})
+    assert f"Read as {encoding}" in found and "cannot" not in found
+    assert read_table(tmp_path / "x.csv").sizes["time"] == 3
+
+
+@pytest.mark.parametrize("name", ["x.json", "x.yaml"])
+def test_a_table_under_the_name_of_a_scenario_of_osp_is_a_log(tmp_path, name):
+    assert checked(tmp_path, {name: TABLE.encode()})[0] == ""
+    found, _ = checked(tmp_path, {name: b'{"events": '})
+    assert "cannot be read as" in found
+
+
+def test_a_ship_with_a_negative_mass_is_refused(root, tmp_path):
+    shutil.copytree(root / "ssp/ships/kvlcc2", tmp_path / "ship")
+    file = tmp_path / "ship/ship.toml"
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text.replace("{ value = 2486.0", "{ value = -1e10"), encoding="utf-8")
+    assert "the mass matrix is not positive" in "\n".join(map(str, check_any(str(file))))

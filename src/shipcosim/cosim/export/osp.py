@@ -16,6 +16,7 @@ from shipcosim.scenario import Scenario, check_scenario, units_of, with_numbers
 from shipcosim.scenario.osp import scenario_text
 from shipcosim.ssp import System, with_values
 from shipcosim.ssp.xml.markup import free_name
+from shipcosim.temporary import temporary_folder
 
 STRUCTURE = "OspSystemStructure.xml"
 SCENARIO = "scenario.json"
@@ -166,19 +167,17 @@ def write_osp(
     """
     files, remarks = osp_files(system, scenario, has_end=has_end)
     folder = Path(folder)
-    # Write all files under temporary names, then rename: an error leaves the old export intact.
-    partial = {name: folder / f".{name}.{os.getpid()}.part" for name in files}
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for name, data in files.items():
-            partial[name].write_bytes(data)
-        for name, path in partial.items():
-            os.replace(path, folder / name)
+        # Write all files beside their places, then move them: an error leaves the old export intact.
+        with temporary_folder(folder, unfinished=True) as partial:
+            for name, data in files.items():
+                Path(partial, name).write_bytes(data)
+            for name in files:
+                os.replace(Path(partial, name), folder / name)
         # A scenario of an earlier export would act on this system too.
         if SCENARIO not in files:
             (folder / SCENARIO).unlink(missing_ok=True)  # of an export before
     except OSError as error:
-        for path in partial.values():
-            path.unlink(missing_ok=True)
         raise error_at(str(folder), f"Cannot be written: {error.strerror}.") from None
     return remarks

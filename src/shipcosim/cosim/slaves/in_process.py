@@ -106,6 +106,9 @@ class DirectCalls:
         def step(time, step_size):
             try:
                 advance(time, step_size)
+            # A second Ctrl-C ends a step that takes too long.
+            except KeyboardInterrupt:
+                raise
             # BaseException: code of an FMU must not end the run, not even by sys.exit.
             except BaseException as error:
                 return self._failed(target.failure(error))

@@ -25,7 +25,7 @@ from shipcosim.diagnose.log.roles import NAVIGATION, OVER_EARTH, role_of
 from shipcosim.diagnose.log.thresholds import LATEST, SHORTEST_STEP
 from shipcosim.diagnose.log.values import LARGEST, WrongUnit, values_of
 from shipcosim.diagnose.numerics import finite, usual_rise
-from shipcosim.errors import Problem, ShipcosimError, error_at, shortened
+from shipcosim.errors import Problem, ShipcosimError, error_at, reading, shortened
 from shipcosim.series import make_table
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ def read_log(
     time, signals, more = brought_together(time, signals, columns.joined)
     _check_restart(columns.source, time, [values for values, _ in signals.values()])
     said += more + _over_the_earth(signals)
-    if "latitude" in signals:
+    if LARGEST.keys() <= signals.keys():
         attributes |= _local_position(columns.source, signals, said)
     said += _without_value(columns.source, signals)
     attributes["column_remarks"] = [
@@ -129,19 +129,23 @@ def columns_of(log: str | os.PathLike, form: FileLayout | None = None) -> LogCol
         What was said of the file.
     """
     path = Path(log)
-    # A bag or a folder holds several tables, with a clock in each.
-    if is_bag(path) or is_messages(path):
-        tables = tables_of_bag(path) if is_bag(path) else tables_of_messages(path)
-        return joined(path, tables, dict.fromkeys(tables, Channel(column="time")))
-    files = tables_in(path)
-    if not files:
-        return spread(read_file(path, form), form or FileLayout())
-    tables = {name: columns_of(file, form) for name, file in files.items()}
-    times = {
-        name: next((g.channel for g in propose(table, form=form).used if g.role == "time"), None)
-        for name, table in tables.items()
-    }
-    return joined(path, tables, times)
+    form = form or FileLayout()
+    with reading(path):
+        # A bag or a folder holds several tables, with a clock in each.
+        if is_bag(path) or is_messages(path):
+            tables = tables_of_bag(path) if is_bag(path) else tables_of_messages(path)
+            return joined(path, tables, dict.fromkeys(tables, Channel(column="time")))
+        files = tables_in(path)
+        if not files:
+            return spread(read_file(path, form), form)
+        tables = {name: columns_of(file, form) for name, file in files.items()}
+        times = {
+            name: next(
+                (g.channel for g in propose(table, form=form).used if g.role == "time"), None
+            )
+            for name, table in tables.items()
+        }
+        return joined(path, tables, times)
 
 
 def _digest(path: Path) -> str:
@@ -268,16 +272,16 @@ def _check_time(source, time):
         found = f"its rows are {step:.2g} s apart: is the unit right?"
         remedy = 'Say it in a channel file: time = {column = "...", unit = "s"}.'
         raise error_at(f"{source}, time", found, remedy)
+
+
+def _check_restart(source, time, signals):
+    """Raise where there is one time only, or the clock starts again: sorted, rows of two parts would be mixed."""
+    rows = np.flatnonzero(np.isfinite(time))
+    known = time[rows]
     if len(np.unique(known)) < 2:
         raise error_at(
             f"{source}, time", "has fewer than two different times.", "A log has many rows."
         )
-
-
-def _check_restart(source, time, signals):
-    """Raise where the clock starts again: sorted by their times, rows of two parts of the log would be mixed."""
-    rows = np.flatnonzero(np.isfinite(time))
-    known = time[rows]
     back = np.flatnonzero(np.diff(known) < -_RESTART * usual_rise(known, np.inf)) + 1
     if not len(back):
         return

@@ -5,6 +5,7 @@ import hashlib
 from collections.abc import Collection, Mapping
 from pathlib import Path
 
+import h5py
 import numpy as np
 import xarray
 
@@ -158,8 +159,8 @@ def _names_components(path: Path) -> bool:
 def _names(path: Path) -> list[str]:
     """Names of the columns, without units; none of a file of another kind than runs leave."""
     if path.suffix == ".nc":
-        with xarray.open_dataset(path) as table:
-            return [str(name) for name in table.data_vars]
+        with h5py.File(path) as table:
+            return list(table)
     if path.suffix not in (".csv", ".gz"):
         return []
     opened = gzip.open if path.suffix == ".gz" else open

@@ -246,7 +246,7 @@ def linear_damping(
         for name, value in values.items()
     }
     # Sway by yaw can have either sign; beyond 1 it would drive her.
-    share = 0.2 * sqrt(values["Y_v"] * values["N_r"])
+    share = 0.2 * sqrt(abs(values["Y_v"] * values["N_r"]))  # a mass below zero is reported later
     coupling = EstimatedNumber(
         0.0, share, "0; tolerance 0.2 of the root of Y_v N_r, as Fossen 1996"
     )

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from shipcosim.diagnose.log.files.table import LogColumns
-from shipcosim.errors import error_at
+from shipcosim.errors import error_at, reading
 
 _TABLES = (
     "Or write its topics as tables: PlotJuggler, or `rostopic echo -b FILE -p TOPIC > log.csv`."
@@ -37,17 +37,13 @@ def tables_of_bag(path: Path) -> dict[str, LogColumns]:
         remedy = "Install it by `pip install 'shipcosim[ros]'`."
         raise error_at(str(path), "bags of ROS need rosbags.", f"{remedy} {_TABLES}") from error
     rows: dict[str, list[dict[str, float]]] = {}
-    try:
+    with reading(path, f"Is this bag of ROS 1 or ROS 2 whole? {_TABLES}"):
         store = get_typestore(Stores.ROS2_HUMBLE)
         with AnyReader([path], default_typestore=store) as reader:
             for connection, stamp, raw in reader.messages():
                 message = reader.deserialize(raw, connection.msgtype)
                 row = {"time": 1e-9 * stamp} | dict(_numbers(message, "", 0))
                 rows.setdefault(connection.topic.strip("/").replace("/", "."), []).append(row)
-    except Exception as error:  # rosbags raises what its readers and formats do
-        raise error_at(
-            str(path), f"is no bag of ROS 1 or ROS 2 that can be read: {error}.", _TABLES
-        ) from error
     tables = {topic: _table(path, told) for topic, told in rows.items() if len(told[0]) > 1}
     if not tables:
         raise error_at(str(path), "is a bag without numbers.", "Record the topics of the ship.")

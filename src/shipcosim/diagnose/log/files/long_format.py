@@ -154,7 +154,7 @@ def brought_together(
     """
     # If more than a few rows hold most of the channels, the log needs no interpolation.
     is_finite = {name: np.isfinite(values) for name, (values, _) in signals.items()}
-    there = {name: rows for name, rows in is_finite.items() if rows.any()}
+    there = {name: rows for name, rows in is_finite.items() if rows.sum() > 1}
     counts = np.sum(list(there.values()), axis=0) if there else np.zeros(len(time))
     if not there or not joined and (len(there) < 3 or (counts > 0.5 * len(there)).mean() > _ALONE):
         return time, signals, []

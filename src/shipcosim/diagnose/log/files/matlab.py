@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.errors import error_at
+from shipcosim.errors import error_at, reading
 
 
 def is_matlab(path: Path) -> bool:
@@ -34,12 +34,8 @@ def columns_of_matlab(
     except ImportError as error:
         remedy = "Install it by `pip install 'shipcosim[matlab]'`, or write a table as .csv."
         raise error_at(str(path), "files of MATLAB need scipy.", remedy) from error
-    try:
+    with reading(path, "In MATLAB `writetable(struct2table(S), 'log.csv')` makes a table."):
         content = loadmat(path, simplify_cells=True)
-    except Exception as error:  # scipy raises what its parser does
-        remedy = "In MATLAB `writetable(struct2table(S), 'log.csv')` makes a table."
-        found = f"is no file of MATLAB that can be read: {error}."
-        raise error_at(str(path), found, remedy) from error
     found = dict(_series({k: v for k, v in content.items() if not k.startswith("__")}, ""))
     if not found:
         remedy = "Save arrays: in MATLAB `S = table2struct(T, 'ToScalar', true)`, `save(FILE, '-struct', 'S')`."

@@ -80,14 +80,14 @@ def tables_of_messages(path: Path) -> dict[str, LogColumns]:
                 # The first line of JSON says the units: std has degrees, si radians.
                 in_si = {"si": True, "std": False}.get(json.loads(line).get("units"))
                 continue
-        except (ValueError, KeyError, AttributeError, struct.error):
+            pgn, time, source, fields = told
+            if fields is None:
+                unread[pgn] += 1
+            else:
+                row = time, source, _columns(fields, is_si)
+                found.setdefault(pgn, []).append(row)
+        except Exception:  # a field of any type and size can stand in a damaged message
             damaged += bool(line.strip()) and not line.startswith("#")
-            continue
-        pgn, time, source, fields = told
-        if fields is None:
-            unread[pgn] += 1
-            continue
-        found.setdefault(pgn, []).append((time, source, _columns(fields, is_si)))
     if not found:
         remedy = f"Read are {', '.join(map(str, _RAW_FIELDS))}."
         raise error_at(str(path), "holds messages of NMEA 2000, and none gives a channel.", remedy)

@@ -22,7 +22,7 @@ from shipcosim.diagnose.log.files.text import text_of
 from shipcosim.diagnose.log.files.times import seconds_of_parts
 from shipcosim.diagnose.log.names.units import is_unit, name_and_unit
 from shipcosim.dialects import NOTHING, cells_in, decimal_of, is_comment
-from shipcosim.errors import Problem, ShipcosimError, error_at, reading
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.series import ending_of, read_columns
 
 _FEW = (
@@ -59,14 +59,14 @@ class LogColumns:
     joined: bool = False
 
 
-def read_file(path: Path, form: FileLayout | None = None) -> LogColumns:
+def read_file(path: Path, form: FileLayout) -> LogColumns:
     """Columns of a file.
 
     Parameters
     ----------
     path : Path
         Text of any dialect or sentences of NMEA, also compressed by gzip; .xlsx; .nc; .parquet; .mat.
-    form : FileLayout, optional
+    form : FileLayout
         What was said of it.
 
     Raises
@@ -74,11 +74,6 @@ def read_file(path: Path, form: FileLayout | None = None) -> LogColumns:
     ShipcosimError
         If there is no such file, it is no table, or could be read in two ways.
     """
-    with reading(path):
-        return _read(path, form or FileLayout())
-
-
-def _read(path: Path, form: FileLayout) -> LogColumns:
     if path.is_dir():
         raise error_at(str(path), "is a folder without tables.", "Name the file of a log.")
     if not path.is_file():

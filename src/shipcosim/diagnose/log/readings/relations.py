@@ -176,4 +176,4 @@ def rate_relations(time: np.ndarray, headings: dict, rate: np.ndarray) -> dict:
 
 
 def _can_be_followed(turns):
-    return np.quantile(np.abs(turns), 1.0 - TURNED_TOO_FAR) <= LARGEST_TURN
+    return len(turns) and np.quantile(np.abs(turns), 1.0 - TURNED_TOO_FAR) <= LARGEST_TURN
