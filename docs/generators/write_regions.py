@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tests" / "bench")]
+sys.path[:0] = [str(ROOT / "tests" / "bench"), str(ROOT / "tests")]
 
 from prediction.regions import calibrated, scores  # noqa: E402
 from shipcosim.learn.prediction.worlds import draw, sail_all  # noqa: E402

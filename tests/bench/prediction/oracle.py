@@ -248,48 +248,18 @@ def worst_tenth(found: Measures) -> str:
     return pages.table(head, [("ours against kinetic, place", *cells)])
 
 
-STILL = 0.1
-"""Speed over ground at the loss below which a ship counts as still. [m/s] Assumed: DP holds her within it."""
-
-
-def coverage(found: Measures, speeds: np.ndarray) -> str:
-    """Share of truths within the regions of 90 %, by class of start; `speeds` (worlds,) at the loss. [m/s]"""
-    rows = []
-    classes = {"still": speeds < STILL, "moving": speeds >= STILL}
-    for name in ("kinetic", "ours"):
-        off = np.array([one["errors"] for one in found[name]])
-        size = np.array([one["regions"] for one in found[name]])
-        misses = np.stack([np.hypot(off[..., 0], off[..., 1]), np.abs(off[..., 2])], axis=-1)
-        for label, worlds in classes.items():
-            for first, starts in (("1 to 5", slice(0, 5)), ("6 to 20", slice(5, 20))):
-                within = (misses <= size)[worlds][:, starts].mean(axis=1)
-                share, low, high = (100.0 * one for one in pages.interval(within))
-                cells = [
-                    f"{share[k, a]:.0f} % ({low[k, a]:.0f} to {high[k, a]:.0f})"
-                    for a in range(2)
-                    for k in range(len(HORIZONS))
-                ]
-                rows.append((name, f"{label}, {worlds.sum()} worlds", first, *cells))
-    head = [f"{what}, {end:.0f} s" for what in ("place", "heading") for end in HORIZONS]
-    return pages.table(("regions of", "at the loss", "starts", *head), rows)
-
-
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", default="9601:9625", help="FROM:TO of worlds")
     parser.add_argument("--into", type=Path, default=measuring.FOLDER, help="records and measures")
     options = parser.parse_args(arguments)
     found = {name: [] for name in (*RIVALS, "oracle")}
-    speeds = []
     for seed in range(*map(int, options.seeds.split(":"))):
         found["oracle"].append(measured(seed, options.into))
-        sea = sailed(seed, options.into)
-        speeds.append(np.hypot(*sea["truth"][sea["time"] == sea["lost_at"], 3:5][0]))
         for name in RIVALS:
             found[name].append(measuring.measured(name, seed, 1.0, options.into))
     print(page(found))
     print(worst_tenth(found))
-    print(coverage(found, np.array(speeds)))
 
 
 if __name__ == "__main__":

@@ -2,36 +2,50 @@
 
 A predictor is an FMU. It runs alone over the records of worlds, with regions of width 1: its
 outputs are then the factors by which it widens regions. The score is error over factor; the width
-is its quantile.
+is its quantile. `python tests/bench/prediction/regions.py --seeds 9801:9901` prints what the regions hold there.
 """
 
+import argparse
+import sys
+import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
-from shipcosim import library
-from shipcosim.angles import wrap
-from shipcosim.cosim import RunOptions, simulate
-from shipcosim.learn.prediction.worlds import KNOWN, PARAMETERS, SYSTEM, Record
-from shipcosim.learn.regions import SHARE, conformal
-from shipcosim.learn.true_ships import system_with
-from shipcosim.models.prediction.regions import HORIZONS, JUST_LOST, LONG_LOST
-from shipcosim.scenario import Scenario
-from shipcosim.series import make_table
-from shipcosim.ssp import read_system, with_values
+HERE = Path(__file__).resolve()
+if __name__ == "__main__":  # as a test its folders are on the path already
+    sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # prediction; ships
+
+from prediction import measuring, pages  # noqa: E402
+from prediction.rivals import ROOT  # noqa: E402
+from shipcosim import library  # noqa: E402
+from shipcosim.angles import wrap  # noqa: E402
+from shipcosim.cosim import RunOptions, simulate  # noqa: E402
+from shipcosim.learn.prediction.worlds import (  # noqa: E402
+    KNOWN,
+    PARAMETERS,
+    SYSTEM,
+    TRUTH,
+    Record,
+)
+from shipcosim.learn.regions import SHARE, conformal  # noqa: E402
+from shipcosim.learn.true_ships import system_with  # noqa: E402
+from shipcosim.models.prediction.regions import HORIZONS, JUST_LOST, LONG_LOST  # noqa: E402
+from shipcosim.scenario import Scenario  # noqa: E402
+from shipcosim.series import make_table  # noqa: E402
+from shipcosim.ssp import read_system, with_values  # noqa: E402
+
+KINDS = ("position", "heading")
+STILL = 0.1
+"""Speed over ground at the loss below which a ship counts as still. [m/s] Assumed: DP holds her within it."""
+STRETCHES = {"1 to 5": (1, 5), "6 to 20": (6, 20), "21 to 60": (21, 60), "later": (61, 999)}
+"""Classes of starts: first and last time after the loss of thrust. [s]"""
 
 UNCALIBRATED = {
-    **{
-        f"{kind}_half_width_{horizon:.0f}": 1.0
-        for kind in ("position", "heading")
-        for horizon in HORIZONS
-    },
-    **{
-        f"{phase}_{kind}_share": 1.0
-        for phase in ("first", "later")
-        for kind in ("position", "heading")
-    },
+    **{f"{kind}_half_width_{horizon:.0f}": 1.0 for kind in KINDS for horizon in HORIZONS},
+    **{f"{phase}_{kind}_share": 1.0 for phase in ("first", "later") for kind in KINDS},
 }
 """Regions of width 1."""
 
@@ -109,6 +123,20 @@ def scores(
     )
 
 
+def phases(lost_for: np.ndarray) -> np.ndarray:
+    """By the time since thrust was lost: 0 just after the loss, 1 in the drift, 2 in a long drift."""
+    return np.digitize(lost_for, (JUST_LOST, LONG_LOST), right=True)
+
+
+def within(found: Scores, widths: Mapping[str, float], kind: str) -> np.ndarray:
+    """Which predictions have the truth in their region, (m, 3); NaN beyond the end of the record."""
+    shares = np.array([widths[f"first_{kind}_share"], 1.0, widths[f"later_{kind}_share"]])
+    limits = np.array([widths[f"{kind}_half_width_{horizon:.0f}"] for horizon in HORIZONS])
+    scored = getattr(found, kind)
+    held = scored <= limits * shares[phases(found.lost_for)][:, None]
+    return np.where(np.isfinite(scored), held, np.nan)
+
+
 def calibrated(found: Sequence[Scores]) -> dict[str, float]:
     """Widths that contain the wanted share of the cases, from worlds used for nothing else.
 
@@ -128,9 +156,9 @@ def calibrated(found: Sequence[Scores]) -> dict[str, float]:
     # Level for n independent worlds (split conformal).
     level = min(1.0, SHARE * (1.0 + 1.0 / len(found)))
     lost_for = np.concatenate([s.lost_for for s in found])
-    phase = np.digitize(lost_for, (JUST_LOST, LONG_LOST), right=True)
+    phase = phases(lost_for)
     widths = {}
-    for kind in ("position", "heading"):
+    for kind in KINDS:
         errors = np.concatenate([getattr(s, kind) for s in found])
         # Widths in the drift by horizon, and how much wider or narrower all are before and after it.
         of_drift = [conformal(scores, level) for scores in errors[phase == 1].T]
@@ -165,3 +193,67 @@ def _predictions(record: Record, fmu: str, settings: Mapping[str, float | str | 
     ]
     scenario = Scenario(system=fmu, stop_time=float(record.time[-1]), step_size=1.0)
     return simulate(system, scenario, RunOptions(inputs=make_table(record.time, columns)))
+
+
+def shares_held(
+    found: Sequence[Scores], widths: Mapping[str, float], first: int, last: int
+) -> list[str]:
+    """Share of the truths within regions that starts of some seconds after the loss have, by kind and horizon.
+
+    Parameters
+    ----------
+    found : sequence of Scores
+        One a world.
+    widths : mapping of str to float
+        As `calibrated` gives them.
+    first, last : int
+        Of the starts. [s]
+    """
+    cells = []
+    for kind in KINDS:
+        of_worlds = [
+            np.nanmean(
+                within(one, widths, kind)[(first <= one.lost_for) & (one.lost_for <= last)], axis=0
+            )
+            for one in found
+        ]
+        share, low, high = (100.0 * one for one in pages.interval(np.array(of_worlds)))
+        cells += [f"{share[k]:.0f} % ({low[k]:.0f} to {high[k]:.0f})" for k in range(len(HORIZONS))]
+    return cells
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seeds", default="9801:9901", help="FROM:TO of worlds")
+    parser.add_argument("--into", type=Path, default=measuring.FOLDER, help="records")
+    options = parser.parse_args(arguments)
+    records = [
+        measuring.recorded(seed, 1.0, options.into)
+        for seed in range(*map(int, options.seeds.split(":")))
+    ]
+    at_loss = [record.truth[record.time == record.lost_at][0] for record in records]
+    speeds = np.hypot(*np.array(at_loss)[:, [TRUTH.index("u"), TRUTH.index("v")]].T)
+    classes = {"still": speeds < STILL, "moving": speeds >= STILL}
+    learned = ROOT / "fmus/drift_predictor/weights/regions.toml"
+    widths = {
+        "drift_predictor": tomllib.loads(learned.read_text(encoding="utf-8"))["ours"],
+        "predictor": system_with(SYSTEM, PARAMETERS).components["predictor"].start,
+    }
+    rows = []
+    for fmu in widths:
+        settings = {"own_regions": False} if fmu == "drift_predictor" else {}
+        found = [scores(record, fmu, settings=settings) for record in records]
+        for label, worlds in classes.items():
+            chosen = [one for one, is_chosen in zip(found, worlds, strict=True) if is_chosen]
+            rows += [
+                (fmu, label, name, *shares_held(chosen, widths[fmu], *ends))
+                for name, ends in STRETCHES.items()
+                if chosen
+            ]
+    head = [f"{what}, {end:.0f} s" for what in ("place", "heading") for end in HORIZONS]
+    print(f"{len(records)} worlds, {classes['still'].sum()} of them still at the loss")
+    print(pages.table(("regions of", "at the loss", "starts", *head), rows))
+
+
+if __name__ == "__main__":
+    main()

@@ -220,8 +220,8 @@ def test_exception_in_an_fmu_shows_its_traceback_component_and_time_and_keeps_th
 @pytest.mark.skipif(
     sys.platform == "win32", reason="Windows has no signal that Python could send as Ctrl-C"
 )
-@pytest.mark.parametrize(("send", "pause"), [("kill", 0.1), ("killpg", 2.0)])
-def test_ctrl_c_stops_at_once_and_keeps_what_there_is(project, send, pause):
+@pytest.mark.parametrize(("send", "pause", "least"), [("kill", 0.1, 2), ("killpg", 2.0, 1)])
+def test_ctrl_c_stops_at_once_and_keeps_what_there_is(project, send, pause, least):
     """In a group both the command and its child get it, and the child gets it again from the command."""
     set_ = ["--set", f"lag.pause={pause}", "--set", "lag.time_constant=1.0"]
     running = command("run", "fill", *set_, start_new_session=True)
@@ -233,7 +233,7 @@ def test_ctrl_c_stops_at_once_and_keeps_what_there_is(project, send, pause):
     out, err = running.communicate(timeout=300)
     assert running.returncode == 130 and "PARTIAL" in err and "Traceback" not in err and out == ""
     table = read_table(project / "results" / "fill" / "result-partial.nc")
-    assert table.attrs["complete"] == 0 and 1 <= table.sizes["time"] < 51
+    assert table.attrs["complete"] == 0 and least <= table.sizes["time"] < 51
     assert not (project / "results" / "fill" / "result.nc").exists()
 
 
