@@ -99,7 +99,6 @@ COMPONENT_OF = {
     "extended_allocator": "allocator",
     "optimal_allocator": "allocator",
     "paper_v_allocator": "allocator",
-    "neural_allocator": "allocator",
     "thruster_monitor": "monitor",
     "predictor": "predictor",
     "dp_predictor": "predictor",
@@ -113,7 +112,6 @@ ELSEWHERE = {
     "paper_i_allocator": ("osv", "allocator"),
     "thruster_interaction": ("four-azimuths", "interaction"),
     "consequence_analysis": ("four-azimuths", "consequences"),
-    "neural_units_allocator": ("four-azimuths", "allocator"),
     "docking_predictor": ("gunnerus-28m9", "docking_predictor"),
     "helmsman": ("gunnerus-28m9", "helmsman"),
 }

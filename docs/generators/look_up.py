@@ -65,8 +65,6 @@ FMUS = {
     "Allocation, learned": [
         "paper_i_allocator",
         "paper_v_allocator",
-        "neural_allocator",
-        "neural_units_allocator",
     ],
     "Prediction": [
         "predictor",

@@ -44,7 +44,6 @@ COMPONENTS = {
     "allocator": "allocator",
     "optimal_allocator": "allocator",
     "extended_allocator": "allocator",
-    "neural_allocator": "allocator",
     "thruster_monitor": "monitor",
     "predictor": "predictor",
     "dp_predictor": "predictor",
@@ -59,7 +58,6 @@ ELSEWHERE = {
     "consequence_analysis": ("four-azimuths", "consequences"),
     "pid_controller": ("osv", "controller"),
     "paper_i_allocator": ("osv", "allocator"),
-    "neural_units_allocator": ("four-azimuths", "allocator"),
     "paper_v_allocator": ("thesis-28m9", "allocator"),
     "docking_predictor": ("gunnerus-28m9", "docking_predictor"),
     "helmsman": ("gunnerus-28m9", "helmsman"),
@@ -68,7 +66,6 @@ ELSEWHERE = {
 LOOP = [ReferenceParameters, ControlParameters, AllocationParameters, ObserverAhead]
 OTHERS = {
     "optimal_allocator": [AllocationParameters],
-    "neural_allocator": [AllocationParameters],
     "predictor": LOOP,
     "drift_predictor": LOOP,
 }
@@ -150,7 +147,6 @@ PARAMETERS = {
         },
         **{"memory_yaw": 0.1, "memory_time": 5.0},
     },
-    "neural_units_allocator": {f"diameter_{number}": 1.9 for number in range(1, 5)},
     "harbour": {
         **{"wind_shelter": 0.6, "land_towards": 1.0, "tide_shelter": 0.5, "channel": 0.3},
         **{"river_speed": 0.5, "river_to": 2.0, "river_x": 50.0, "river_y": -30.0},
@@ -187,13 +183,11 @@ def fmu_class(name):
 
 
 def reference_tolerance(name, values):
-    """By how much a signal may differ from its reference: 1e-9 of its range, 1e-7 of an FMU that iterates.
+    """By how much a signal may differ from its reference: 1e-9 of its range.
 
-    Libraries of other platforms and processors differ in their last digits. From network and quadratic program of
-    `neural_allocator` come 2e-9 of an angle's range, between the matrix products for two makes of processors.
+    Libraries of other platforms and processors differ in their last digits.
     """
-    share = 1e-7 if name == "neural_allocator" else 1e-9
-    return share * max(np.ptp(values), np.abs(values).max(), 1e-6)
+    return 1e-9 * max(np.ptp(values), np.abs(values).max(), 1e-6)
 
 
 def parameters_of(name):

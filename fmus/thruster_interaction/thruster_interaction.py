@@ -1,8 +1,8 @@
 """FMU of the interaction of up to six azimuth thrusters."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
+from shipcosim.models.core.parameters import UNITS
 from shipcosim.models.propulsion.interaction import (
-    UNITS,
     InteractionParameters,
     pairs,
     thrust_shares,

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from shipcosim.learn import neural, paper_i, paper_v
+from shipcosim.learn import paper_i, paper_v
 from shipcosim.learn.dead_reckoning import recipes as dead_reckoning
 from shipcosim.learn.docking import training as docking
 from shipcosim.learn.prediction import training as drift
@@ -43,7 +43,6 @@ def _kinds(
 ALLOCATORS: Mapping[str, Kind] = {
     **_kinds(paper_v.RECIPES, paper_v.train),
     **_kinds(paper_i.RECIPES, paper_i.train),
-    **_kinds(neural.RECIPES, neural.train),
 }
 """Allocators by the name that `shipcosim train allocator --kind NAME` takes; the first is the default."""
 

@@ -8,7 +8,7 @@ HERE = Path(__file__).resolve()
 if __name__ == "__main__":
     sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # allocation; ships, dp_runs
 
-from allocation import measuring, pages, slipstreams  # noqa: E402
+from allocation import measuring, pages  # noqa: E402
 from allocation.laws import LAWS, there  # noqa: E402
 
 
@@ -43,11 +43,7 @@ def main(arguments=None):
     }
     for name, one in found.items():
         one["seconds"] = measuring.times(name, options.seeds, options.into, again=options.times)
-    kinds = ("neural-slipstreams", "neural-four-azimuths") if "neural_allocator" in found else ()
-    text = pages.page(
-        found,
-        {kind: slipstreams.measured(kind, options.seeds, folder=options.into) for kind in kinds},
-    )
+    text = pages.page(found)
     print(text)
     if options.write:
         pages.PAGE.write_text(text, encoding="utf-8")

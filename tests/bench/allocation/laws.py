@@ -18,15 +18,11 @@ UNITS = ("port", "starboard", "tunnel")
 
 
 class Commands(NamedTuple):
-    """Thrusts of port, starboard and tunnel [N], angles of port and starboard [rad], time that it took [s].
-
-    `proposed` are thrusts and three angles before a safety layer, of a law that has one.
-    """
+    """Thrusts of port, starboard and tunnel [N], angles of port and starboard [rad], time that it took [s]."""
 
     thrusts: tuple[float, float, float]
     azimuths: tuple[float, float]
     seconds: float
-    proposed: tuple | None = None
 
 
 class FmuLaw:
@@ -55,7 +51,7 @@ class FmuLaw:
         seconds = fmu.solve_time
         thrusts = fmu.port_thrust_cmd, fmu.starboard_thrust_cmd, fmu.tunnel_thrust_cmd
         angles = fmu.port_azimuth_cmd, fmu.starboard_azimuth_cmd
-        return Commands(thrusts, angles, seconds, getattr(fmu.state, "proposed", None))
+        return Commands(thrusts, angles, seconds)
 
 
 class RivalLaw:
@@ -90,7 +86,6 @@ LAWS: dict[str, Callable[[], FmuLaw | RivalLaw]] = {
     "allocator": lambda: FmuLaw("allocator", {}),
     "extended_allocator": lambda: FmuLaw("extended_allocator", {}),
     "optimal_allocator": lambda: FmuLaw("optimal_allocator", {}),
-    "neural_allocator": lambda: FmuLaw("neural_allocator", {}),
     "paper_v_allocator": lambda: FmuLaw("paper_v_allocator", {}),
     "paper_v_allocator, walks": lambda: FmuLaw("paper_v_allocator", {"variant": "paper-v-walks"}),
     "skadipy QP": lambda: RivalLaw(rivals.skadipy_quadratic_programme),

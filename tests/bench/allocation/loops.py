@@ -35,8 +35,6 @@ class Commanded:
         Time that each allocation took. [s]
     available : (n, m, 3) array of bool
         Whether port, starboard and tunnel could be used.
-    proposed : (n, m, 2, 3) array, optional
-        Thrusts and angles before the safety layer of a law that has one. [N, rad]
     """
 
     step: float
@@ -45,7 +43,6 @@ class Commanded:
     azimuths: np.ndarray
     seconds: np.ndarray
     available: np.ndarray
-    proposed: np.ndarray | None = None
 
 
 def loads(thrusts, azimuths):
@@ -151,20 +148,14 @@ def replay(
     """What a law commands on requests, (n, m, 3), at rest before each seed; all units can be used by default."""
     usable = np.ones(asked.shape, bool) if available is None else available
     thrusts, azimuths = np.zeros(asked.shape), np.zeros((*asked.shape[:2], 2))
-    seconds, proposed = np.zeros(asked.shape[:2]), np.zeros((*asked.shape[:2], 2, 3))
+    seconds = np.zeros(asked.shape[:2])
     for seed in range(asked.shape[1]):
         one = LAWS[law]()
         for k, (tau, units) in enumerate(
             zip(asked[:, seed].tolist(), usable[:, seed].tolist(), strict=True)
         ):
-            thrusts[k, seed], azimuths[k, seed], seconds[k, seed], before = one.step(
-                tau, units, step
-            )
-            if before is not None:
-                proposed[k, seed] = before
-    return Commanded(
-        step, asked, thrusts, azimuths, seconds, usable, proposed if proposed.any() else None
-    )
+            thrusts[k, seed], azimuths[k, seed], seconds[k, seed] = one.step(tau, units, step)
+    return Commanded(step, asked, thrusts, azimuths, seconds, usable)
 
 
 def _in_si(given):

@@ -103,19 +103,9 @@ def _of_requests(commanded, best, met):
         counts = np.where(where, 1.0, 0.0)[first:]
         return (counts * values[first:]).sum(0) / np.maximum(counts.sum(0), 1.0)
 
-    before = {}
-    if commanded.proposed is not None:
-        thrusts, azimuths = commanded.proposed[:, :, 0], commanded.proposed[:, :, 1, :2]
-        early = measures.missed(replace(commanded, thrusts=thrusts, azimuths=azimuths))
-        names = "force_error_before", "moment_error_before"
-        before = {
-            name: mean(values[::SPARSE], within_rates)
-            for name, values in zip(names, early, strict=True)
-        }
     return _listed(
         {
             **measures.violations(commanded),
-            **before,
             "power": mean(measures.power(commanded.thrusts)[::SPARSE], met),
             "optimum": mean(best, met),
             "force_error": mean(force, met),

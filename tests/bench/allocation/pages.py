@@ -1,6 +1,6 @@
 """The generated page docs/generated/allocation.md."""
 
-from allocation import slipstreams, table
+from allocation import table
 from allocation.laws import RIVALS, ROOT, UNITS
 from allocation.optimum import held_without
 
@@ -29,15 +29,6 @@ and quta 0.1.0 (MIT). They know no availability, so their loops are not closed.
 
 """
 MISSED = "\n## Not met\n\n"
-SLIPSTREAMS = """
-## Where slipstreams take thrust
-
-The same requests, every half second, on units whose slipstreams take thrust from one another: the DP ship, and her
-hull with four azimuths. The quadratic program keeps out of sectors; ours knows the slipstreams, and was to take 2 to
-5 % less. What a law misses is added to its request with a time constant of 5 s, so that all give the same mean load.
-`python tests/bench/allocation/slipstreams.py {kind} --seeds {seeds}` makes each table alone.
-
-"""
 LOST = """
 ## After losing a thruster
 
@@ -47,15 +38,13 @@ seeds and the worst. To reach: 3 m, where the exact static optimum of the remain
 """
 
 
-def page(laws: dict[str, dict], interaction: dict[str, dict] | None = None) -> str:
+def page(laws: dict[str, dict]) -> str:
     """The page as Markdown.
 
     Parameters
     ----------
     laws : dict of str to dict
         Measures by law, as `measuring.measured` gives them.
-    interaction : dict of str to dict, optional
-        Measures by kind of our allocator, as `slipstreams.measured` gives them.
     """
     own = {name: one for name, one in laws.items() if name not in RIVALS}
     others = {name: one for name, one in laws.items() if name in RIVALS}
@@ -67,10 +56,6 @@ def page(laws: dict[str, dict], interaction: dict[str, dict] | None = None) -> s
     if others:
         base = {name: one for name, one in own.items() if name == table.BASE}
         parts += [RIVAL_HEAD, *table.lines(base | others, table.OPEN_LOOP)]
-    if interaction:
-        parts.append(SLIPSTREAMS.format(kind="|".join(interaction), seeds=_seeds(laws)))
-    for kind, found in (interaction or {}).items():
-        parts += [*slipstreams.lines(kind, found), ""]
     missed = table.not_met(own, (*rows, *losses))
     parts += [MISSED, *(f"- {text}" for text in missed or ["Nothing."])]
     return "\n".join(parts).replace("\n\n\n", "\n\n") + "\n"

@@ -124,9 +124,9 @@ def microseconds(which: int):
     return lambda one, laws: [1e6 * one["seconds"][which]] if one["seconds"] else None
 
 
-OPTIMAL, OURS, PAPER_V = "optimal_allocator", "neural_allocator", "paper_v_allocator"
-TURNING = (OPTIMAL, OURS, PAPER_V)
-KEEPING = tuple(law for law in (OPTIMAL, OURS) if law in LAWS)  # laws that shall keep all limits
+OPTIMAL, PAPER_V = "optimal_allocator", "paper_v_allocator"
+TURNING = (OPTIMAL, PAPER_V)
+KEEPING = (OPTIMAL,)  # laws that shall keep all limits
 
 
 def beside(value: float, *laws: str) -> dict[str, float]:
@@ -162,19 +162,11 @@ OPEN_LOOP = (
         beside(5.0),
     ),
     Row("moment missed there [N m]", over_requests("moment_error_within_rates"), beside(10.0)),
-    Row(
-        "force before the safety layer, where limits and rates allow [N]",
-        over_requests("force_error_before"),
-        {OURS: 20.0},
-    ),
-    Row("moment before the safety layer [N m]", over_requests("moment_error_before"), {OURS: 60.0}),
     Row("share of requests that they allow [%]", over_requests("attainable_within_rates", 100.0)),
     Row("force missed where limits allow [N]", over_requests("force_error")),
     Row("moment missed there [N m]", over_requests("moment_error")),
-    Row("time, median [us]", microseconds(0), {OPTIMAL: 60.0, OURS: 200.0, PAPER_V: 100.0}),
-    Row(
-        "time, 99th percentile [us]", microseconds(1), {OPTIMAL: 150.0, OURS: 500.0, PAPER_V: 200.0}
-    ),
+    Row("time, median [us]", microseconds(0), {OPTIMAL: 60.0, PAPER_V: 100.0}),
+    Row("time, 99th percentile [us]", microseconds(1), {OPTIMAL: 150.0, PAPER_V: 200.0}),
 )
 CLOSED_LOOP = (
     Row("steps with a violation, recorded requests and loops", broken, beside(0.0), ".0f", True),

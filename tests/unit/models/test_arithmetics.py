@@ -22,7 +22,6 @@ from shipcosim.models.allocation import (
     extreme_learning,
     fixed_angles,
     monitor,
-    neural,
     optimal,
     power,
     sqp,
@@ -933,13 +932,6 @@ def test_every_function_that_promises_tensors_is_among_the_cases():
         waves.waves_like,
         wave_loads.drift_at,
     }  # parts of those that are cases
-    covered |= {
-        neural.features,
-        neural.network,
-        neural.propose,
-        neural.effects,
-    }  # vectors: test_neural compares them
-    covered |= {neural.taken, neural.kept_shares, neural.completed, neural.power}
     # vectors and records: test_own_record compares them
     covered |= {own_record.begin, own_record.step, own_record.predict, own_record.member}
     covered |= {own_record.weights, own_record.mixed}

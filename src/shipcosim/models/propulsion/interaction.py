@@ -13,11 +13,9 @@ thrusters at bollard in open water.
 from dataclasses import dataclass
 from typing import NamedTuple
 
-import numpy as np
-
 from shipcosim.angles import wrap
 from shipcosim.models.core.maths import Arithmetic, atan2, hypot, minimum, pi, where
-from shipcosim.models.core.parameters import UNITS, numbered_units, quantity
+from shipcosim.models.core.parameters import numbered_units, quantity
 
 _DEGREES = 180.0 / pi
 _STILL = 1e-6  # m/s, added to a slipstream that another is compared with
@@ -159,44 +157,6 @@ def pairs(parameters: InteractionParameters) -> tuple[Pair, ...]:
             bearing = atan2(other_y - y, other_x - x)
             found.append(Pair(front, behind, bearing, tandem_share(distance / diameter)))
     return tuple(found)
-
-
-def pair_table(
-    parameters: InteractionParameters, numbers: tuple[int, ...]
-) -> tuple[np.ndarray, np.ndarray]:
-    """The pairs of some units as tables.
-
-    Parameters
-    ----------
-    parameters : InteractionParameters
-        Places and sizes; a unit without diameter neither hits nor is hit.
-    numbers : tuple of int
-        The units, from 0. [1]
-
-    Returns
-    -------
-    (n, n) array
-        Bearing from the unit of the row to that of the column. [rad]
-    (n, n) array
-        Share of its thrust that the unit of the column keeps on the axis of the other's slipstream, 1 where it is not
-        hit. [1]
-
-    Raises
-    ------
-    ValueError
-        Two units are in the same place.
-
-    References
-    ----------
-    As `pairs`.
-    """
-    bearing, tandem = np.zeros((2, UNITS, UNITS))
-    # A unit that is not hit keeps all of its thrust.
-    tandem += 1.0
-    for front, behind, angle, kept in pairs(parameters):
-        bearing[front, behind], tandem[front, behind] = angle, kept
-    chosen = np.ix_(numbers, numbers)
-    return bearing[chosen], tandem[chosen]
 
 
 def thrust_shares(

@@ -8,7 +8,6 @@ from shipcosim.scenario import read_scenario
 AMPLIFIES = {
     "box_qp.py",
     "sqp.py",
-    "neural.py",
 }  # an optimiser's iterations turn rounding of its inputs into 1e-9 of its outputs
 
 
