@@ -18,6 +18,7 @@ import shipcosim.models
 from shipcosim import angles
 from shipcosim.models.allocation import (
     box_qp,
+    cones,
     extended,
     extreme_learning,
     fixed_angles,
@@ -305,9 +306,9 @@ def of_turning(*row):
     return state, row[3:6], (True, row[6], True)
 
 
-def of_proposal(*row):
+def of_cones(*row):
     state, tau, available = of_turning(*row)
-    return state, (row[0] + 9.0, row[1], row[2]), (row[3] * 1e-5, 2.0, 1.5), tau, available
+    return cones.cones_at_rest(state, tau, design=TURNING_DESIGN), tau, available
 
 
 def of_turning_units(*row):
@@ -657,11 +658,10 @@ CASES = [
     Case(
         optimal.step,
         TURNING_ROWS,
-        of_turning,
+        of_cones,
         dict(h=0.5, parameters=TURNING, design=TURNING_DESIGN),
     ),
     Case(sqp.power_step, TURNING_ROWS, of_turning, dict(h=0.05, design=TURNING_DESIGN)),
-    Case(sqp.nearest_step, TURNING_ROWS, of_proposal, dict(h=0.05, design=TURNING_DESIGN)),
     Case(sqp.resting, [(1.0, -2.0, 0.4)], lambda *tau: (tau,), dict(azimuths=(0.1, 0.2))),
     Case(optimal.at_rest, [(1.0, -2.0, 0.4)], lambda *tau: (tau,), dict(parameters=TURNING)),
     Case(

@@ -225,10 +225,8 @@ def _goes_on(more, done):
 
 
 def _round(request, commands, slack, zero, count, x, side, freed, done, multipliers):
-    """The state of `_solve_many` after one more round."""
+    """The state of `_solve_many` after one more round, to the digit as a round of `_solve_floats`."""
     found = _multipliers(request, commands, slack, x, side)
-    # Elements that are done keep their multipliers; the others go on.
-    multipliers = tuple(where(done, old, new) for old, new in zip(multipliers, found, strict=True))
     # Optimum of the free commands, loss of each bound, and how far each command may go.
     best, loss, steps = _towards(commands, found, x, side)
     # Smallest allowed step and largest loss, over all commands.
@@ -237,24 +235,36 @@ def _round(request, commands, slack, zero, count, x, side, freed, done, multipli
     for step, lost in zip(steps, loss, strict=True):
         share = minimum(share, step)
         worst = maximum(worst, lost)
-    # A whole step without a loss is the optimum: the element is done.
     whole = share >= 1.0
-    done = done | (whole & (worst <= 0.0))
-    # Add the bounds that were hit, or free the command with the largest loss.
+    hits = _first([step <= share for step in steps], ~whole)
+    drops = _first([lost >= worst for lost in loss], whole & (worst > 0.0))
+    # A command that was freed hits its bound again by rounding alone: it stays, and the element is done.
+    again = whole & ~whole
+    for hit, was in zip(hits, freed, strict=True):
+        again = again | (hit & was & (share <= 0.0))
+    # Add the bound that was hit, or free the command with the largest loss. Elements that are done stay.
     after = []
-    for i, (command, new, old, step, lost) in enumerate(
-        zip(commands, best, x, steps, loss, strict=True)
-    ):
+    rows = zip(commands, best, x, side, hits, drops, strict=True)
+    for command, new, old, at, hit, drop in rows:
         over = new > command.high
-        hit = (step <= share) & ~whole
-        drop = whole & (worst > 0.0) & (lost >= worst)
-        # A command that was freed hits its bound again by rounding alone: stop here.
-        done = done | (hit & freed[i] & (share <= 0.0))
         bound = where(over, zero + command.high, zero + command.low)
-        kept = where(hit, where(over, zero + 1.0, zero - 1.0), where(drop, zero, side[i]))
-        after.append((where(hit, bound, old + share * (new - old)), kept, drop))
+        kept = where(hit, where(over, zero + 1.0, zero - 1.0), where(drop, zero, at))
+        moved = where(hit & ~again, bound, old + share * (new - old))
+        after.append((where(done, old, moved), where(done | again, at, kept), drop))
     x, side, freed = zip(*after, strict=True)
+    multipliers = tuple(where(done, old, new) for old, new in zip(multipliers, found, strict=True))
+    # A whole step without a loss is the optimum.
+    done = done | again | (whole & (worst <= 0.0))
     return count + 1.0, x, side, freed, done, multipliers
+
+
+def _first(flags, asked):
+    """Of each element the first flag that is set, where one is asked for."""
+    found = []
+    for flag in flags:
+        found.append(flag & asked)
+        asked = asked & ~flag
+    return found
 
 
 def _multipliers(request, commands, slack, x, side):
@@ -291,17 +301,20 @@ def _towards(commands, multipliers, x, side):
 
 
 def _three_equations(a, b, c, d, e, f, X, Y, N):
-    """Solve three equations with the symmetric matrix of rows (a b c), (b d e), (c e f)."""
-    # Cofactors of the symmetric matrix; its inverse is their matrix over the determinant.
-    A = d * f - e * e
-    B = c * e - b * f
-    C = b * e - c * d
-    D = a * f - c * c
-    E = b * c - a * e
-    F = a * d - b * b
-    over = 1.0 / (a * A + b * B + c * C)
-    return (
-        (A * X + B * Y + C * N) * over,
-        (B * X + D * Y + E * N) * over,
-        (C * X + E * Y + F * N) * over,
-    )
+    """Solve three equations with the symmetric positive matrix of rows (a b c), (b d e), (c e f).
+
+    With few free commands the matrix is nearly singular: its condition is that of the slack, some 1e6. By factors
+    L D Lᵀ rounding grows by this; by cofactors it would grow by its square.
+    """
+    # Factors: L has ones on its diagonal and (p), (q r) below it; D has a, u, v.
+    p = b / a
+    q = c / a
+    u = d - p * b
+    w = e - p * c
+    r = w / u
+    v = f - q * c - r * w
+    # Forward through L, over D, and back through its transpose.
+    Y = Y - p * X
+    N = (N - q * X - r * Y) / v
+    Y = Y / u - r * N
+    return X / a - p * Y - q * N, Y, N

@@ -73,12 +73,12 @@ class ConeMemory(NamedTuple):
     waited, missed, strayed : like a half turn
         How long another choice has been cheaper, how long the wanted one has missed load that another gives, and how
         long the wanted plan has been cheaper than the commands. [s]
+    cones : tuple of tuples, as `ConeChoice.cones`
+        The choices, that of the plan which is next first. [1]
     plans : tuple of Turned
-        State of the plan of each choice. [as its fields]
+        State of the plan of each choice, in this order. [as its fields]
     latest, costs : tuple of floats or (...) arrays or tensors
-        Cost of each plan, at its last step and averaged. [price of power]
-    turn : int
-        Plan that is next. [1]
+        Cost of each plan, at its last step and averaged, in this order. [price of power]
     """
 
     half_turns: tuple
@@ -87,10 +87,10 @@ class ConeMemory(NamedTuple):
     waited: Arithmetic
     missed: Arithmetic
     strayed: Arithmetic
+    cones: tuple
     plans: tuple
     latest: tuple
     costs: tuple
-    turn: int
 
 
 def cone_choices(two_cones: tuple) -> tuple:
@@ -148,16 +148,55 @@ def cone_step(
     """
     if design.choice is None:
         return power_step(state, tau, available, h, design=design, shares=shares)
-    memory = state.memory or _started(state, tau, design)
-    memory = _planned(memory, tau, available, h, design, shares)
+    memory = _planned(state.memory, tau, available, h, design, shares)
     memory = _decided(memory, state, available, h, design)
     # Angles of the plan of the wanted cones, and how far each unit is from them.
-    aimed = _aimed(memory, design)
+    aimed = _aimed(memory)
     gaps = tuple(_gap(aim, now) for aim, now in zip(aimed.azimuths, state.azimuths, strict=True))
     memory = _strayed(memory, state, aimed, h, design)
     memory, now = _shifted(_sent(memory, state, gaps, design), state, gaps, design)
     new = power_step(state, tau, available, h, design=now, shares=shares)
     return new._replace(memory=memory)
+
+
+def cones_at_rest(state: Turned, tau: Load, *, design: OptimalProblem) -> Turned:
+    """State at the start with what the choice of cones remembers.
+
+    Units keep to the intervals of their parameters; the plans are at rest.
+
+    Parameters
+    ----------
+    state : Turned
+        Commands at the start. [as its fields]
+    tau : tuple of three floats or (...) arrays or tensors
+        Any load: it gives shape and type only. [N, N, N.m]
+    design : OptimalProblem
+        As of `cone_step`. [as its fields]
+
+    Returns
+    -------
+    Turned
+        The same commands.
+
+    References
+    ----------
+    Definition.
+    """
+    if design.choice is None:
+        return state
+    zero = 0.0 * tau[0]
+    none = (zero,) * len(design.units)
+    cones = tuple(tuple(zero + cone for cone in one) for one in design.choice.cones)
+    plans = []
+    for one in design.choice.cones:
+        units = zip(_within(design, one).units, state.azimuths, strict=True)
+        angles = tuple(clip(zero + angle, unit.first, unit.last) for unit, angle in units)
+        plans.append(resting(tau, angles))
+    costs = (zero,) * len(plans)
+    # The start counts for nothing: thrusts come from zero, and angles from anywhere.
+    waited = zero - design.choice.average
+    memory = ConeMemory(none, none, none, waited, zero, zero, cones, tuple(plans), costs, costs)
+    return state._replace(memory=memory)
 
 
 def _within(design, half_turns):
@@ -169,28 +208,11 @@ def _within(design, half_turns):
     return design._replace(units=units)
 
 
-def _started(state, tau, design):
-    """Memory at the start: units keep to the intervals of their parameters; plans are at rest."""
-    zero = 0.0 * tau[0]
-    none = (zero,) * len(design.units)
-    plans = []
-    for cones in design.choice.cones:
-        units = zip(_within(design, cones).units, state.azimuths, strict=True)
-        angles = tuple(clip(zero + angle, unit.first, unit.last) for unit, angle in units)
-        plans.append(resting(tau, angles))
-    costs = (zero,) * len(plans)
-    # The start counts for nothing: thrusts come from zero, and angles from anywhere.
-    waited = zero - design.choice.average
-    return ConeMemory(none, none, none, waited, zero, zero, tuple(plans), costs, costs, 0)
-
-
 def _planned(memory, tau, available, h, design, shares):
     """One plan goes on: they take turns, to save time, and each steps as far as all of them together."""
-    k = memory.turn
-    count = len(memory.plans)
-    far = count * h
-    within = _within(design, design.choice.cones[k])
-    plan = power_step(memory.plans[k], tau, available, far, design=within, shares=shares)
+    far = len(memory.plans) * h
+    within = _within(design, memory.cones[0])
+    plan = power_step(memory.plans[0], tau, available, far, design=within, shares=shares)
     # Missed load counts far more than any unit asks for it.
     missed = abs(tau[0] - plan.tau_X) + abs(tau[1] - plan.tau_Y)
     missed = missed + abs(tau[2] - plan.tau_N) / design.yaw_lever
@@ -198,7 +220,9 @@ def _planned(memory, tau, available, h, design, shares):
     cost = _power(plan, design) + where(
         plan.saturated, _LOSS * design.dearest * missed, 0.0 * missed
     )
-    latest = (*memory.latest[:k], cost, *memory.latest[k + 1 :])
+    # The plan goes to the end of the row, so that the next one is first.
+    latest = (*memory.latest[1:], cost)
+    before = (*memory.costs[1:], memory.costs[0])
     # First-order average. A plan that misses much counts as one of twice the cost of the cheapest:
     # so it is soon believed when the request has changed.
     most = latest[0]
@@ -207,10 +231,11 @@ def _planned(memory, tau, available, h, design, shares):
     share = h / (design.choice.average + h)
     costs = tuple(
         old + (minimum(new, _DEAR * most) - old) * share
-        for old, new in zip(memory.costs, latest, strict=True)
+        for old, new in zip(before, latest, strict=True)
     )
-    plans = (*memory.plans[:k], plan, *memory.plans[k + 1 :])
-    return memory._replace(plans=plans, latest=latest, costs=costs, turn=(k + 1) % count)
+    cones = (*memory.cones[1:], memory.cones[0])
+    plans = (*memory.plans[1:], plan)
+    return memory._replace(cones=cones, plans=plans, latest=latest, costs=costs)
 
 
 def _decided(memory, state, available, h, design):
@@ -220,17 +245,19 @@ def _decided(memory, state, available, h, design):
     # Where a unit is missing the others reverse instead, and where one pushes much it keeps its cone.
     busy = zero
     for unit, f, on in zip(design.units, state.thrusts, available, strict=True):
-        if unit.most > 0.0:
-            much = (zero + unit.azimuth_rate > 0.0) & (f > choice.thrust_most)
+        if unit.kind == "turning":
+            much = f > choice.thrust_most
             busy = busy + where(on, where(much, zero + 1.0, zero), zero + 1.0)
+        elif unit.kind == "fixed":
+            busy = busy + where(on, zero, zero + 1.0)
     free = busy < 0.5
     # To save power: by averaged costs, slowly.
-    cheaper, least, present = _cheapest(memory, memory.costs, choice)
+    cheaper, least, present = _cheapest(memory, memory.costs)
     better = (least < (1.0 - choice.margin) * present) & free
     waited = where(better | (memory.waited < 0.0), memory.waited + h, zero)
     saves = better & (waited > choice.wait)
     # To give the load: by costs of this moment, soon. Missed load costs far more than power.
-    giving, least, present = _cheapest(memory, memory.latest, choice)
+    giving, least, present = _cheapest(memory, memory.latest)
     misses = (present - least > _LOSS * design.dearest * choice.missed_most) & free
     missed = where(misses, memory.missed + h, zero)
     gives = misses & (missed > choice.wait_missed)
@@ -241,17 +268,17 @@ def _decided(memory, state, available, h, design):
     return memory._replace(wanted=wanted, waited=waited, missed=where(gives, zero, missed))
 
 
-def _cheapest(memory, costs, choice):
+def _cheapest(memory, costs):
     """Cones of the least cost, that cost, and the cost of those that are wanted now."""
     zero = 0.0 * memory.waited
     present = zero
     least = costs[0]
-    found = tuple(zero + cone for cone in choice.cones[0])
-    for cones, cost in zip(choice.cones, costs, strict=True):
+    found = memory.cones[0]
+    for cones, cost in zip(memory.cones, costs, strict=True):
         present = where(_differ(cones, memory.wanted), present, cost)
         less = cost < least
         least = where(less, cost, least)
-        found = tuple(where(less, zero + cone, old) for cone, old in zip(cones, found, strict=True))
+        found = tuple(where(less, cone, old) for cone, old in zip(cones, found, strict=True))
     return found, least, present
 
 
@@ -260,12 +287,12 @@ def _differ(cones, others):
     return sum(abs(cone - other) for cone, other in zip(cones, others, strict=True)) > 0.5
 
 
-def _aimed(memory, design):
+def _aimed(memory):
     """Plan of the wanted cones."""
     found = memory.plans[0]
     azimuths = found.azimuths
     thrusts = found.thrusts
-    for cones, plan in zip(design.choice.cones, memory.plans, strict=True):
+    for cones, plan in zip(memory.cones, memory.plans, strict=True):
         other = _differ(cones, memory.wanted)
         rows = zip(azimuths, plan.azimuths, strict=True)
         azimuths = tuple(where(other, old, new) for old, new in rows)
@@ -294,13 +321,13 @@ def _sent(memory, state, gaps, design):
         # Due: in the wrong cone, or far from the plan although that has long been cheaper.
         wrong = abs(_cone(turns) - want) > 0.5
         strays = (memory.strayed > design.choice.wait) & (abs(gap) > _FAR)
-        sends = (
-            (wrong | strays) & (f <= design.choice.thrust_most) & (zero + unit.azimuth_rate > 0.0)
-        )
+        sends = (wrong | strays) & (f <= design.choice.thrust_most)
+        if unit.kind != "turning":
+            sends = zero > 0.0
         due.append(sends)
         first = where(sends & (f < first), f, first)
         # A unit runs if it is within its interval and gives its least thrust.
-        if unit.azimuth_rate > 0.0:
+        if unit.kind == "turning":
             runs = (clip(angle, unit.first, unit.last) == angle) & (f > 0.99 * unit.least)
             idle = idle + where(runs, zero, zero + 1.0)
     ready = idle < 0.5
@@ -327,7 +354,7 @@ def _shifted(memory, state, gaps, design):
     shifting = []
     rows = zip(within.units, state.azimuths, memory.shifting, gaps, strict=True)
     for unit, angle, shifts, gap in rows:
-        if unit.azimuth_rate > 0.0:
+        if unit.kind == "turning":
             # Outside of this interval the law takes the thrust away, then turns the unit there.
             first = clip(angle + gap - _THERE, unit.first, unit.last)
             last = clip(angle + gap + _THERE, unit.first, unit.last)

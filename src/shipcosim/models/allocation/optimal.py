@@ -11,7 +11,7 @@ is missing. Any other unit has a fixed direction and reverses. The parameters `p
 from dataclasses import dataclass
 from math import inf, pi
 
-from shipcosim.models.allocation.cones import ConeChoice, cone_choices, cone_step
+from shipcosim.models.allocation.cones import ConeChoice, cone_choices, cone_step, cones_at_rest
 from shipcosim.models.allocation.fixed_angles import FixedAngleParameters
 from shipcosim.models.allocation.sqp import (
     AllocatedThruster,
@@ -285,7 +285,8 @@ def at_rest(tau: Load, *, parameters: OptimalParameters | OptimalUnitsParameters
     ----------
     Definition.
     """
-    return resting(tau, parameters.start_azimuths)
+    state = resting(tau, parameters.start_azimuths)
+    return cones_at_rest(state, tau, design=design(parameters))
 
 
 step = cone_step

@@ -21,7 +21,6 @@ from shipcosim.models.allocation.box_qp import Command, solve
 from shipcosim.models.allocation.units import no_thrust
 from shipcosim.models.core.maths import (
     Arithmetic,
-    atan2,
     clip,
     maximum,
     minimum,
@@ -34,7 +33,6 @@ from shipcosim.models.core.motion import Load, Triple
 _GENTLE = 0.02  # share of a unit's largest thrust below which its price is taken as quadratic
 _STIR = 0.004  # share of a unit's largest thrust that turning reckons with at least, so that a unit at rest turns
 _TIGHT = 1e-6  # load that is missed for the dearest unit's price, over the largest thrust
-_NEAR = 1e-4  # N that are missed for one newton of distance from a proposed command
 
 
 class AllocatedThruster(NamedTuple):
@@ -56,6 +54,13 @@ class AllocatedThruster(NamedTuple):
         Quickest turning; 0 of a fixed direction. [rad/s]
     price : float
         Power over thrust^1.5, in any unit that is the same for all. [W/N^1.5]
+    kind : str
+        "turning", "fixed", or "none" where `most` is 0; `designed` sets it. A text, so that compiled code has one way
+        for each unit. [1]
+    largest : float
+        Largest size of the thrust; `designed` sets it. [N]
+    dearer_astern : float
+        Price astern over that ahead, where the same full power gives another thrust; `designed` sets it. [1]
     """
 
     x: float
@@ -68,6 +73,9 @@ class AllocatedThruster(NamedTuple):
     last: float
     azimuth_rate: float
     price: float
+    kind: str = "none"
+    largest: float = 0.0
+    dearer_astern: float = 1.0
 
 
 class OptimalProblem(NamedTuple):
@@ -76,13 +84,15 @@ class OptimalProblem(NamedTuple):
     Parameters
     ----------
     units : tuple of AllocatedThruster
-        The units; one whose `most` is 0 is none. [as of AllocatedThruster]
+        The units, as `designed` completes them. [as of AllocatedThruster]
     turning_time : float
         Time constant of turning towards the cheapest direction. [s]
     yaw_lever, yaw_lever_degraded : float
         A missed yaw moment weighs as a missed force at this distance; the same where a unit is missing. [m]
     dearest : float
         Largest price of one newton more of a unit. [W/N]
+    slack : float
+        Load that is missed for a unit of price: so small that no price of power outweighs the request. [N per W/N]
     choice : ConeChoice, optional
         How `cones` chooses the intervals of angles; without it they stay. [as its fields]
     """
@@ -92,6 +102,7 @@ class OptimalProblem(NamedTuple):
     yaw_lever: float
     yaw_lever_degraded: float
     dearest: float
+    slack: float
     choice: Any = None
 
 
@@ -137,7 +148,7 @@ def designed(
     Returns
     -------
     OptimalProblem
-        What `power_step` and `nearest_step` need.
+        What `power_step` needs.
 
     References
     ----------
@@ -145,7 +156,22 @@ def designed(
     """
     # Largest price of one more newton, d/df (c f^1.5) at full thrust: it scales the slack.
     dearest = max(1.5 * unit.price * sqrt(max(unit.most, -unit.least, 0.0)) for unit in units)
-    return OptimalProblem(units, turning_time, yaw_lever, yaw_lever_degraded, max(dearest, 1e-9))
+    dearest = max(dearest, 1e-9)
+    slack = _TIGHT * max(unit.most for unit in units) / dearest
+    units = tuple(map(_completed, units))
+    return OptimalProblem(units, turning_time, yaw_lever, yaw_lever_degraded, dearest, slack)
+
+
+def _completed(unit):
+    """The unit with all that follows from its limits, so that a step does not ask for them."""
+    turns = "turning" if unit.azimuth_rate > 0.0 else "fixed"
+    # Astern a unit may have another limit at the same full power: the price is higher there.
+    astern = -min(unit.least, unit.least_degraded)
+    return unit._replace(
+        kind=turns if unit.most > 0.0 else "none",
+        largest=max(unit.most, -unit.least),
+        dearer_astern=(unit.most / astern) ** 1.5 if astern > 0.0 else 1.0,
+    )
 
 
 def resting(tau: Load, azimuths: tuple) -> Turned:
@@ -211,83 +237,19 @@ def power_step(
     quadratic programming, IEEE Trans. Control Systems Technology 12(1), 2004. Instead of their price of a singular
     configuration, units that turn keep a least thrust.
     """
-    # The slack is so small that no price of power outweighs the request.
-    slack = _TIGHT * max(unit.most for unit in design.units) / design.dearest
-    return _step(state, tau, available, h, design, shares, slack, None)
-
-
-def nearest_step(
-    state: Turned,
-    thrusts: tuple,
-    azimuths: tuple,
-    tau: Load,
-    available: tuple,
-    h: float,
-    *,
-    design: OptimalProblem,
-    shares: tuple | None = None,
-) -> Turned:
-    """Admissible commands nearest to proposed ones among those that meet a requested load best.
-
-    A safety layer for any law: whatever is proposed, the commands keep the limits of thrust, angle and their rates, and
-    the request is met as far as they allow. Proposed commands that do both are taken as they are. Distances are those
-    of the tips of the thrusts, seen as vectors.
-
-    Parameters
-    ----------
-    state : Turned
-        State at the last commands.
-    thrusts, azimuths : tuple of floats or (...) arrays or tensors
-        Proposed commands; angles may be wrapped. [N, rad]
-    tau, available, h, design, shares
-        As of `power_step`. [N, N, N.m; 1; s; as of Design; 1]
-
-    Returns
-    -------
-    Turned
-        Commands and the load they give.
-
-    References
-    ----------
-    As `power_step`, with another price.
-    """
-
-    return _step(state, tau, available, h, design, shares, _NEAR, (thrusts, azimuths))
-
-
-def _step(state, tau, available, h, design, shares, slack, proposed):
-    """Solve both programs: changes of thrust and angle, then thrusts at the new angles."""
     # True if no unit is missing.
     missing = sum(
         where(on, 0.0, 1.0)
         for on, unit in zip(available, design.units, strict=True)
-        if unit.most > 0.0
+        if unit.kind != "none"
     )
     whole = missing < 0.5
     # Units with their last commands and the bounds of the next.
     around = _around(state, available, whole, h, design, shares or (1.0,) * len(design.units))
-    # First program: unknowns are the change of each thrust and, where it turns, of each angle.
-    unmet = tau
-    changes = []
-    for at in around:
-        # The request less the load of the last commands.
-        unmet = _less(unmet, at.effect, at.thrust)
-        # Price of the changes: power, or the distance to proposed commands.
-        ease, wanted, turn_ease, turn = (
-            _nearest(at, *proposed) if proposed else _cheapest(at, state.marginal, design, h)
-        )
-        X, Y, N = at.effect
-        changes.append(Command(X, Y, N, ease, wanted, at.low - at.thrust, at.high - at.thrust))
-        # Turning by one radian moves the force across: f b'(alpha).
-        if at.unit.azimuth_rate > 0.0:
-            (X, Y, N) = at.turning
-            # A unit almost at rest turns as if it had a little thrust, else it would never turn.
-            stir = _STIR * at.unit.most
-            f = where(abs(at.thrust) < stir, stir + 0.0 * at.thrust, at.thrust)
-            changes.append(Command(f * X, f * Y, f * N, turn_ease, turn, at.left, at.right))
+    unmet, changes = _changes(around, tau, state.marginal, design, h)
     # A missed moment counts as a missed force at the lever; shorter levers put position first.
     lever = where(whole, design.yaw_lever, design.yaw_lever_degraded)
-    slacks = (slack, slack, slack * lever * lever)
+    slacks = (design.slack, design.slack, design.slack * lever * lever)
     found, marginal = solve(unmet, changes, slacks)
     # Second program: thrusts alone at the new angles, which removes the error of linearising.
     turned = []
@@ -301,7 +263,7 @@ def _step(state, tau, available, h, design, shares, slack, proposed):
         found = found[1:]
         angle = at.azimuth
         # Apply the change of angle within the interval.
-        if at.unit.azimuth_rate > 0.0:
+        if at.unit.kind == "turning":
             angle = clip(angle + found[0], at.first, at.last)
             found = found[1:]
         # Effect at the new angle.
@@ -317,6 +279,26 @@ def _step(state, tau, available, h, design, shares, slack, proposed):
     return _commanded(state, tau, around, thrusts, turned, forces, marginal, h, design)
 
 
+def _changes(around, tau, marginal, design, h):
+    """Request less the load of the last commands, and the unknowns of the first program."""
+    # Unknowns are the change of each thrust and, where it turns, of each angle.
+    unmet = tau
+    changes = []
+    for at in around:
+        unmet = _less(unmet, at.effect, at.thrust)
+        ease, wanted, turn_ease = _cheapest(at, marginal, design, h)
+        X, Y, N = at.effect
+        changes.append(Command(X, Y, N, ease, wanted, at.low - at.thrust, at.high - at.thrust))
+        # Turning by one radian moves the force across: f b'(alpha).
+        if at.unit.kind == "turning":
+            (X, Y, N) = at.turning
+            # A unit almost at rest turns as if it had a little thrust, else it would never turn.
+            stir = _STIR * at.unit.most
+            f = where(abs(at.thrust) < stir, stir + 0.0 * at.thrust, at.thrust)
+            changes.append(Command(f * X, f * Y, f * N, turn_ease, 0.0, at.left, at.right))
+    return unmet, changes
+
+
 def _commanded(state, tau, around, thrusts, turned, forces, marginal, h, design):
     """State after new commands."""
     zero = 0.0 * tau[0]
@@ -329,7 +311,7 @@ def _commanded(state, tau, around, thrusts, turned, forces, marginal, h, design)
         all_thrusts[at.index], azimuths[at.index] = f, angle
         unmet = _less(unmet, force[:3], f)
         moving = moving | (abs(f - at.thrust) > 0.999 * at.unit.thrust_rate * h)
-        if at.unit.azimuth_rate > 0.0:
+        if at.unit.kind == "turning":
             moving = moving | (abs(angle - at.azimuth) > 0.999 * at.unit.azimuth_rate * h)
     # Saturated: the load is missed although no unit is still on its way.
     X, Y, N = unmet
@@ -360,7 +342,7 @@ def _around(state, available, whole, h, design, shares):
     found = []
     units = zip(design.units, state.thrusts, state.azimuths, available, shares, strict=True)
     for index, (unit, f, angle, on, share) in enumerate(units):
-        if unit.most <= 0.0:
+        if unit.kind == "none":
             continue
         # Effect of the thrust at its angle, and derivative of the effect with the angle.
         s, c = sincos(angle)
@@ -391,7 +373,7 @@ def _bounds(unit, f, angle, on, least, most, h):
     )
     high = where(reverses, clip(f + reach, least, most), high)
     # A fixed direction has no turning.
-    if unit.azimuth_rate <= 0.0:
+    if unit.kind == "fixed":
         return where(on, low, 0.0 * low), where(on, high, 0.0 * high), 0.0, 0.0, angle, angle
     # Inside its interval a unit turns at its rate, up to the ends.
     turn = unit.azimuth_rate * h
@@ -414,48 +396,30 @@ def _bounds(unit, f, angle, on, least, most, h):
 
 
 def _cheapest(at, marginal, design, h):
-    """Ease and target of changes of thrust and angle, by the price of power."""
+    """Ease and target of the change of thrust, and ease of turning, by the price of power."""
     # Slope of the price c |f|^1.5 is 1.5 c |f|^0.5.
     unit = at.unit
     f = at.thrust
     k = 1.5 * unit.price
     size = abs(f)
     # Below a small thrust the price is quadratic: its curvature stays finite.
-    gentle = _GENTLE * max(unit.most, -unit.least)
-    # Astern a unit may have another limit at the same full power: the price is higher there.
-    astern = -min(unit.least, unit.least_degraded)
-    if astern > 0.0 and astern != unit.most:
-        k = where(f < 0.0, k * (unit.most / astern) ** 1.5, k)
+    gentle = _GENTLE * unit.largest
+    k = where(f < 0.0, k * unit.dearer_astern, k)
     # Quadratic price with the same slope and curvature: target and ease of the change.
     firm = maximum(size, gentle)
     root = sqrt(firm)
     above = where(size > gentle, 2.0, 1.0)
     ease = above * root / k
     wanted = -above * f
-    if unit.azimuth_rate <= 0.0:
-        return ease, wanted, 0.0, 0.0
+    if unit.kind == "fixed":
+        return ease, wanted, 0.0
     # Curvature along the angle, f b . lambda, at least that of a small price.
     (X, Y, N) = at.effect
     (p, q, r) = marginal
     pull = X * p + Y * q + N * r
     pull = maximum(where(f < 0.0, -pull, pull), k * sqrt(gentle))
     # The factor 1 + T/h turns with the time constant T.
-    return ease, wanted, 1.0 / (firm * pull * (1.0 + design.turning_time / h)), 0.0
-
-
-def _nearest(at, thrusts, azimuths):
-    """Ease and target by the distance from proposed commands."""
-    # Turning by one radian moves the tip of the thrust by |f|; the arm has a floor.
-    f = at.thrust
-    arm = maximum(abs(f), _GENTLE * at.unit.most)
-    # Targets are the proposed commands, the short way round, within the bounds.
-    s, c = sincos(azimuths[at.index] - at.azimuth)
-    return (
-        1.0,
-        clip(thrusts[at.index], at.low, at.high) - f,
-        1.0 / (arm * arm),
-        clip(atan2(s, c), at.left, at.right),
-    )
+    return ease, wanted, 1.0 / (firm * pull * (1.0 + design.turning_time / h))
 
 
 def _effect(unit: AllocatedThruster, s: Arithmetic, c: Arithmetic) -> Triple:

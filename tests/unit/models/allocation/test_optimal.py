@@ -12,7 +12,7 @@ import pytest
 from ships import parameters
 from static_optimum import static_optimum
 
-from shipcosim.models.allocation import optimal, sqp
+from shipcosim.models.allocation import cones, optimal, sqp
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 
 PARAMETERS = parameters(optimal.OptimalParameters)
@@ -28,7 +28,7 @@ def step(state, tau, available=ALL, h=H, **changes):
 
 
 def start(tau=(0.0, 0.0, 0.0), azimuths=SETTLED):
-    return sqp.resting(tau, azimuths)
+    return cones.cones_at_rest(sqp.resting(tau, azimuths), tau, design=DESIGN)
 
 
 def held(tau, state=None, steps=1200):
@@ -133,9 +133,7 @@ def test_a_unit_gives_no_thrust_until_it_is_within_its_angles_and_turns_there():
 def test_many_at_once_get_what_each_gets():
     draw = np.random.default_rng(4)
     together, tunnel = many(20), np.arange(20) % 3 > 0
-    alone = [
-        sqp.resting((0.0,) * 3, tuple(float(a[i]) for a in together.azimuths)) for i in range(20)
-    ]
+    alone = [start(azimuths=tuple(float(a[i]) for a in together.azimuths)) for i in range(20)]
     for _ in range(5):
         tau = extremes(draw, 20)
         together = step(together, tau, (True, True, tunnel), 1.0)
@@ -238,7 +236,7 @@ def test_wind_from_all_around_costs_nearly_what_the_static_optimum_with_all_cone
     """24 directions, two wind speeds; each state settles from rest, and changes its cones where that pays."""
     around = np.radians(np.arange(0.0, 360.0, 15.0))
     tau = np.concatenate([of_wind(speed, around) for speed in (8.0, 12.0)])
-    state = sqp.resting(tuple(tau.T), SETTLED)
+    state = start(tuple(tau.T))
     for _ in range(1000):
         new = step(state, tuple(tau.T), h=0.25)
         assert violations(state, new, 0.25) == 0
@@ -372,26 +370,6 @@ def test_no_azimuth_reverses_and_small_loads_are_met_in_noise_around_nothing():
         assert min(state.thrusts[:2]) >= PARAMETERS.azimuth_thrust_least
         missed.append(np.abs(np.array(tau) - state[2:5]))
     assert (np.mean(missed, axis=0) < [5.0, 5.0, 10.0]).all()
-
-
-def test_nearest_takes_admissible_proposals_and_brings_others_within_the_limits():
-    state = held((3e3, 6e3, 5e4))
-    thrusts = tuple(f + 20.0 for f in state.thrusts)
-    azimuths = tuple(a + turn for a, turn in zip(state.azimuths, (-0.004, 0.004, 0.0), strict=True))
-    X = sum(f * np.cos(a) for f, a in zip(thrusts, azimuths, strict=True))
-    Y = sum(f * np.sin(a) for f, a in zip(thrusts, azimuths, strict=True))
-    places = zip(thrusts, azimuths, DESIGN.units, strict=True)
-    N = sum(f * (unit.x * np.sin(a) - unit.y * np.cos(a)) for f, a, unit in places)
-    tau = (float(X), float(Y), float(N))
-    taken = sqp.nearest_step(state, thrusts, azimuths, tau, ALL, H, design=DESIGN)
-    np.testing.assert_allclose(taken.thrusts, thrusts, atol=10.0)
-    np.testing.assert_allclose(taken.azimuths, azimuths, atol=2e-4)
-    np.testing.assert_allclose(taken[2:5], tau, atol=0.1)
-    wild = sqp.nearest_step(
-        state, (-9e9, 9e9, 1e3), (9.0, -9.0, 1.0), (3e3, 6e3, 5e4), ALL, H, design=DESIGN
-    )
-    assert violations(state, wild) == 0
-    np.testing.assert_allclose(wild[2:5], (3e3, 6e3, 5e4), atol=1.0)
 
 
 def test_numbered_units_give_what_named_ones_give():
