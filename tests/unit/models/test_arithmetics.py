@@ -662,6 +662,12 @@ CASES = [
         dict(h=0.5, parameters=TURNING, design=TURNING_DESIGN),
     ),
     Case(sqp.power_step, TURNING_ROWS, of_turning, dict(h=0.05, design=TURNING_DESIGN)),
+    Case(
+        sqp.is_within,
+        [(0.1, 0.0, 1.0), (1.2, 0.0, 1.0), (1.0 + 1e-12, 0.0, 1.0)],
+        lambda *row: row,
+        {},
+    ),
     Case(sqp.resting, [(1.0, -2.0, 0.4)], lambda *tau: (tau,), dict(azimuths=(0.1, 0.2))),
     Case(optimal.at_rest, [(1.0, -2.0, 0.4)], lambda *tau: (tau,), dict(parameters=TURNING)),
     Case(

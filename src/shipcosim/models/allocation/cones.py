@@ -10,7 +10,13 @@ limits of their rates. The other units take its load over. No thrust is reversed
 from itertools import product
 from typing import Any, NamedTuple
 
-from shipcosim.models.allocation.sqp import OptimalProblem, Turned, power_step, resting
+from shipcosim.models.allocation.sqp import (
+    OptimalProblem,
+    Turned,
+    is_within,
+    power_step,
+    resting,
+)
 from shipcosim.models.core.maths import (
     Arithmetic,
     atan2,
@@ -328,7 +334,7 @@ def _sent(memory, state, gaps, design):
         first = where(sends & (f < first), f, first)
         # A unit runs if it is within its interval and gives its least thrust.
         if unit.kind == "turning":
-            runs = (clip(angle, unit.first, unit.last) == angle) & (f > 0.99 * unit.least)
+            runs = is_within(angle, unit.first, unit.last) & (f > 0.99 * unit.least)
             idle = idle + where(runs, zero, zero + 1.0)
     ready = idle < 0.5
     half_turns = []
@@ -358,7 +364,7 @@ def _shifted(memory, state, gaps, design):
             # Outside of this interval the law takes the thrust away, then turns the unit there.
             first = clip(angle + gap - _THERE, unit.first, unit.last)
             last = clip(angle + gap + _THERE, unit.first, unit.last)
-            shifts = where((first <= angle) & (angle <= last), zero, shifts)
+            shifts = where(is_within(angle, first, last), zero, shifts)
             moves = shifts > 0.5
             unit = unit._replace(
                 first=where(moves, first, zero + unit.first),

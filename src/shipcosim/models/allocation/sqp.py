@@ -32,6 +32,7 @@ from shipcosim.models.core.motion import Load, Triple
 
 _GENTLE = 0.02  # share of a unit's largest thrust below which its price is taken as quadratic
 _STIR = 0.004  # share of a unit's largest thrust that turning reckons with at least, so that a unit at rest turns
+_AT_END = 1e-9  # rad: an angle that turned to an end is beyond it by rounding alone
 _TIGHT = 1e-6  # load that is missed for the dearest unit's price, over the largest thrust
 
 
@@ -378,7 +379,7 @@ def _bounds(unit, f, angle, on, least, most, h):
     # Inside its interval a unit turns at its rate, up to the ends.
     turn = unit.azimuth_rate * h
     end = clip(angle, unit.first, unit.last)
-    inside = end == angle
+    inside = is_within(angle, unit.first, unit.last)
     # Outside, it first reduces its thrust to zero, then turns to the nearer end.
     fade = clip(0.0 * f, f - reach, f + reach)
     back = where(abs(f) > 0.0, 0.0 * angle, clip(end - angle, -turn, turn))
@@ -393,6 +394,25 @@ def _bounds(unit, f, angle, on, least, most, h):
         where(inside, unit.first + 0.0 * f, angle + left),
         where(inside, unit.last + 0.0 * f, angle + right),
     )
+
+
+def is_within(angle: Arithmetic, first: Arithmetic, last: Arithmetic) -> Any:
+    """Whether an angle is in an interval or at its end, where rounding does not decide.
+
+    Parameters
+    ----------
+    angle, first, last : float or (...) array or tensor
+        The angle and the ends. [rad]
+
+    Returns
+    -------
+    bool or (...) array or tensor of bool
+
+    References
+    ----------
+    Definition.
+    """
+    return abs(clip(angle, first, last) - angle) < _AT_END
 
 
 def _cheapest(at, marginal, design, h):

@@ -14,8 +14,8 @@ from speed.measure import reported
 ROUNDS, SECONDS = 3, 200.0
 
 
-def test_a_system_with_the_optimal_allocator_runs_twenty_times_real_time():
-    system, scenario, _ = system_and_scenario("allocation/four_corner_optimal", Reading(), {})
+def test_a_system_with_a_network_runs_twenty_times_real_time():
+    system, scenario, _ = system_and_scenario("allocation/paper_v_four_corner", Reading(), {})
     steps = round(SECONDS / scenario.step_size)
     with LiveServer(server_page(system, scenario)) as server:
         run = LiveRun(*prepared(system, scenario), server, print)

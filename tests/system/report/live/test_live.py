@@ -14,16 +14,23 @@ from shipcosim.errors import ShipcosimError
 from shipcosim.report.live.export import export_page
 
 SAME = 1e-9  # of the range of a signal
+OPTIMISED = 1e-6  # the same where an optimiser's equations enlarge rounding by some 1e6
 AHEAD = 120.0  # s, of the forecast of losses
+
+
+def exported(name, path):
+    """A scenario as a page."""
+    system, scenario, _ = system_and_scenario(name, Reading(), {})
+    export_page(system, scenario, path)
+    return path
 
 
 @pytest.fixture(scope="module")
 def page_file(tmp_path_factory):
     """The four corners as a page, with a component swapped."""
-    path = tmp_path_factory.mktemp("live") / "four_corner.html"
-    system, scenario, _ = system_and_scenario("allocation/four_corner_extended", Reading(), {})
-    export_page(system, scenario, path)
-    return path
+    return exported(
+        "allocation/four_corner_extended", tmp_path_factory.mktemp("live") / "four_corner.html"
+    )
 
 
 @pytest.fixture
@@ -65,6 +72,17 @@ def test_the_saved_scenario_repeats_what_was_done(desk, tmp_path):
     worst, count = largest_difference(desk, repeated(desk, tmp_path))
     assert count > 250
     assert worst < SAME
+
+
+def test_a_page_has_the_optimal_allocator_too(browse, tmp_path):
+    page = browse(exported("allocation/four_corner_optimal", tmp_path / "optimal.html"))
+    page.wait("return Boolean(window.desk && window.scene)")
+    page.ask(
+        "const { live, act } = desk; live.reach(90); act('override', 'port.failed', true);"
+        "act('override', 'environment.wind_from', 1.25); live.reach(200);"
+    )
+    worst, _ = largest_difference(page, repeated(page, tmp_path))
+    assert worst < OPTIMISED
 
 
 def test_going_back_forgets_what_came_after(desk, tmp_path):
@@ -197,7 +215,6 @@ def test_the_page_is_small_and_soon_there(page_file, desk):
 
 def test_a_component_without_native_code_is_named_and_nothing_is_written(tmp_path):
     path = tmp_path / "page.html"
-    system, scenario, _ = system_and_scenario("allocation/four_corner_optimal", Reading(), {})
     with pytest.raises(ShipcosimError, match="allocator: has no native code"):
-        export_page(system, scenario, path)
+        exported("allocation/paper_v_four_corner", path)
     assert not path.exists()
