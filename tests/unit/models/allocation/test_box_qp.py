@@ -1,9 +1,11 @@
 """The quadratic program of the allocators against scipy's bounded least squares, and floats against arrays."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
-from shipcosim.models.allocation.box_qp import Command, solve
+from shipcosim.models.allocation.box_qp import Command, multipliers_of, solve
 
 SLACK = (1e-4, 2e-4, 5e-3)
 
@@ -52,13 +54,33 @@ def test_the_price_is_that_of_scipy_and_the_bounds_are_kept(size):
         assert price(x, request, commands) <= price(best.x, request, commands) * (1.0 + 1e-7)
 
 
-def test_many_at_once_get_what_each_gets():
-    each = list(programs(200, 5))
+def test_many_at_once_get_to_the_digit_what_each_gets():
+    # In half of the programs two commands are the same, so that choices tie.
+    each = [
+        (request, commands if number % 2 else [commands[0], *commands[:-1]])
+        for number, (request, commands) in enumerate(programs(400, 5))
+    ]
     together = solve(
         tuple(np.array([request for request, _ in each]).T),
         [Command(*np.array([commands[i] for _, commands in each]).T) for i in range(5)],
         SLACK,
     )
     alone = [solve(request, commands, SLACK) for request, commands in each]
-    np.testing.assert_allclose(np.array(together[0]).T, [x for x, _ in alone], rtol=1e-7, atol=1e-9)
-    np.testing.assert_allclose(np.array(together[1]).T, [m for _, m in alone], rtol=1e-6, atol=1e-6)
+    np.testing.assert_array_equal(np.array(together[0]).T, [x for x, _ in alone])
+    np.testing.assert_array_equal(np.array(together[1]).T, [m for _, m in alone])
+
+
+@pytest.mark.parametrize("number", range(20))
+def test_rounding_grows_by_the_condition_and_not_by_its_square(number):
+    """One free command for three loads, as beside idle units and one at its limit. Fractions are exact."""
+    draw = np.random.default_rng(number)
+    slack = (1e-7, 1e-7, 1e-5)
+    request = tuple(draw.normal(size=3).tolist())
+    rows = [(*draw.normal(size=3).tolist(), 0.0, 1.0)]
+    found = multipliers_of(request, slack, rows)
+    exact = multipliers_of(
+        *[tuple(map(Fraction, one)) for one in (request, slack)],
+        [tuple(map(Fraction, row)) for row in rows],
+    )
+    largest = max(map(abs, exact))
+    assert all(abs(Fraction(a) - b) < 1e-6 * largest for a, b in zip(found, exact, strict=True))
