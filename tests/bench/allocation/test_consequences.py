@@ -1,8 +1,10 @@
 """What the consequence analysis says of R/V Gunnerus beforehand, against her simulated in each loss.
 
-`python -m tests.bench.allocation.test_consequences` prints the table.
+`python -m tests.bench.allocation.test_consequences [allocator]` prints every case, and for each wind what
+docs/thruster-failures.md says of it.
 """
 
+import sys
 from itertools import product
 
 import numpy as np
@@ -106,8 +108,20 @@ def test_a_position_that_can_be_held_comes_back_to_it(rows):
     assert sum(row["late_off"] > 5.0 for row in held) <= 2
 
 
+def summary(rows: list[dict]) -> str:
+    """How often the heading is lost, was not foretold, was foretold and kept; how often she is 5 m off at the end."""
+    lost = [row["late_turned"] > 10.0 for row in rows]
+    warned = [row["share"] < SHIP.dynamic_factor for row in rows]
+    pairs = list(zip(lost, warned, strict=True))
+    counts = sum(lost), pairs.count((True, False)), pairs.count((False, True))
+    off = sum(row["late_off"] > 5.0 for row in rows)
+    return f"heading lost {counts[0]}, not foretold {counts[1]}, foretold and kept {counts[2]}, beyond 5 m {off}"
+
+
 if __name__ == "__main__":
     for wind in (6.0, 10.0, 14.0):
-        for row in outcomes(wind, range(0, 360, 30)):
+        found = outcomes(wind, range(0, 360, 30), *sys.argv[1:])
+        for row in found:
             shown = "  ".join(f"{row[name]:6.2f}" for name in list(row)[2:4] + list(row)[7:])
             print(f"{wind:4.0f} m/s  {row['wind_from']:3d} deg  {row['loss']:10s}  {shown}")
+        print(f"{wind:4.0f} m/s  {summary(found)}")
