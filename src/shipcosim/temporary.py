@@ -191,8 +191,9 @@ def _is_alive(process: int) -> bool:
         return True  # asking would end it there
     try:
         os.kill(process, 0)
+        # One that has ended stays in the list until its parent asks how; in many containers nobody does.
+        return ") Z " not in Path(f"/proc/{process}/stat").read_text(errors="replace")
     except ProcessLookupError:
         return False
     except OSError:
         return True
-    return True
