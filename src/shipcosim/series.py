@@ -520,7 +520,14 @@ def _cells(path: Path, text: str) -> tuple[list[list[str]], str]:
     if separator == " " and len({len(line.split()) for line in lines if line.strip()}) > 1:
         separator = ","
     if separator == ",":
-        return [row for row in csv.reader(io.StringIO(text, newline=""), strict=True) if row], "."
+        reader = csv.reader(io.StringIO(text, newline=""), strict=True)
+        try:
+            return [row for row in reader if row], "."
+        except csv.Error as error:
+            found = f"has a quotation mark without its other, or a cell of more than {csv.field_size_limit():,} characters."
+            raise error_at(
+                f"{path}, line {reader.line_num}", found, "Write or copy it again."
+            ) from error
     rows = [cells_in(line, separator) for line in lines if line.strip()]
     with_comma = {cell for row in rows[1:] for cell in row if "," in cell and is_figure(cell)}
     return rows, decimal_of(str(path), sorted(with_comma)) or "."
@@ -574,6 +581,11 @@ def _read_rows(path: Path) -> xarray.Dataset:
             text = next(str(value) for value in values if value is not None)[:40]
             found = f"holds texts, not numbers, as '{text}'."
             problems.append(Problem(f"{path}, column '{name}'", found))
+    if "time" not in names and 2 * sum(map(is_figure, names)) > len(names):
+        found = "holds numbers where the names of the columns should be."
+        raise error_at(
+            f"{path}, first row", found, "Write a row above it, such as: time [s],y [m]."
+        )
     problems += _repeated(path, names)
     if "time" not in names:
         problems.append(_no_time(path, names))

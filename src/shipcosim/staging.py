@@ -7,15 +7,13 @@ unless it is said to be replaced.
 from __future__ import annotations
 
 import os
-import re
-import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors
-from shipcosim.temporary import temporary_folder
+from shipcosim.temporary import exchange, numbered, say_kept, temporary_folder
 
 WRITING = "writing the page"
 """What a progress function gets at the end, where results are written."""
@@ -81,7 +79,8 @@ def staged(folder: Path, replaced: Iterable[str] = (), *, force: bool = False) -
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with temporary_folder(folder, unfinished=True) as name:
-            stage = Path(name)
+            stage = Path(name, "new")
+            stage.mkdir()
             try:
                 yield stage
             except ShipcosimError as error:
@@ -92,12 +91,7 @@ def staged(folder: Path, replaced: Iterable[str] = (), *, force: bool = False) -
                         for problem in error.problems
                     ]
                 ) from error
-            written = [file.name for file in stage.iterdir()]
-            set_aside(folder, {*written, *replaced}, force=force)
-            for name in written:
-                os.replace(stage / name, folder / name)
-        for name in {*replaced} - {*written}:
-            (folder / name).unlink(missing_ok=True)
+            exchange(Path(name), folder, replaced, keep=not force)
     except BaseException as error:
         if not was_there:
             with suppress(OSError):
@@ -123,39 +117,14 @@ def set_aside(folder: Path, names: Iterable[str], *, force: bool = False) -> Non
     force : bool
         As for `staged`.
     """
-    there = sorted(name for name in names if (folder / name).exists())
-    if not there or force:
-        return
-    aside = _numbered(folder.resolve())
-    aside.mkdir()
-    for name in there:
-        os.replace(folder / name, aside / name)
-    _say(aside)
+    if folder.is_dir() and not force:
+        with staged(folder, names):
+            pass
 
 
 def set_file_aside(path: Path, *, force: bool = False) -> None:
     """The same with a single file: ``state.bin`` becomes ``state-1.bin``."""
     if path.is_file() and not force:
-        aside = _numbered(path.resolve())
+        aside = numbered(path.resolve())
         os.replace(path, aside)
-        _say(aside)
-
-
-def _numbered(path: Path) -> Path:
-    """The path with the number after the highest that is taken."""
-    suffix = path.suffix if path.is_file() else ""
-    stem = path.name.removesuffix(suffix)
-    others = (
-        re.fullmatch(rf"{re.escape(stem)}-(\d+){re.escape(suffix)}", one.name)
-        for one in path.parent.glob("*")
-    )
-    taken = [int(match[1]) for match in others if match]
-    return path.with_name(f"{stem}-{max(taken, default=0) + 1}{suffix}")
-
-
-def _say(aside: Path) -> None:
-    here = Path.cwd()
-    shown = aside.relative_to(here) if aside.is_relative_to(here) else aside
-    print(
-        f"Earlier results are kept in {shown} (--force, force=True replaces them).", file=sys.stderr
-    )
+        say_kept(aside)

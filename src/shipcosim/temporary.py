@@ -1,15 +1,25 @@
-"""Temporary folders that do not stay where a process is killed: the next one clears them away."""
+"""Temporary folders that do not stay where a process is killed: the next one clears them away.
+
+Results move from such a folder into their place. A process that is killed meanwhile leaves the list of the moves, and
+the next one makes those that are missing.
+"""
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
+import sys
 import tempfile
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
 _NAME = re.compile(r"(?:\.unfinished|shipcosim)-(?P<host>.+)-(?P<process>\d+)-[^-]+")
+
+_MOVES = "moves.json"
+"""In a folder of results on their way: the names of the files that move. It is there only while they move."""
 
 
 def temporary_folder(
@@ -25,9 +35,8 @@ def temporary_folder(
         Whether it holds results on their way, so that it is hidden.
     """
     parent = Path(tempfile.gettempdir()) if parent is None else parent
-    _clear(parent)
-    kind = ".unfinished" if unfinished else "shipcosim"
-    prefix = f"{kind}-{_host()}-{os.getpid()}-"
+    clear_killed(parent)
+    prefix = _prefix(".unfinished" if unfinished else "shipcosim")
     return tempfile.TemporaryDirectory(prefix=prefix, dir=parent, ignore_cleanup_errors=True)
 
 
@@ -54,13 +63,123 @@ def replace_file(path: Path, content: bytes) -> None:
         os.replace(new, path)
 
 
-def _clear(parent: Path) -> None:
-    """Remove folders of processes of this machine that have ended."""
+def exchange(stage: Path, folder: Path, names: Iterable[str], *, keep: bool) -> None:
+    """Put new files in the place of earlier ones: all of them or, where it fails, none.
+
+    Parameters
+    ----------
+    stage : Path
+        A temporary folder in `folder`. The new files are in its folder ``new``, which may be missing.
+    folder : Path
+        Their place.
+    names : iterable of str
+        Files and folders in `folder` that are no longer true. Where the new ones have a name of these, they replace it.
+    keep : bool
+        Whether the earlier ones move into a numbered folder beside `folder`; else they are removed.
+
+    Raises
+    ------
+    OSError
+        If one of them cannot be moved.
+    """
+    new = stage / "new"
+    new.mkdir(exist_ok=True)
+    (stage / "earlier").mkdir()
+    written = sorted(path.name for path in new.iterdir())
+    outdated = sorted(name for name in {*names, *written} if os.path.lexists(folder / name))
+    # With this list complete the moves are decided: whoever finds it makes those that are missing.
+    draft = stage / "draft.json"
+    moves = {"earlier": outdated, "new": written, "keep": keep}
+    draft.write_text(json.dumps(moves), encoding="utf-8")
+    os.replace(draft, stage / _MOVES)
+    try:
+        _move(stage, folder)
+    except BaseException:
+        try:
+            _move_back(stage, folder)
+        except OSError:
+            # Under another name nobody removes it now: the next process makes the moves.
+            os.rename(stage, f"{stage}_")
+        raise
+
+
+def _move(stage: Path, folder: Path) -> None:
+    """Make the moves of a list that are not made yet, the earlier files first."""
+    moves = json.loads((stage / _MOVES).read_text(encoding="utf-8"))
+    earlier = stage / "earlier"
+    # Without this folder all moves are made.
+    if not earlier.is_dir():
+        return
+    for name in moves["earlier"]:
+        if not os.path.lexists(earlier / name):
+            os.replace(folder / name, earlier / name)
+    for name in moves["new"]:
+        if os.path.lexists(stage / "new" / name):
+            os.replace(stage / "new" / name, folder / name)
+    if moves["keep"] and moves["earlier"]:
+        aside = numbered(folder.resolve())
+        os.rename(earlier, aside)
+        say_kept(aside)
+    else:
+        (stage / _MOVES).unlink()
+
+
+def _move_back(stage: Path, folder: Path) -> None:
+    """Undo moves in reverse, so that a kill in between leaves a state that the moves pass through too."""
+    if not (stage / "earlier").is_dir():
+        return  # all are made, only the message is not out
+    moves = json.loads((stage / _MOVES).read_text(encoding="utf-8"))
+    for name in reversed(moves["new"]):
+        if not os.path.lexists(stage / "new" / name):
+            os.replace(folder / name, stage / "new" / name)
+    for name in reversed(moves["earlier"]):
+        if os.path.lexists(stage / "earlier" / name):
+            os.replace(stage / "earlier" / name, folder / name)
+    (stage / _MOVES).unlink()
+
+
+def numbered(path: Path) -> Path:
+    """The path with the number after the highest that is taken."""
+    suffix = path.suffix if path.is_file() else ""
+    stem = path.name.removesuffix(suffix)
+    others = (
+        re.fullmatch(rf"{re.escape(stem)}-(\d+){re.escape(suffix)}", one.name)
+        for one in path.parent.glob("*")
+    )
+    taken = [int(match[1]) for match in others if match]
+    return path.with_name(f"{stem}-{max(taken, default=0) + 1}{suffix}")
+
+
+def say_kept(aside: Path) -> None:
+    """Say where earlier results are."""
+    here = Path.cwd()
+    shown = aside.relative_to(here) if aside.is_relative_to(here) else aside
+    print(
+        f"Earlier results are kept in {shown} (--force, force=True replaces them).", file=sys.stderr
+    )
+
+
+def clear_killed(parent: Path) -> None:
+    """Remove folders of processes of this machine that have ended, after the moves that these had begun."""
     with suppress(OSError):
         for path in parent.iterdir():
             named = _NAME.fullmatch(path.name)
             if named and named["host"] == _host() and not _is_alive(int(named["process"])):
-                shutil.rmtree(path, ignore_errors=True)
+                _finish(path)
+
+
+def _finish(path: Path) -> None:
+    # Two processes may find it; the name of this one takes it from the other.
+    taken = path.with_name(f"{_prefix('.unfinished')}{path.name.rpartition('-')[2]}")
+    with suppress(OSError, ValueError):
+        os.rename(path, taken)
+        if (taken / _MOVES).exists():
+            _move(taken, path.parent)
+        shutil.rmtree(taken, ignore_errors=True)
+
+
+def _prefix(kind: str) -> str:
+    return f"{kind}-{_host()}-{os.getpid()}-"
 
 
 def _host() -> str:
@@ -72,8 +191,9 @@ def _is_alive(process: int) -> bool:
         return True  # asking would end it there
     try:
         os.kill(process, 0)
+        # One that has ended stays in the list until its parent asks how; in many containers nobody does.
+        return ") Z " not in Path(f"/proc/{process}/stat").read_text(errors="replace")
     except ProcessLookupError:
         return False
     except OSError:
         return True
-    return True

@@ -343,3 +343,20 @@ def test_a_row_of_other_texts_is_refused_as_such(tmp_path, row):
     (tmp_path / "t.csv").write_text(f"time,x\n{row}\n0,1\n1,2\n", encoding="utf-8")
     with pytest.raises(ShipcosimError, match="column 'time'.*holds texts"):
         read_table(tmp_path / "t.csv")
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("#YY MM WDIR WSPD\n2023 01 180 MM\n2023 02 182 MM\n", "first row: holds numbers where"),
+        ('time,x\n0,1\n1,"2\n', "line 3: has a quotation mark without its other"),
+        ('time,x\n0,"1"5\n', "line 2: has a quotation mark without its other"),
+        (f"time,{'x' * 200_000}\n0,1\n", "line 1: .* or a cell of more than 131,072 characters"),
+    ],
+)
+def test_a_table_that_cannot_be_told_into_columns_is_refused_in_one_sentence(tmp_path, text, found):
+    path = tmp_path / "weather.csv"
+    path.write_text(text)
+    with pytest.raises(ShipcosimError, match=rf"weather\.csv, {found}") as refused:
+        read_table(path)
+    assert len(refused.value.problems) == 1

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from shipcosim.temporary import replace_file
+from shipcosim.temporary import replace_file, temporary_folder
 
 BEGUN = (
     "import os, sys, pathlib, shipcosim.temporary as t; path = pathlib.Path(sys.argv[1]);"
@@ -23,3 +23,15 @@ def test_a_file_of_which_the_writing_is_killed_stays_as_it_was(tmp_path):
     assert len(list(tmp_path.iterdir())) == 2
     replace_file(path, b"new")
     assert path.read_bytes() == b"new" and list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux lists how processes are")
+def test_a_folder_is_cleared_whose_process_has_ended_though_nobody_asked_how(tmp_path):
+    ended = subprocess.Popen([sys.executable, "-c", ""])
+    os.waitid(os.P_PID, ended.pid, os.WEXITED | os.WNOWAIT)
+    with temporary_folder(tmp_path) as mine:
+        name = os.path.basename(mine).replace(f"-{os.getpid()}-", f"-{ended.pid}-")
+    (tmp_path / name).mkdir()
+    with temporary_folder(tmp_path):
+        assert not (tmp_path / name).exists()
+    ended.wait()

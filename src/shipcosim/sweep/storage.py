@@ -25,6 +25,7 @@ from shipcosim.staging import set_aside
 from shipcosim.sweep.plan import ColumnOf, Plan
 from shipcosim.sweep.summary import SHARE
 from shipcosim.sweep.work import Row
+from shipcosim.temporary import clear_killed
 
 if TYPE_CHECKING:
     import pandas
@@ -75,6 +76,7 @@ class Store:
         self.failed = 0
         with _said(self.folder):
             self.folder.mkdir(parents=True, exist_ok=True)
+            clear_killed(self.folder)
             about = self._about_there()
             # The same plan: go on from what is there. Another plan: set its results aside.
             if about is not None and about.get("plan") == self._digest and not force:

@@ -4,6 +4,7 @@ import pytest
 
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp import check_file, check_system, read_system
+from shipcosim.ssp.read.package import Package
 
 
 def messages(problems):
@@ -122,3 +123,16 @@ def test_an_fmu_with_control_characters_in_its_name_is_no_system(shop, name):
     path = shop.fmu("one", "output y Real m").rename(shop.folder / name)
     with pytest.raises(ShipcosimError, match="Its file name has control characters"):
         read_system(path)
+
+
+def test_a_file_that_many_elements_miss_is_sought_once_and_reported_for_each(shop, monkeypatch):
+    """The folders were searched for every element: two megabytes of them took twelve seconds."""
+    sought = []
+    locate = Package.locate
+    monkeypatch.setattr(
+        Package, "locate", lambda *given: (sought.append(given[1]), locate(*given))[1]
+    )
+    shop.ssd("".join(shop.component(f"a{i}", "one") for i in range(50)))
+    found = [problem for problem in check_file(shop.path) if "does not exist" in problem.found]
+    assert len({problem.where for problem in found}) == len(found) == 50
+    assert len({(problem.found, problem.remedy) for problem in found}) == 1 and len(sought) == 1

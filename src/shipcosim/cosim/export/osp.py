@@ -16,7 +16,7 @@ from shipcosim.scenario import Scenario, check_scenario, units_of, with_numbers
 from shipcosim.scenario.osp import scenario_text
 from shipcosim.ssp import System, with_values
 from shipcosim.ssp.xml.markup import free_name
-from shipcosim.temporary import temporary_folder
+from shipcosim.temporary import exchange, temporary_folder
 
 STRUCTURE = "OspSystemStructure.xml"
 SCENARIO = "scenario.json"
@@ -170,14 +170,13 @@ def write_osp(
     try:
         folder.mkdir(parents=True, exist_ok=True)
         # Write all files beside their places, then move them: an error leaves the old export intact.
-        with temporary_folder(folder, unfinished=True) as partial:
+        with temporary_folder(folder, unfinished=True) as stage:
+            new = Path(stage, "new")
+            new.mkdir()
             for name, data in files.items():
-                Path(partial, name).write_bytes(data)
-            for name in files:
-                os.replace(Path(partial, name), folder / name)
-        # A scenario of an earlier export would act on this system too.
-        if SCENARIO not in files:
-            (folder / SCENARIO).unlink(missing_ok=True)  # of an export before
+                (new / name).write_bytes(data)
+            # A scenario of an earlier export would act on this system too.
+            exchange(Path(stage), folder, [SCENARIO], keep=False)
     except OSError as error:
         raise error_at(str(folder), f"Cannot be written: {error.strerror}.") from None
     return remarks

@@ -79,7 +79,15 @@ class Library:
         return self._kept[at]
 
     def _located(self, owner: Addressing, uri: str, place: InPackage) -> Path | None:
-        return place.package.locate(uri, place.folder, owner.place, self.findings)
+        # Folders are searched once for what is missing, however many elements refer to it.
+        key = "missing", place.package.folder, place.folder, uri
+        if first := self._kept.get(key):
+            self.findings.error(owner.place, first.found, first.remedy)
+            return None
+        found = place.package.locate(uri, place.folder, owner.place, self.findings)
+        if found is None:
+            self._kept[key] = self.findings.problems[-1]
+        return found
 
     def package(self, address: str | Path, fmus: Iterable[Path], shown: str) -> Package | None:
         """Package at an address, or None."""

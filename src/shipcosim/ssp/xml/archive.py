@@ -5,11 +5,12 @@ import stat
 import zipfile
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 
 from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.ssp.xml.document import AnyPath
+from shipcosim.temporary import temporary_folder
 
 MOST_ENTRIES = 20_000
 LARGEST_TOTAL = 2**30  # bytes, unpacked
@@ -214,12 +215,12 @@ def replaced(path: Path) -> Iterator[Path]:
     ShipcosimError
         If it cannot be written.
     """
-    partial = path.with_name(path.name + ".part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        yield partial
-        os.replace(partial, path)
+        # A folder: the next write clears it away where this one is killed.
+        with temporary_folder(path.parent, unfinished=True) as folder:
+            partial = Path(folder, path.name)
+            yield partial
+            os.replace(partial, path)
     except OSError as error:
-        with suppress(OSError):
-            partial.unlink()
         raise error_at(str(path), f"Cannot be written: {error.strerror}.") from None

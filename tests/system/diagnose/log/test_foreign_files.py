@@ -1,6 +1,7 @@
 """Files of other programs are refused with what they are and what makes a table of them."""
 
 import io
+import time
 import zipfile
 
 import pytest
@@ -48,3 +49,16 @@ def test_a_file_of_another_program_is_refused_with_what_would_do(name, tmp_path)
     with pytest.raises(ShipcosimError, match=words) as raised:
         read_log(tmp_path / name)
     assert len(raised.value.problems) == 1
+
+
+@pytest.mark.parametrize("line", ["time,heading," + "x" * 20_000_000, "time" + ",1" * 10_000_000])
+def test_a_line_that_no_table_has_is_refused_at_once(tmp_path, line):
+    """A header of 90 MB took more than a minute."""
+    path = tmp_path / "log.csv"
+    path.write_text(f"% of a logger\n{line}\n0,1,2\n1,1,2\n")
+    begun = time.process_time()
+    with pytest.raises(ShipcosimError, match=r"log\.csv, line 2: is longer than 1 MB"):
+        read_log(path)
+    assert time.process_time() - begun < 5.0
+    path.write_text(f"time,heading,note\n0,1,{'x' * 900_000}\n1,1,2\n2,1,2\n")
+    assert read_log(path).sizes["time"] == 3

@@ -193,6 +193,20 @@ def test_a_file_of_matlab_is_read_with_its_structs(tmp_path):
     assert "Series of other lengths left out: gains" in " ".join(log.attrs["column_remarks"])
 
 
+@pytest.mark.parametrize("place, byte", [(177, 4), (176, 73), (160, 255)])
+def test_a_damaged_file_of_matlab_is_refused_by_name(tmp_path, place, byte):
+    """Sizes and types of elements that are wrong crash the library that reads them."""
+    scipy = pytest.importorskip("scipy.io")
+    path = tmp_path / "log.mat"
+    nav = {"north": TRUTH["time"], "source": "x"}
+    scipy.savemat(path, {"t": TRUTH["time"][:, None], "nav": nav})
+    content = bytearray(path.read_bytes())
+    content[place] = byte
+    path.write_bytes(content)
+    with pytest.raises(ShipcosimError, match=r"log\.mat: cannot be read: its content is damaged"):
+        read_log(path)
+
+
 @pytest.mark.parametrize(
     "name, content, package, extra",
     [

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+import pickle
+import subprocess
+import sys
 from collections import Counter
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from shipcosim.errors import error_at, reading
+from shipcosim.errors import error_at
+
+READ = """
+import pickle, sys, scipy.io
+pickle.dump(scipy.io.loadmat(sys.argv[1], simplify_cells=True), sys.stdout.buffer)
+"""
+"""Program of a process of its own that reads a file: a damaged one may crash scipy, and the process with it."""
 
 
 def is_matlab(path: Path) -> bool:
@@ -30,12 +39,15 @@ def columns_of_matlab(
         If scipy is missing, or the file cannot be read or has no series.
     """
     try:
-        from scipy.io import loadmat
+        import scipy  # noqa: F401  # the process below needs it
     except ImportError as error:
         remedy = "Install it by `pip install 'shipcosim[matlab]'`, or write a table as .csv."
         raise error_at(str(path), "files of MATLAB need scipy.", remedy) from error
-    with reading(path, "In MATLAB `writetable(struct2table(S), 'log.csv')` makes a table."):
-        content = loadmat(path, simplify_cells=True)
+    child = subprocess.run([sys.executable, "-c", READ, path], capture_output=True, check=False)
+    if child.returncode:
+        remedy = "In MATLAB `writetable(struct2table(S), 'log.csv')` makes a table."
+        raise error_at(str(path), "cannot be read: its content is damaged.", remedy)
+    content = pickle.loads(child.stdout)
     found = dict(_series({k: v for k, v in content.items() if not k.startswith("__")}, ""))
     if not found:
         remedy = "Save arrays: in MATLAB `S = table2struct(T, 'ToScalar', true)`, `save(FILE, '-struct', 'S')`."

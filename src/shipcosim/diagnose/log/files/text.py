@@ -10,6 +10,10 @@ from shipcosim.dialects import unicode_of
 from shipcosim.errors import error_at
 from shipcosim.series import unpacked_bytes
 
+LONGEST_LINE = 1_000_000
+"""Above which a line is of no table: 50,000 columns with names of 20 characters. Assumed. [bytes]"""
+_TOO_LONG = re.compile(rb"(?<![^\r\n])[^\r\n]{%d}" % LONGEST_LINE)
+
 
 def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
     """Text of a file and what is to be said of its encoding.
@@ -25,11 +29,19 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
     Raises
     ------
     ShipcosimError
-        If it is no text, or not in this encoding.
+        If it is no text, not in this encoding, or has a line longer than LONGEST_LINE.
     """
     content = unpacked_bytes(path)
     if not content.strip(b"\x00 \r\n\t"):
         raise error_at(str(path), "is empty.", "Each row is a time and its values.")
+    # Each step below goes through all cells of a line, which would take minutes.
+    if too_long := _TOO_LONG.search(content):
+        line = len(content[: too_long.start()].splitlines()) + 1
+        raise error_at(
+            f"{path}, line {line}",
+            f"is longer than {LONGEST_LINE / 1e6:g} MB, so this is no table.",
+            "Each row is a time and its values, on a line of its own.",
+        )
     # A logger that loses power leaves blocks of zero bytes; no encoding has four of them within a text.
     size = len(content)
     content = re.sub(rb"\x00{4,}", b"", content)
