@@ -407,6 +407,7 @@ def is_within(angle: Arithmetic, first: Arithmetic, last: Arithmetic) -> Any:
     Returns
     -------
     bool or (...) array or tensor of bool
+        True within 1e-9 rad of the interval. [1]
 
     References
     ----------
