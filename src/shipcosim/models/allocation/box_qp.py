@@ -239,7 +239,7 @@ def _round(request, commands, slack, zero, count, x, side, freed, done, multipli
     hits = _first([step <= share for step in steps], ~whole)
     drops = _first([lost >= worst for lost in loss], whole & (worst > 0.0))
     # A command that was freed hits its bound again by rounding alone: it stays, and the element is done.
-    again = whole & ~whole
+    again = zero > 1.0
     for hit, was in zip(hits, freed, strict=True):
         again = again | (hit & was & (share <= 0.0))
     # Add the bound that was hit, or free the command with the largest loss. Elements that are done stay.
