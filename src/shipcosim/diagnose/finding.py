@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
+from typing import Any
 
 Segment = tuple[float, float]
 """First and last time of a part of a log. [s]"""
@@ -76,6 +77,9 @@ class Finding:
         Names of those that do not show it, and are corrected all the same.
     by_log : dict of str to dict
         By name of the log: the parameters by that log alone.
+    mislabel : Mislabel or None
+        How channels that are not what their labels say are corrected; None of any other fault, and where a log leaves
+        open what is wrong.
     """
 
     cause: str
@@ -93,6 +97,7 @@ class Finding:
     logs: tuple[str, ...] = ()
     put_right: tuple[str, ...] = ()
     by_log: dict[str, dict[str, ParameterEstimate]] = field(default_factory=dict)
+    mislabel: Any = field(default=None, compare=False, repr=False)
 
     @property
     def label(self) -> str:

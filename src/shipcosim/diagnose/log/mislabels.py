@@ -1,7 +1,8 @@
 """What a channel can be instead of what its label says, and how to put it right."""
 
 from collections.abc import Callable, Container, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -70,31 +71,29 @@ class Mislabel:
 
 def negative(role: str) -> Mislabel:
     """A channel with the other sign; an angle stays within a full turn."""
+    return Mislabel("sign", (role,), f"{role} has the other sign", partial(_negated, role))
 
-    def undo(log):
-        return {role: np.mod(-log[role], 360.0) if role in ANGLES else -log[role]}
 
-    return Mislabel("sign", (role,), f"{role} has the other sign", undo)
+def _negated(role, log):
+    return {role: np.mod(-log[role], 360.0) if role in ANGLES else -log[role]}
 
 
 def exchanged(pairs: Sequence[tuple[str, str]]) -> Mislabel:
     """Channels of two thrusters that are exchanged, by pairs of roles."""
-
-    def undo(log):
-        return {a: log[b] for a, b in pairs} | {b: log[a] for a, b in pairs}
-
     channels = tuple(role for side in zip(*pairs, strict=True) for role in side)
     names = " and ".join(" with ".join(pair) for pair in pairs)
+    undo = partial(_swapped, pairs)
     return Mislabel("channel_swap", channels, f"{names} are swapped", undo)
 
 
 def swap_of(one: str, other: str) -> Mislabel:
     """Two channels exchanged."""
-
-    def undo(log):
-        return {one: log[other], other: log[one]}
-
+    undo = partial(_swapped, [(one, other)])
     return Mislabel("channel_swap", (one, other), f"{one} and {other} are swapped", undo)
+
+
+def _swapped(pairs, log):
+    return {a: log[b] for a, b in pairs} | {b: log[a] for a, b in pairs}
 
 
 def mislabel_of_unit(channels: tuple[str, ...], unit: str, stated: str) -> Mislabel:
@@ -109,33 +108,30 @@ def mislabel_of_unit(channels: tuple[str, ...], unit: str, stated: str) -> Misla
 
 
 def _in_unit(roles, scale, sentence):
-    return Mislabel(
-        "frame", roles, sentence, lambda log: {role: scale * log[role] for role in roles}, scale
-    )
+    return Mislabel("frame", roles, sentence, partial(_scaled, roles, scale), scale)
 
 
-def _turned_to_body(north, east, heading):
+def _scaled(roles, scale, log):
+    return {role: scale * log[role] for role in roles}
+
+
+def _turned_to_body(roles, north, east, heading):
     cosine = np.cos(np.radians(heading))
     sine = np.sin(np.radians(heading))
-    return cosine * north + sine * east, cosine * east - sine * north
+    return dict(
+        zip(roles, (cosine * north + sine * east, cosine * east - sine * north), strict=True)
+    )
 
 
 def velocity_frame(first: str, second: str) -> Mislabel:
     """Velocities over the earth in the columns of the ship's: the first is towards north, or towards east."""
+    said = f"surge and sway are the velocity towards {first} and {second}"
+    return Mislabel("frame", VELOCITY, said, partial(_from_earth, first, second))
 
-    def undo(log):
-        towards = {first: log["surge"], second: log["sway"]}
-        return dict(
-            zip(
-                VELOCITY,
-                _turned_to_body(towards["north"], towards["east"], log["heading"]),
-                strict=True,
-            )
-        )
 
-    return Mislabel(
-        "frame", VELOCITY, f"surge and sway are the velocity towards {first} and {second}", undo
-    )
+def _from_earth(first, second, log):
+    towards = {first: log["surge"], second: log["sway"]}
+    return _turned_to_body(VELOCITY, towards["north"], towards["east"], log["heading"])
 
 
 def _from_degrees(log):
@@ -145,11 +141,11 @@ def _from_degrees(log):
 
 def turned_grid(angle: float) -> Mislabel:
     """Positions in a grid that is turned against heading and velocities, clockwise by some degrees."""
+    return Mislabel("frame", POSITION, TURNED, partial(_turned_back, angle))
 
-    def undo(log):
-        return dict(zip(POSITION, _turned_to_body(log["north"], log["east"], angle), strict=True))
 
-    return Mislabel("frame", POSITION, TURNED, undo)
+def _turned_back(angle, log):
+    return _turned_to_body(POSITION, log["north"], log["east"], angle)
 
 
 def _from_bow(log):
@@ -172,11 +168,12 @@ def _apparent_from_north(log):
     return _apparent(log | _from_bow(log))
 
 
+def _from_east(log):
+    return {"heading": np.mod(90.0 - log["heading"], 360.0)}
+
+
 HEADING_FROM_EAST = Mislabel(
-    "frame",
-    ("heading",),
-    "heading is counted counter-clockwise from east",
-    lambda log: {"heading": np.mod(90.0 - log["heading"], 360.0)},
+    "frame", ("heading",), "heading is counted counter-clockwise from east", _from_east
 )
 POSITION_IN_DEGREES = Mislabel(
     "frame", POSITION, "north and east are degrees of latitude and longitude", _from_degrees
@@ -204,22 +201,6 @@ WIND_LABELS = (
     _in_unit(("wind_speed",), KNOT, "wind_speed is in kn, not m/s"),
     _in_unit(("wind_speed",), 1.0 / KNOT, "wind_speed is in m/s, not kn"),
 )
-MISLABELS = (
-    *POSITION_LABELS,
-    *WIND_LABELS,
-    negative("heading"),
-    negative("yaw_rate"),
-    HEADING_FROM_EAST,
-    POSITION_IN_DEGREES,
-    velocity_frame("east", "north"),
-    *(
-        mislabel_of_unit(channels, unit, stated)
-        for channels, units in CHANNEL_UNITS.items()
-        for unit in units
-        for stated in units
-        if unit != stated
-    ),
-)
 
 
 def possible(labels: Iterable[Mislabel], log: Container[str]) -> list[Mislabel]:
@@ -230,32 +211,8 @@ def possible(labels: Iterable[Mislabel], log: Container[str]) -> list[Mislabel]:
 def finding_of(mislabel: Mislabel, probability: float, segment: Segment | None = None) -> Finding:
     """The finding that a log has a mislabel, in a segment (from, to) [s] or throughout."""
     segments = (segment,) if segment else ()
-    return log_fault(mislabel.cause, mislabel.channels, mislabel.sentence, segments, probability)
-
-
-def mislabel_of(finding: Finding) -> Mislabel | None:
-    """The mislabel that a finding names by its note; None where the finding is another fault, or leaves it open."""
-    if finding.alternatives:
-        return None
-    # The angle of a turned grid is a parameter of the finding.
-    if finding.note.startswith(TURNED) and "angle" in finding.parameters:
-        return turned_grid(finding.parameters["angle"].estimate)
-    # Labels of thrusters are not listed, as they depend on names; rebuild them from the channels.
-    half = len(finding.channels) // 2
-    of_thrusters = []
-    if finding.channels and all(role.endswith(DRIVES) for role in finding.channels):
-        pairs = list(zip(finding.channels[:half], finding.channels[half:], strict=False))
-        of_thrusters = [exchanged(pairs)] if pairs else [negative(finding.channels[0])]
-    listed = (*MISLABELS, *of_thrusters)
-    return next((m for m in listed if (m.cause, m.sentence) == (finding.cause, finding.note)), None)
-
-
-def mislabel_in(finding: Finding) -> Mislabel:
-    """The mislabel of a finding that is one; `mislabel_of` where it can be another fault."""
-    mislabel = mislabel_of(finding)
-    if mislabel is None:
-        raise ValueError(f"no mislabel: {finding.label}")
-    return mislabel
+    found = log_fault(mislabel.cause, mislabel.channels, mislabel.sentence, segments, probability)
+    return replace(found, mislabel=mislabel)
 
 
 def undone(

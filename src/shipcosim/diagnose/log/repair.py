@@ -8,7 +8,7 @@ import xarray
 from shipcosim.angles import wrap_series
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.checks.samples import outliers
-from shipcosim.diagnose.log.mislabels import mislabel_of, undone
+from shipcosim.diagnose.log.mislabels import undone
 from shipcosim.diagnose.log.roles import role_of
 from shipcosim.diagnose.log.rows import inside, usable_rows, usual_distance, usual_step
 from shipcosim.diagnose.log.thresholds import HOLE, LONGEST_SPAN
@@ -110,11 +110,8 @@ def read_anew(log: dict, findings: Sequence[Finding]) -> dict:
 
 def _labels_throughout(findings):
     """The heading first: velocities are turned by it."""
-    found = [(mislabel_of(f), f) for f in findings if not f.segments]
-    return sorted(
-        (m for m, _ in found if m is not None),
-        key=lambda mislabel: mislabel.channels != ("heading",),
-    )
+    found = [f.mislabel for f in findings if f.mislabel is not None and not f.segments]
+    return sorted(found, key=lambda mislabel: mislabel.channels != ("heading",))
 
 
 def _true_time(logged, base, findings, step):
@@ -146,9 +143,8 @@ def _put_right(time, channels, findings):
     # Mistakes of the whole log first, then those of segments.
     channels = read_anew({"time": time, **channels}, findings) | {"time": time}
     for finding in findings:
-        mislabel = mislabel_of(finding)
-        if mislabel is not None and finding.segments:
-            channels = undone(channels, mislabel, finding.segments)
+        if finding.mislabel is not None and finding.segments:
+            channels = undone(channels, finding.mislabel, finding.segments)
     # Gaps, wraps and outliers become NaN; the other faults are corrected, not removed.
     cut_out = [finding for finding in findings if finding.cause in CUT_OUT]
     channels = without_findings(channels, cut_out)

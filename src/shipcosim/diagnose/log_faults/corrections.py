@@ -18,8 +18,6 @@ from shipcosim.diagnose.log.checks.wind import leaps
 from shipcosim.diagnose.log.mislabels import (
     WIND_LABELS,
     finding_of,
-    mislabel_in,
-    mislabel_of,
     possible,
 )
 from shipcosim.diagnose.log.repair import repaired
@@ -91,7 +89,7 @@ def with_right_clock(found: Identification) -> Identification:
 def with_right_wind(found: Identification) -> Identification:
     """The log with a mislabelled wind read as the ship's response says: what it is instead, and where."""
     for place, fault in enumerate(found.faults):
-        if mislabel_of(fault) in WIND_LABELS and len(fault.segments) < 2:
+        if fault.mislabel in WIND_LABELS and len(fault.segments) < 2:
             found = _with_right_wind_label(found, place)
     return found
 
@@ -133,7 +131,7 @@ def _likeliest_direction(as_logged, fault):
     log = as_logged.repaired
     problem = as_logged.problem
     # A unit of the speed leaves the direction as it is.
-    if mislabel_in(fault).scale is not None:
+    if fault.mislabel.scale is not None:
         return fault, problem
     # Undo each label of the direction, and compare likelihoods about the same motion.
     directions = [label for label in possible(WIND_LABELS, log) if label.scale is None]
@@ -141,7 +139,7 @@ def _likeliest_direction(as_logged, fault):
     label = max(
         rights, key=lambda label: likelihood(problem, record_of(rights[label], as_logged.ship))
     )
-    if label is mislabel_of(fault):
+    if label == fault.mislabel:
         return fault, problem
     # Identify anew with the likeliest one; it must gain enough to replace the fault.
     again = identification_problem(rights[label], as_logged.ship, as_logged.causes)
@@ -238,7 +236,7 @@ def _without(found, faults):
 
 def _relabelled(found, fault):
     """An identification anew, of its repaired log with a mislabel undone too."""
-    log = with_label(found.repaired, mislabel_in(fault), fault.segments)
+    log = with_label(found.repaired, fault.mislabel, fault.segments)
     return replace(
         found, repaired=log, problem=identification_problem(log, found.ship, found.causes)
     )
@@ -250,7 +248,7 @@ def _with_settled_segment(found, fault):
     `found` has the log without it corrected, and the problem with it corrected in its first segment.
     """
     # Segment and motion depend on each other: refine one with the other, a few times.
-    right = replace(found, repaired=with_label(found.repaired, mislabel_in(fault), fault.segments))
+    right = replace(found, repaired=with_label(found.repaired, fault.mislabel, fault.segments))
     for _ in range(ROUNDS_OF_SEGMENT):
         refined = with_refined_segment(found.repaired, fault, right.problem)
         if refined is fault:
@@ -262,7 +260,7 @@ def _with_settled_segment(found, fault):
 
 def _shows_at_its_ends(log, fault):
     """Whether another unit of the wind in a part of a log shows at its ends: what takes her wind away does not."""
-    mislabel = mislabel_in(fault)
+    mislabel = fault.mislabel
     if mislabel not in WIND_LABELS or mislabel.scale is None:
         return True
     speed = log["wind_speed"].values
@@ -277,7 +275,7 @@ def _shows_at_its_ends(log, fault):
 
 def _least_gain(fault, fit):
     """What a fault of the inputs' channels must gain over a fit: little, if a wrong unit looks like a cause in it."""
-    label = mislabel_of(fault)
+    label = fault.mislabel
     alike = {channel for one in fit.hypotheses for channel in one.definition.unit_of}
     is_unit = label is not None and label.scale is not None
     return UNIT if is_unit and alike & set(fault.channels) else FAULT

@@ -24,7 +24,6 @@ from shipcosim.diagnose.log.mislabels import (
     Mislabel,
     exchanged,
     finding_of,
-    mislabel_in,
     negative,
     possible,
     undone,
@@ -96,7 +95,7 @@ def with_refined_segment(
     # Log-likelihoods by the ends of the segment, kept since the search returns to the same ones.
     time = problem.record.time
     known = {}
-    relabelled = _Relabelled(log, mislabel_in(finding), problem)
+    relabelled = _Relabelled(log, finding.mislabel, problem)
     least = round(SHORTEST_INPUT / problem.record.step)
     last = time.size - 1
 

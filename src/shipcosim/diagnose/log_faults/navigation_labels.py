@@ -18,8 +18,6 @@ from shipcosim.diagnose.inference.parts import linearised_by_parts
 from shipcosim.diagnose.log.checks.kinematics import filter_for, is_clear, position_motion
 from shipcosim.diagnose.log.mislabels import (
     POSITION_LABELS,
-    mislabel_in,
-    mislabel_of,
     negative,
     possible,
 )
@@ -77,7 +75,7 @@ def relabelled(
     list of Relabelled
     """
     # The log with all faults corrected but those of navigation labels.
-    found = [fault for fault in faults if mislabel_of(fault) in LABELS]
+    found = [fault for fault in faults if fault.mislabel in LABELS]
     others = [fault for fault in faults if fault not in found]
     plain = in_stretches(repaired(log, others), problem.model.length)
     # With several such faults, or none and clear kinematics, the response of the ship adds nothing.
@@ -92,15 +90,14 @@ def relabelled(
         )
     # Log-likelihood of each row as logged, and its gain with each label undone.
     base = _by_row(problem, record_of(plain, problem.model))
-    known = [mislabel_in(fault) for fault in found]
+    known = [fault.mislabel for fault in found]
     labels = [
         label for label in possible(LABELS, plain) if label in known or _matters(plain, label)
     ]
     gains = {label: _gain(plain, label, problem) - base for label in labels}
     # What the present faults gain is the threshold for others, with a margin.
     so_far = sum(
-        float(gains[mislabel_in(one)][inside(problem.record.time, one.segments)].sum())
-        for one in found
+        float(gains[one.mislabel][inside(problem.record.time, one.segments)].sum()) for one in found
     )
     tried = _likely(gains, problem.record, max(LABEL_GAIN, so_far + BETTER_LABEL))
     # Units change the density of the data; correct for the
@@ -119,7 +116,7 @@ def _likely(gains, record, least):
         (one.note, one.segments): one
         for part in likely[:LIKELY_LABELS]
         for one in (
-            (part,) if mislabel_in(part).scale is not None else (part, replace(part, segments=()))
+            (part,) if part.mislabel.scale is not None else (part, replace(part, segments=()))
         )
     }
     return tried.values()
@@ -180,7 +177,7 @@ def _by_row(problem, record):
 
 def _density(finding, problem):
     """Logarithm of the factors by which a finding changes the values of its channels."""
-    scale = mislabel_in(finding).scale or 1.0
+    scale = finding.mislabel.scale or 1.0
     places = [CHANNELS.index(role) for role in finding.channels]
     here = (
         np.isfinite(problem.record.measured[:, places])

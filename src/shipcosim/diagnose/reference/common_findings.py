@@ -11,7 +11,7 @@ from shipcosim.diagnose.comparison.gains import CommonRatio
 from shipcosim.diagnose.comparison.labels import Labels
 from shipcosim.diagnose.comparison.thresholds import COMMON_SPREAD
 from shipcosim.diagnose.finding import Discrepancy, Finding, ParameterEstimate
-from shipcosim.diagnose.log.mislabels import DRIVES, mislabel_in, undone
+from shipcosim.diagnose.log.mislabels import DRIVES, undone
 from shipcosim.diagnose.log.rows import arrays_of
 from shipcosim.diagnose.numerics import survival
 from shipcosim.diagnose.reference.thresholds import APART, SAME_RATIO
@@ -98,12 +98,12 @@ def with_right_labels(log: xarray.Dataset, faults: Sequence[Finding]) -> xarray.
     ----------
     log : xarray.Dataset
     faults : sequence of Finding
-        Mislabels, as `mislabel_in` takes them.
+        Those of labels, with their `mislabel`.
     """
     # Correct one fault after the other, each on the result of the one before.
     columns = arrays_of(log)
     for fault in faults:
-        columns = undone(columns, mislabel_in(fault), ())
+        columns = undone(columns, fault.mislabel, ())
     changed = log.copy()
     for role in {role for fault in faults for role in fault.channels}:
         changed[role] = log[role].copy(data=columns[role])

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
+from shipcosim.diagnose.log.mislabels import finding_of, negative
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.errors import ShipcosimError
 from shipcosim.series import make_table
@@ -86,9 +87,7 @@ def test_a_stamp_years_away_is_refused_instead_of_filled_up_to():
 
 def test_findings_are_undone_in_their_segments_only():
     time = np.arange(100.0)
-    sign = Finding(
-        "sign", None, "data", 1.0, {}, ((20.0, 40.0),), ("surge",), note="surge has the other sign"
-    )
+    sign = finding_of(negative("surge"), 1.0, (20.0, 40.0))
     gap = Finding("gap", None, "data", 1.0, {}, ((60.0, 70.0),), ("surge",))
     surge = repaired(log_of(time, surge=time + 1.0), [sign, gap])["surge"].values
     assert surge[19:42].tolist() == [20.0, *(-(time[20:41] + 1.0)), 42.0]

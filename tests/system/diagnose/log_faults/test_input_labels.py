@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from diagnose import twin
 
-from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of, mislabel_in
+from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
 from shipcosim.diagnose.log_faults.input_labels import (
     best_run,
     suspected_inputs,
@@ -33,7 +33,7 @@ def changed(channels, part=True):
 
 def best(log):
     finding = suspected_inputs(log, twin.ready(log))[0]
-    return finding, with_label(log, mislabel_in(finding), finding.segments)
+    return finding, with_label(log, finding.mislabel, finding.segments)
 
 
 def test_a_tunnel_of_the_other_sign_is_found_in_its_part_of_the_log():
@@ -55,7 +55,7 @@ def test_the_ends_of_a_segment_are_settled_to_a_few_rows():
     finding = suspected_inputs(log, twin.ready(log))[0]
     finding = replace(finding, segments=((FIRST + 25.0, LAST - 30.0),))
     for _ in range(2):
-        right = with_label(log, mislabel_in(finding), finding.segments)
+        right = with_label(log, finding.mislabel, finding.segments)
         finding = with_refined_segment(log, finding, twin.ready(right))
     ((first, last),) = finding.segments
     assert abs(first - FIRST) <= 4.0 and abs(last - LAST) <= 4.0

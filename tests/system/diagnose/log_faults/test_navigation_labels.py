@@ -5,13 +5,8 @@ from dataclasses import replace
 import numpy as np
 from diagnose import twin
 
-from shipcosim.diagnose.finding import Finding
-from shipcosim.diagnose.log.mislabels import POSITION_LABELS, negative
+from shipcosim.diagnose.log.mislabels import POSITION_LABELS, finding_of, negative
 from shipcosim.diagnose.log_faults.navigation_labels import _matters, relabelled
-
-
-def said(label):
-    return Finding(label.cause, None, "data", 1.0, {}, (), label.channels, note=label.sentence)
 
 
 def test_another_label_than_was_found_first_is_taken():
@@ -23,7 +18,7 @@ def test_another_label_than_was_found_first_is_taken():
         for label in POSITION_LABELS
         if label.channels == ("surge", "sway") and label.scale is None
     )
-    better, *_ = relabelled(log, [said(swap)], twin.ready(healthy))
+    better, *_ = relabelled(log, [finding_of(swap, 1.0)], twin.ready(healthy))
     assert [(fault.cause, fault.channels, fault.segments) for fault in better.faults] == [
         ("sign", ("east",), ())
     ]
@@ -32,7 +27,7 @@ def test_another_label_than_was_found_first_is_taken():
 def test_what_was_found_rightly_stays():
     healthy = twin.logs()["healthy"]
     log = healthy.assign(east=("time", -healthy["east"].values, healthy["east"].attrs))
-    assert relabelled(log, [said(negative("east"))], twin.ready(healthy)) == []
+    assert relabelled(log, [finding_of(negative("east"), 1.0)], twin.ready(healthy)) == []
 
 
 def test_units_stretch_the_density_of_their_channels():
@@ -46,8 +41,8 @@ def test_units_stretch_the_density_of_their_channels():
         problem,
         noise=replace(problem.noise, white=problem.noise.white * [1, 1, 1, 1.944, 1.944, 1]),
     )
-    swap = said(next(label for label in POSITION_LABELS if label.cause == "channel_swap"))
-    better, *_ = relabelled(log, [swap], loud)
+    swap = next(label for label in POSITION_LABELS if label.cause == "channel_swap")
+    better, *_ = relabelled(log, [finding_of(swap, 1.0)], loud)
     assert better.faults[0].note == "surge and sway are in kn, not m/s"
     rows = 2 * np.isfinite(healthy["surge"].values).sum()
     np.testing.assert_allclose(better.density, -rows * np.log(3600.0 / 1852.0), rtol=1e-6)

@@ -8,6 +8,7 @@ import pytest
 from shipcosim.diagnose.comparison.gains import CommonRatio
 from shipcosim.diagnose.comparison.label_hypotheses import LabelError
 from shipcosim.diagnose.finding import Discrepancy, Finding, ParameterEstimate
+from shipcosim.diagnose.log.mislabels import exchanged, finding_of
 from shipcosim.diagnose.reference.common_findings import (
     common_discrepancies,
     common_faults,
@@ -18,12 +19,7 @@ from shipcosim.diagnose.reference.common_findings import (
 )
 from shipcosim.series import make_table
 
-SWAP = Finding(
-    "channel_swap",
-    kind="data",
-    channels=("left_thrust", "right_thrust"),
-    note="left_thrust with right_thrust are swapped",
-)
+SWAP = finding_of(exchanged([("left_thrust", "right_thrust")]), 1.0)
 
 
 def ratios(*sizes, axes=("surge", "sway", "yaw")):

@@ -12,7 +12,7 @@ from shipcosim.diagnose.log.checks.samples import gaps, lifeless, wraps
 from shipcosim.diagnose.log.checks.wind import mislabelled_wind
 from shipcosim.diagnose.log.checks.wind_jumps import jumping_wind
 from shipcosim.diagnose.log.checks.yaw_rate import silent_rate
-from shipcosim.diagnose.log.mislabels import mislabel_in, undone
+from shipcosim.diagnose.log.mislabels import undone
 from shipcosim.diagnose.log.readings.parts import mislabelled
 from shipcosim.diagnose.log.readings.reading import explained, is_as_labelled, misread
 from shipcosim.diagnose.log.repair import rate_of, read_anew, without_findings
@@ -78,7 +78,7 @@ def _in_parts(table, stated):
     # Where the ship does not turn, a yaw rate in rad/s shows by its noise alone.
     quiet = silent_rate(right)
     labels = [*labels, *quiet]
-    right = undone(right, mislabel_in(quiet[0]), quiet[0].segments) if quiet else right
+    right = undone(right, quiet[0].mislabel, quiet[0].segments) if quiet else right
     # A wrong clock can look like a wrong label. Where both were found at
     # one place, the label is dropped and the clock is estimated again.
     clock = wrong_clock(right)
@@ -86,7 +86,7 @@ def _in_parts(table, stated):
     if len(kept) < len(labels):
         right = table
         for label in kept:
-            right = undone(right, mislabel_in(label), label.segments)
+            right = undone(right, label.mislabel, label.segments)
         clock = wrong_clock(right)
     return [*kept, *(mislabelled_wind(right) or jumping_wind(right)), *_agreeing(clock)]
 
