@@ -219,14 +219,7 @@ class Axis:
 
     @cached_property
     def _prior(self) -> np.ndarray:
-        """What forces that no model knows may be, as coefficients of their columns."""
-        # Damping and model loads are free except for their sign; coupling and steady forces have a
-        # standard deviation of a share of the commanded force.
-        return np.where(
-            self.positive,
-            np.inf,
-            STEADY_SHARE * self.size / np.sqrt((self.rest**2).mean(0) + 1e-30),
-        )
+        return prior_of(self.rest, self.positive, self.size)
 
     @cached_property
     def _without(self) -> Regression:
@@ -242,6 +235,24 @@ class Axis:
         along = columns.T @ self.hull / max(float(self.hull @ self.hull), 1e-30)
         variance = float(along @ found.covariance[own, own] @ along)
         return float(along @ found.coefficients[own]), float(np.sqrt(variance))
+
+
+def prior_of(rest: np.ndarray, positive: np.ndarray, size: float) -> np.ndarray:
+    """What forces that no model knows may be, as standard deviations of the coefficients of their columns.
+
+    Parameters
+    ----------
+    rest, positive, size
+        As of an `Axis`.
+
+    Returns
+    -------
+    (q,) array
+    """
+    # Damping and model loads are free except for their sign; coupling and steady forces have a
+    # standard deviation of a share of the commanded force.
+    share = STEADY_SHARE * size / np.sqrt((rest**2).mean(0) + 1e-30)
+    return np.where(positive, np.inf, share)
 
 
 def axes_of(felt: Felt, commanded: Commanded, model: ShipModel) -> list[Axis]:

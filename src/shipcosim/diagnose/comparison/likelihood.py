@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.diagnose.comparison.axes import rest_of
+from shipcosim.diagnose.comparison.axes import prior_of, rest_of
 from shipcosim.diagnose.comparison.causality import blocks, with_past
 from shipcosim.diagnose.comparison.commanded import Commanded, moving_mass
 from shipcosim.diagnose.comparison.measured_force import Felt
@@ -24,7 +24,6 @@ from shipcosim.diagnose.comparison.thresholds import (
     LEAST_GAIN_STD,
     LEAST_LEVER,
     LEAST_OF_ALL,
-    STEADY_SHARE,
     THRUSTER_WIDTH,
     WAY_WIDTH,
 )
@@ -207,12 +206,11 @@ def _fitted(
     widths: np.ndarray | None = None,
 ) -> _Fit:
     """The measured force on an axis explained, with errors that are autoregressive."""
-    # Prior of forces that no model contains, relative to what the thrusters can give.
     axis = log.axes[i]
     rows = log.rows
     order = CAUSAL_ORDER
-    prior = STEADY_SHARE * log.sizes[i] / np.sqrt((axis.rest**2).mean(0) + 1e-30)
-    prior = np.where(axis.positive, np.inf, prior)
+    # Forces that no model contains are of the order of what the thrusters can give.
+    prior = prior_of(axis.rest, axis.positive, log.sizes[i])
     positive = axis.positive
     columns = axis.rest
     # Start the autoregression from white errors, and from that without thrusters: the alternation

@@ -33,8 +33,6 @@ FASTER = 5.0
 """Over what three in four changes of a log stay below, from which on it is no turn of the craft. Assumed."""
 LEAP = 5.0
 """Way between two rows over that by the logged velocity, from which on rows were lost. Assumed."""
-UNEVEN = 0.05
-"""Median distance of the spans from whole steps, in steps, from which on the times of a log are uneven. Assumed."""
 END_DISTANCE = 10.0
 """Distance of the first or last sample of a channel from the middle of all others over their range, from which on it is
 no measurement: it has one neighbour only. Start-up rows were off by millions. Assumed."""
@@ -259,7 +257,8 @@ HOLE = 1.5
 LONGEST_SPAN = 50.0
 """Span of a log over what its rows can fill, from which on some of its stamps are wrong. Assumed."""
 UNEVEN = 0.02
-"""Spread of the steps as a share of the usual one, from which on it is remarked. Assumed."""
+"""Spread of the steps as a share of the usual one, from which on it is remarked; and median distance of the spans from
+whole steps, in steps, from which on the times of a log are uneven. Assumed."""
 LATEST = 2.6e11
 """Latest time that is one, after the year 9999 counted from 1970. [s]"""
 SHORTEST_STEP = 2e-4

@@ -15,14 +15,13 @@ from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import rows_first
 from shipcosim.diagnose.inference.parts import with_columns
 from shipcosim.diagnose.inference.screening import screened
-from shipcosim.diagnose.log.checks.clock import differences, nats_of_rate, sums_of_runs
+from shipcosim.diagnose.log.checks.clock import differences, evidence_of_rate, sums_of_runs
 from shipcosim.diagnose.log.rows import inside
 from shipcosim.diagnose.log_faults.thresholds import (
     ASPECT_APART,
     ASPECT_CHANCE,
     CLOCK_BLOCK,
     CLOCK_GAIN,
-    CLOCK_SLAB,
     LARGEST_SHARE,
     MOST_BLOCKS,
     MOST_SEGMENTS,
@@ -130,7 +129,8 @@ def with_rate(problem: IdentificationProblem, finding: Finding, log: xarray.Data
     # The blocks inside the segments, every second one, give
     # the remaining rate error by regularised least squares.
     own = np.arange(1, len(inner), 2)
-    more = blocks.match[own].sum() / (blocks.gram[np.ix_(own, own)].sum() + CLOCK_SLAB**-2)
+    energy = blocks.gram[np.ix_(own, own)].sum()
+    _, more, _ = evidence_of_rate(blocks.match[own].sum(), energy)
     rate = finding.parameters["rate"]
     return replace(
         finding, parameters={"rate": replace(rate, estimate=float(rate.estimate * (1.0 + more)))}
@@ -148,7 +148,8 @@ def is_testable(problem: IdentificationProblem) -> bool:
     if not energies.size:  # the log is shorter than a typical segment
         return False
     energy = np.median(energies)
-    return bool(nats_of_rate(TYPICAL_RATE * energy, energy) - 2.0 * np.log(count) > CLOCK_GAIN)
+    nats, _, _ = evidence_of_rate(TYPICAL_RATE * energy, energy)
+    return bool(nats - 2.0 * np.log(count) > CLOCK_GAIN)
 
 
 def _edges(problem):
@@ -172,23 +173,22 @@ def _most_likely(blocks):
     runs = []
     # Greedy search: add the run that gains most together with those that were chosen before.
     for _ in range(MOST_SEGMENTS):
-        at = _best(match, energy, allowed)
-        # Both ends of each run are chosen among all edges,
-        # which costs two logarithms of their number.
-        nats = nats_of_rate(match[at], energy[at]) - cost * (1 + len(runs))
-        if nats < gain + CLOCK_GAIN * (not runs) or np.isneginf(nats):
+        most = np.argmax(np.where(allowed, evidence_of_rate(match, energy)[0], -np.inf))
+        first, last = at = np.unravel_index(most, match.shape)
+        # Rate error that is common to the runs. Both ends of each run are chosen
+        # among all edges, which costs two logarithms of their number.
+        nats, *estimate = evidence_of_rate(match[at], energy[at])
+        nats = nats - cost * (1 + len(runs))
+        if nats < gain + CLOCK_GAIN * (not runs):
             break
         gain = nats
         runs = [*runs, at]
-        # Posterior mean and standard deviation of the rate error that is common to the runs.
-        value = match[at] / (energy[at] + CLOCK_SLAB**-2)
-        std = (energy[at] + CLOCK_SLAB**-2) ** -0.5
+        value, std = estimate
         # Runs of one clock have a common rate: match and energy
         # of every other run are now those of both together.
         match = match[at] + match
         energy = energy[at] + energy + 2.0 * blocks.with_run(*at)
         # Further runs may not overlap this one.
-        first, last = at
         allowed = allowed & (
             (np.arange(count + 1)[None, :] <= first) | (np.arange(count + 1)[:, None] >= last)
         )
@@ -206,11 +206,6 @@ def _most_likely(blocks):
     }
     note = "the ship answers thrusters and wind at another rate than logged"
     return float(gain), log_fault("clock", ("time",), note, segments, 0.98, rate)
-
-
-def _best(match, energy, allowed):
-    nats = np.where(allowed, nats_of_rate(match, energy), -np.inf)
-    return np.unravel_index(np.argmax(nats), nats.shape)
 
 
 def _blocks(problem, edges, columns: list[Regressor]):

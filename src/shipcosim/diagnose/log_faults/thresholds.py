@@ -62,8 +62,6 @@ CLOCK_GAIN = 8.0
 """What a wrong clock must gain after the cost of choosing its segments. [nats]"""
 OVER_CAUSE = 5.0
 """More than the likeliest cause. [nats]"""
-CLOCK_SLAB = 0.25
-"""Prior standard deviation of ρ - 1, with ρ true seconds per logged second."""
 CLOCK_BLOCK = 12.0
 """Blocks of which its segments consist. [s]"""
 MOST_BLOCKS = 400

@@ -5,6 +5,7 @@ time, in all channels. What holds for the whole log alike, such as a scale of th
 """
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -195,7 +196,7 @@ def _best(sides, blocks, gram, edges):
     count = len(edges) - 1
     match = np.sum([side.match(c) for side, c in zip(sides, blocks, strict=True)], axis=0)
     span = differences(np.arange(count + 1))
-    nats, value, _ = _evidence(*sums_of_runs(match, gram))
+    nats, value, _ = evidence_of_rate(*sums_of_runs(match, gram))
     # Exclude runs that are too short, too long for
     # part of a log, or off by less than the tolerance.
     nats[
@@ -226,21 +227,15 @@ def sums_of_runs(match: np.ndarray, gram: np.ndarray) -> tuple[np.ndarray, np.nd
     )
 
 
-def nats_of_rate(match: np.ndarray, energy: np.ndarray) -> np.ndarray:
-    """Evidence for a rate other than 1, from the match of a column with the data and its energy."""
+def evidence_of_rate(match: Any, energy: Any) -> tuple[Any, Any, Any]:
+    """Nats, estimate and standard deviation of ρ - 1 from the match of a column with the data and its energy.
+
+    Both are floats, or arrays of one shape.
+    """
     # Bayes factor of a normal prior of width CLOCK_SLAB against a rate of exactly 1.
     precision = np.maximum(energy, 0.0) + CLOCK_SLAB**-2
-    return 0.5 * match**2 / precision - 0.5 * np.log(precision * CLOCK_SLAB**2)
-
-
-def _evidence(match, energy):
-    """Nats, estimate and standard deviation of ρ - 1 from the match of a column with the data and its energy."""
-    precision = np.maximum(energy, 0.0) + CLOCK_SLAB**-2
-    return (
-        nats_of_rate(match, energy),
-        match / precision,
-        precision**-0.5,
-    )
+    nats = 0.5 * match**2 / precision - 0.5 * np.log(precision * CLOCK_SLAB**2)
+    return nats, match / precision, precision**-0.5
 
 
 def _refined(sides, first, last, cost):
@@ -259,12 +254,12 @@ def _refined(sides, first, last, cost):
                 if end == 0
                 else (np.full_like(places, first), places)
             )
-            nats = _evidence(*_joint(sides, firsts, lasts))[0]
+            nats = evidence_of_rate(*_joint(sides, firsts, lasts))[0]
             # The coarse search takes the best place, the fine one the median of the posterior.
             place = float(places[np.argmax(nats)]) if stride > 1 else _middle(places, nats)
             first, last = (place, last) if end == 0 else (first, place)
     # Final estimate from both comparisons jointly, and from each alone.
-    nats, value, std = (float(x[0]) for x in _evidence(*_joint(sides, [first], [last])))
+    nats, value, std = (float(x[0]) for x in evidence_of_rate(*_joint(sides, [first], [last])))
     apart = tuple(_alone(side, first, last) for side in sides)
     return _Segment(first, last, nats - cost, value, std, apart)
 

@@ -141,11 +141,15 @@ def jumps(seen: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Filter:
-    """Kalman filter of a level: gains of each row and the standard deviation of the innovations."""
+    """Kalman filter of a level: gains of each row and the standard deviation of the innovations.
+
+    `ratio`: the variance of wander over noise that it is for; one of RATIOS.
+    """
 
     gains: np.ndarray
     scale: np.ndarray
     std: float = 1.0
+    ratio: float = 0.0
 
     def __call__(self, levels: np.ndarray) -> np.ndarray:
         """Innovations of levels (n, ...) in units of their standard deviation; 0 where a row starts anew."""
@@ -217,7 +221,9 @@ def _filters(steps, starts):
         total = variance + ratios * step + 1.0
         variance = np.minimum(1.0 - 1.0 / total, 1.0 - 1e-9)
         gains[row], scale[row] = variance, total
-    return tuple(Filter(gains[:, k], np.sqrt(scale[:, k])) for k in range(len(RATIOS)))
+    return tuple(
+        Filter(gains[:, k], np.sqrt(scale[:, k]), ratio=ratio) for k, ratio in enumerate(RATIOS)
+    )
 
 
 def _spreads(white):

@@ -13,7 +13,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from shipcosim.diagnose.log.checks.kinematics import RATIOS, Filter, after_gaps, filters, whiteness
+from shipcosim.diagnose.log.checks.kinematics import Filter, after_gaps, filters, whiteness
 from shipcosim.diagnose.log.thresholds import (
     CALM_SHARE,
     FEWEST_FITTED,
@@ -116,7 +116,7 @@ def fitted(
     if (~starts).sum() < FEWEST_FITTED:
         return {}
     # Fit each pair, and compare it with a random walk of the observed channel alone.
-    fits, alone = _fits(filters(time, starts), pairs, labelled, axes)
+    fits, alone = likeliest_fits(filters(time, starts), pairs, labelled, axes)
     best = max(fits, key=lambda key: fits[key].likelihood - alone[key])
     # Correlated residuals carry less information: divide the evidence by their correlation.
     rough = whiteness(np.column_stack([fits[best].rest.real, fits[best].rest.imag][:axes]))
@@ -140,8 +140,13 @@ def thinned(count: int, series: Sequence[np.ndarray]) -> slice:
     return slice(None, None, stride)
 
 
-def _fits(drafts: Sequence[Filter], pairs, labelled, axes):
-    """Of each pair the fit under the noise that suits it best, and how likely what is seen is by itself."""
+def likeliest_fits(
+    drafts: Sequence[Filter], pairs: dict, labelled: Hashable = None, axes: int = 2
+) -> tuple[dict, dict]:
+    """The `RowsFit` of each pair under the noise that suits it best, and how likely what is seen is by itself.
+
+    `drafts`: a filter for each noise that is tried; the others as of `fitted`.
+    """
     # Whiten each array only once, as columns of one matrix.
     columns = {id(one): one for pair in pairs.values() for one in pair}
     stacked = np.stack(list(columns.values()), axis=1)
@@ -152,11 +157,11 @@ def _fits(drafts: Sequence[Filter], pairs, labelled, axes):
     # Likelihood of each observed channel without any explanation, under its best noise ratio.
     alone = dict.fromkeys((id(seen) for seen, _ in pairs.values()), -np.inf)
     # Try each ratio of wander to noise, and keep for each pair the one with the largest likelihood.
-    for draft, ratio in zip(drafts, RATIOS, strict=True):
+    for draft in drafts:
         known = draft.gains < 1.0
         # The Jacobian of the whitening enters the likelihood, so that ratios can be compared.
         scale = draft.scale[known]
-        white = whitened(draft, stacked)
+        white = (draft(np.real(stacked)) + 1j * draft(np.imag(stacked)))[known]
         offset = -axes * float(np.sum(np.log(scale)))
         # White noise of a rate adds up to a random walk. This is the variance
         # that it has after the whitening, by the median gain of the filter.
@@ -166,7 +171,7 @@ def _fits(drafts: Sequence[Filter], pairs, labelled, axes):
         for name in alone:
             alone[name] = max(alone[name], _likelihood(white[:, place[name]], axes)[0] + offset)
         for key, (seen, told) in pairs.items():
-            fit = fit_rows(white[:, place[id(seen)]], white[:, place[id(told)]], axes, offset)
+            fit = _fit(white[:, place[id(seen)]], white[:, place[id(told)]], axes, offset)
             if key not in fits or fit.likelihood > fits[key].likelihood:
                 rows_noise = axes * adds_up * abs(fit.factor) ** 2 * noises[id(told)]
                 # What the labels leave can be held against it where both tell of the same rows.
@@ -174,28 +179,16 @@ def _fits(drafts: Sequence[Filter], pairs, labelled, axes):
                 fits[key] = replace(
                     fit,
                     as_labelled=own[0] - own[1] if is_same else None,
-                    wander=axes * adds_up * ratio * fit.variance,
+                    wander=axes * adds_up * draft.ratio * fit.variance,
                     rows_noise=rows_noise,
                 )
     return fits, {key: alone[id(seen)] for key, (seen, _) in pairs.items()}
 
 
-def whitened(draft: Filter, series: np.ndarray) -> np.ndarray:
-    """Complex series through a filter, on the rows that it predicts."""
-    return (draft(np.real(series)) + 1j * draft(np.imag(series)))[draft.gains < 1.0]
-
-
-def fit_rows(seen: np.ndarray, told: np.ndarray, axes: int, offset: float) -> RowsFit:
+def _fit(seen, told, axes, offset):
     """The factor that leaves least of white rows, those that it does not explain at all counting little.
 
-    Parameters
-    ----------
-    seen, told : (n,) complex arrays
-        Whitened.
-    axes : int
-        2, or 1 where both are real.
-    offset : float
-        Of the logarithm of the likelihood, by the whitening.
+    `offset`: of the logarithm of the likelihood, by the whitening.
     """
     # Iteratively reweighted least squares with Huber weights:
     # outliers count as little as their distance requires.

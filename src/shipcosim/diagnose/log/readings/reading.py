@@ -111,7 +111,7 @@ def evidence_of(log: dict) -> Evidence:
     # The heading as logged, and read as radians or as degrees instead.
     headings = {unit: unit * log["heading"] for unit in (1.0, DEGREE, 1.0 / DEGREE)}
     # Heading against the integral of the yaw rate.
-    rate = rate_relations(log["time"], headings, log["yaw_rate"]) if "yaw_rate" in log else {}
+    rate = rate_relations(log, headings)
     position = {}
     speed = None
     courses = {}

@@ -99,7 +99,7 @@ def position_relations(log: dict, headings: dict, positions: dict) -> dict:
     Parameters
     ----------
     log : dict of (n,) arrays
-        `time` [s], `surge` and `sway` [m/s].
+        `time` [s] and roles in their units as logged.
     headings : dict of (n,) arrays
         By how they are read. [deg]
     positions : dict of (n,) complex arrays
@@ -109,15 +109,12 @@ def position_relations(log: dict, headings: dict, positions: dict) -> dict:
     -------
     dict of (heading, position) to dict of form to Relation
     """
-    # Rows in which velocity and all readings of heading and position have values.
-    velocity = log["surge"] + 1j * log["sway"]
-    known = np.isfinite(velocity) & np.all(
-        [np.isfinite(v) for v in (*headings.values(), *positions.values())], axis=0
-    )
-    rows = np.flatnonzero(known)
+    # Rows in which velocity, heading and position have values; other readings of them have them there too.
+    rows = complete_rows(log, ("heading", *POSITION, *VELOCITY))
     if len(rows) < 2 * FEWEST_INCREMENTS:
         return {}
     time = log["time"][rows]
+    velocity = (log["surge"] + 1j * log["sway"])[rows]
     known_positions = {position: seen[rows] for position, seen in positions.items()}
     # Integrate the velocity of each form, for each reading of the heading that can be followed.
     pairs: dict = {}
@@ -125,7 +122,7 @@ def position_relations(log: dict, headings: dict, positions: dict) -> dict:
         if not _can_be_followed(wrap_series(np.diff(values[rows]))):
             continue
         turn = np.exp(1j * np.radians(values[rows]))
-        ways = _ways(time, velocity[rows], turn)
+        ways = _ways(time, velocity, turn)
         for position, seen in known_positions.items():
             pairs |= {(heading, position, form): (seen, way) for form, way in ways.items()}
     # Fit all pairs at once, since they share thinning
@@ -137,13 +134,13 @@ def position_relations(log: dict, headings: dict, positions: dict) -> dict:
     return found
 
 
-def rate_relations(time: np.ndarray, headings: dict, rate: np.ndarray) -> dict:
+def rate_relations(log: dict, headings: dict) -> dict:
     """Heading against yaw rate; nothing where there is too little, or rows are too far apart to count turns.
 
     Parameters
     ----------
-    time, rate : (n,) arrays
-        [s, deg/s]
+    log : dict of (n,) arrays
+        As of `position_relations`.
     headings : dict of (n,) arrays
         By how they are read. [deg]
 
@@ -151,14 +148,12 @@ def rate_relations(time: np.ndarray, headings: dict, rate: np.ndarray) -> dict:
     -------
     dict of heading to Relation
     """
-    # Rows in which the yaw rate and all readings of the heading have values.
-    rows = np.flatnonzero(
-        np.isfinite(rate) & np.all([np.isfinite(v) for v in headings.values()], axis=0)
-    )
+    rows = complete_rows(log, ("heading", "yaw_rate"))
     if len(rows) < 2 * FEWEST_INCREMENTS:
         return {}
     # The change of heading that the yaw rate predicts.
-    told = spline_integral(time[rows], rate[rows])
+    time = log["time"][rows]
+    told = spline_integral(time, log["yaw_rate"][rows])
     pairs = {}
     # Unwrap the heading between rows, which needs turns of less than half a revolution.
     for name, heading in headings.items():
@@ -172,7 +167,7 @@ def rate_relations(time: np.ndarray, headings: dict, rate: np.ndarray) -> dict:
             if not _can_be_followed(np.diff(told)) and np.quantile(np.abs(beside), 0.9) < ALONGSIDE:
                 change = np.diff(told) + beside
             pairs[name] = running_sums(change).astype(complex), told.astype(complex)
-    return fitted(time[rows], pairs, 1.0, axes=1)
+    return fitted(time, pairs, 1.0, axes=1)
 
 
 def _can_be_followed(turns):

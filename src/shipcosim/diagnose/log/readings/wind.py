@@ -15,7 +15,7 @@ import numpy as np
 from shipcosim.diagnose.log.checks.kinematics import after_gaps, complete_rows, filters, whiteness
 from shipcosim.diagnose.log.mislabels import KNOT
 from shipcosim.diagnose.log.readings.changes import LogInterpretation
-from shipcosim.diagnose.log.readings.fit import RowsFit, fit_rows, whitened
+from shipcosim.diagnose.log.readings.fit import likeliest_fits
 from shipcosim.diagnose.log.thresholds import (
     CLEAR_MOTION,
     FEWEST_WIND_ROWS,
@@ -127,7 +127,12 @@ def wind_relations(log: dict, headings: dict[float, np.ndarray]) -> WindRelation
             turn = np.exp((-1j if mirrored else 1j) * np.radians(heading[rows]))
             seen = {"bow": apparent * turn, "mirrored": np.conj(apparent) * turn, "north": apparent}
             told = _told(velocity, turn)
-            for (name, form), fit in _fitted(drafts, seen, told).items():
+            pairs = {
+                (name, form): (wind, way)
+                for name, wind in seen.items()
+                for form, way in told.items()
+            }
+            for (name, form), fit in likeliest_fits(drafts, pairs)[0].items():
                 fits[unit, mirrored, name, form] = fit
     return WindRelations(_tamed(fits))
 
@@ -150,23 +155,6 @@ def _slow(way):
 def _noise(velocity):
     """Standard deviation of an axis from row to row, by third differences of four in five rows."""
     return float(np.quantile(np.abs(np.diff(velocity, n=3)), 0.8)) / 1.794 / math.sqrt(20.0)
-
-
-def _fitted(drafts, seen, told):
-    """Of each pair the fit under the noise that suits it best."""
-    # Whiten all series together, and keep for each pair the filter with the largest likelihood.
-    stacked = np.stack([*seen.values(), *told.values()], axis=1)
-    fits: dict[tuple, RowsFit] = {}
-    for draft in drafts:
-        known = draft.gains < 1.0
-        white = whitened(draft, stacked)
-        offset = -2.0 * float(np.sum(np.log(draft.scale[known])))
-        for row, name in enumerate(seen):
-            for column, form in enumerate(told, start=len(seen)):
-                fit = fit_rows(white[:, row], white[:, column], 2, offset)
-                if (name, form) not in fits or fit.likelihood > fits[name, form].likelihood:
-                    fits[name, form] = fit
-    return fits
 
 
 def _tamed(fits):
