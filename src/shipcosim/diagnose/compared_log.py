@@ -28,7 +28,7 @@ from shipcosim.diagnose.craft.logged import craft_log
 from shipcosim.diagnose.finding import Discrepancy, Finding
 from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.inference.problem import as_logged
-from shipcosim.diagnose.log.mislabels import exchanged, finding_of, negative
+from shipcosim.diagnose.log.mislabels import drive_channels, exchanged, finding_of, negative
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.diagnose.ship.model import ShipModel
@@ -323,11 +323,6 @@ def _stage(log: CheckedLog, comparison: LogComparison) -> ComparedLog:
 def _label(change: LabelError, log: xarray.Dataset):
     """What is wrong with the channels of a change."""
     if len(change.thrusters) == 1:
-        return negative(_drives(change.thrusters[0], log)[0])
-    one, other = (_drives(name, log) for name in change.thrusters)
+        return negative(drive_channels(change.thrusters[0], log)[0])
+    one, other = (drive_channels(name, log) for name in change.thrusters)
     return exchanged(list(zip(one, other, strict=False)))
-
-
-def _drives(name: str, log: xarray.Dataset) -> list[str]:
-    """Channels of what drives a thruster, its speed or thrust first."""
-    return [f"{name}_{kind}" for kind in ("rpm", "thrust", "azimuth") if f"{name}_{kind}" in log]

@@ -14,7 +14,7 @@ from shipcosim.diagnose.numerics import finite
 
 THRUSTER_LABELS = ("channel_swap", "sign")
 """What can be wrong of the labels of what drives thrusters."""
-DRIVES = ("_rpm", "_azimuth", "_thrust")
+DRIVES = ("_rpm", "_thrust", "_azimuth")
 """How roles of what drives a thruster end."""
 KNOT = 1852.0 / 3600.0  # m/s
 POSITION = ("north", "east")
@@ -201,6 +201,11 @@ WIND_LABELS = (
     _in_unit(("wind_speed",), KNOT, "wind_speed is in kn, not m/s"),
     _in_unit(("wind_speed",), 1.0 / KNOT, "wind_speed is in m/s, not kn"),
 )
+
+
+def drive_channels(thruster: str, log: Container[str]) -> list[str]:
+    """Roles of what drives a thruster in a log, its speed or thrust first."""
+    return [thruster + drive for drive in DRIVES if thruster + drive in log]
 
 
 def possible(labels: Iterable[Mislabel], log: Container[str]) -> list[Mislabel]:

@@ -22,6 +22,7 @@ from shipcosim.diagnose.inference.workers import each
 from shipcosim.diagnose.log.mislabels import (
     WIND_LABELS,
     Mislabel,
+    drive_channels,
     exchanged,
     finding_of,
     negative,
@@ -205,8 +206,8 @@ def _mislabels(log, model):
     # Two thrusters of the same make can be exchanged: all their channels, or all but the speed.
     found = []
     for one, other in combinations(model.thrusters, 2):
-        pairs = [(f"{one}_{what}", f"{other}_{what}") for what in ("rpm", "thrust", "azimuth")]
-        pairs = [pair for pair in pairs if pair[0] in log and pair[1] in log]
+        pairs = [(role, other + role.removeprefix(one)) for role in drive_channels(one, log)]
+        pairs = [pair for pair in pairs if pair[1] in log]
         if model.make_of(one) == model.make_of(other):
             found += [
                 exchanged(group)
@@ -215,11 +216,7 @@ def _mislabels(log, model):
             ]
     # Wrong signs of speed, thrust and azimuth.
     for name in model.thrusters:
-        found += [
-            negative(role)
-            for role in (f"{name}_rpm", f"{name}_thrust", f"{name}_azimuth")
-            if role in log
-        ]
+        found += [negative(role) for role in drive_channels(name, log)]
     # Labels of the wind that involve the motion need its channels.
     if "wind_from" in log:
         motion = all(role in log for role in ("heading", "surge", "sway"))
