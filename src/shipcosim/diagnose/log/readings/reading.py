@@ -206,8 +206,8 @@ def _findings(
     readings = _with_known_rates(readings)
     shares: dict[str, float] = {}
     for one in readings:
-        for said in {change.sentence for change in one.changes}:
-            shares[said] = shares.get(said, 0.0) + one.probability
+        for change in one.changes:
+            shares[change.sentence] = shares.get(change.sentence, 0.0) + one.probability
     # Each sentence stands for the change of its likeliest combination.
     first = {
         change.sentence: change for one in reversed(readings) for change in one.changes
