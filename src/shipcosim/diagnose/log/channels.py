@@ -13,8 +13,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.roles import ROLES, role_of
-from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
-from shipcosim.scenario import toml_of
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.scenario.reader import read_toml
 
 
 class Channel(BaseModel):
@@ -99,10 +99,7 @@ def read_channels(path: str | os.PathLike) -> ChannelFile:
         If the file cannot be read, misspells a role, or has no time.
     """
     path = Path(path)
-    try:
-        content = toml_of(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise error_at(str(path), f"cannot be read: {error}.") from error
+    content = read_toml(path, "Channel files")[1]
     channels = {}
     problems = []
     form = FileLayout()

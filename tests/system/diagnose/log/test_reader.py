@@ -128,7 +128,7 @@ def test_an_unusable_file_is_refused_with_what_is_wrong(tmp_path, text, said):
             'time = "t"\nsurge = {column = "u", unit = "deg"}',
             "its unit 'deg' is none that converts to m/s",
         ),
-        ("time = ", "cannot be read"),
+        ("time = ", "is no TOML: .*Channel files are text files in TOML"),
     ],
 )
 def test_a_bad_channel_file_is_refused_with_what_is_wrong(tmp_path, text, said):
