@@ -15,7 +15,7 @@ from shipcosim.diagnose.hypotheses.cause import Cause, CauseParameter, Fault
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.models.propulsion.azimuth import AzimuthParameters
-from shipcosim.scenario.reader import read_toml
+from shipcosim.scenario.reader import complaint_of, read_toml
 from shipcosim.series import conversion
 from shipcosim.ssp import AnyPath
 
@@ -156,8 +156,9 @@ def read_cause(path: Path) -> Cause:
         problems = []
         for detail in error.errors():
             key = ".".join(map(str, detail["loc"]))
-            found = detail["msg"].removeprefix("Value error, ").removesuffix(".")
-            problems.append(Problem(f"{path}, {key}" if key else str(path), f"{found}.", remedy))
+            found, right = complaint_of(detail, Cause)
+            where = f"{path}, {key}" if key else str(path)
+            problems.append(Problem(where, found, f"{right} {remedy}".strip()))
         raise ShipcosimError(problems) from None
 
 
