@@ -26,19 +26,7 @@ OF_SCENARIO = {"system", "stop_time", "step_size", "events", "expect", "set"}
 OSP_SCENARIOS = (".json", ".yaml", ".yml")
 NEAR = 1 << 16  # bytes: before its events a scenario has a description and defaults
 TABLES = (".csv", ".csv.gz", ".nc", ".parquet")
-LOGS = (
-    ".txt",
-    ".dat",
-    ".tsv",
-    ".log",
-    ".jsonl",
-    ".xlsx",
-    ".mat",
-    ".txt.gz",
-    ".dat.gz",
-    ".tsv.gz",
-    ".log.gz",
-)
+OF_SYSTEMS = (*library.SYSTEMS, ".ssv", ".ssm", ".ssb", ".fmu")
 
 
 def check_any(file: str, channels: Path | None = None, hosts: Iterable[str] = ()) -> list[Problem]:
@@ -75,11 +63,11 @@ def check_any(file: str, channels: Path | None = None, hosts: Iterable[str] = ()
             return _CHECKS[kind_of_toml(path)](path)
         if path.suffix.lower() in OSP_SCENARIOS and _names_events(path):
             return check_osp_scenario(path)
-        if path.name.lower().endswith((*LOGS, *OSP_SCENARIOS)):
-            return check_log(path, channels)
-        if path.name.endswith(TABLES):
-            return check_log(path, channels) if channels or _is_log(path) else check_table(path)
-        return _check_system_file(file, path)
+        if path.suffix.lower() in OF_SYSTEMS or path.is_dir() and not path.name.endswith(TABLES):
+            return _check_system_file(file, path)
+        if path.name.endswith(TABLES) and not channels and not _is_log(path):
+            return check_table(path)
+        return check_log(path, channels)
     except ShipcosimError as error:
         return error.problems
 

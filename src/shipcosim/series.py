@@ -151,9 +151,8 @@ def read_table(path: str | os.PathLike) -> xarray.Dataset:
         ".csv.gz": _read_rows,
         ".parquet": _read_rows,
     }
-    read = readers[_suffix(path, readers)]
     with reading(path):
-        table = read(Path(path))
+        table = readers[_suffix(path, readers)](Path(path))
     table.encoding["source"] = str(path)
     return table
 
@@ -180,8 +179,8 @@ def read_columns(path: str | os.PathLike) -> dict[str, tuple[np.ndarray, str]]:
         If the file cannot be read or has a column twice.
     """
     path = Path(path)
-    suffix = _suffix(path, (".nc", ".csv", ".csv.gz", ".parquet"))
     with reading(path):
+        suffix = _suffix(path, (".nc", ".csv", ".csv.gz", ".parquet"))
         if suffix == ".nc":
             columns = _netcdf_columns(_open_netcdf(path))
             return {name: found for name, found in columns.items() if len(found[0])}
@@ -612,7 +611,7 @@ def _plain(values: np.ndarray | tuple[str, ...]) -> tuple[np.ndarray, bool]:
     if values.dtype.kind == "m":
         return np.where(np.isnat(values), np.nan, values / np.timedelta64(1, "s")), True
     if values.dtype.kind == "M":
-        return _seconds_of(values.astype("datetime64[ns]")), True
+        return _seconds_of(values), True
     try:
         return values.astype(float), False
     except (ValueError, TypeError):

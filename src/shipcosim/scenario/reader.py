@@ -27,9 +27,12 @@ _DOTTED = re.compile(r"""(?:\.\s*+(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')\s*+)++""")
 _REMEDIES = {
     "string_type": "It should be a text in quotes.",
     "float_type": 'It should be a number, without quotes and with a decimal point, or a text such as "2.5 m".',
+    "float_parsing": "It should be a number, without quotes and with a decimal point.",
     "bool_type": "It should be true or false.",
+    "dict_type": "It should be a table: {key = value, ...}.",
     "int_type": "It should be a whole number, without quotes.",
     "list_type": "It should be a list: [ , ].",
+    "model_type": "It should be a table: {key = value, ...}.",
     "too_short": "It takes more values than that.",
     "too_long": "It takes fewer values than that.",
 }
@@ -177,13 +180,13 @@ def complaint_of(finding: ErrorDetails, record: type[BaseModel]) -> tuple[str, s
     if kind == "missing":
         return f"'{last}' is missing.", ""
     if kind == "value_error":
-        return str(finding.get("ctx", {})["error"]), ""
+        return f"{finding.get('ctx', {})['error']}".removesuffix(".") + ".", ""
     remedy = _REMEDIES.get(kind) or finding["msg"].replace("Input", "It", 1) + "."
     value = finding["input"]
     as_toml = (
         json.dumps(value, ensure_ascii=False) if isinstance(value, (bool, str)) else repr(value)
     )
-    return f"{label} = {as_toml}.", remedy
+    return f"{label} = {as_toml}." if label else f"is {as_toml}.", remedy
 
 
 def _part_at(

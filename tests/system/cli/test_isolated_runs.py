@@ -80,3 +80,12 @@ def test_an_fmu_that_calls_exit_0_is_no_run_that_went_well(project, command, iso
     assert ended.returncode == 1
     assert "ended itself in DoStep" in ended.stderr if isolate else "--isolate" in ended.stderr
     assert not list(project.rglob("*.unfinished*"))
+
+
+@pytest.mark.parametrize("isolate", [[], ["--isolate"]])
+def test_an_fmu_that_does_not_start_is_unusable_in_a_process_of_its_own_too(call, project, isolate):
+    file = project / "fmus" / "lag" / "lag.py"
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text.replace("self.y = 0.0", "raise ValueError('no licence')"))
+    failed = call("run", "fill", "--out", "out", *isolate)
+    assert failed.code == 2 and "no licence" in failed.err

@@ -146,10 +146,10 @@ def guarded(function: Callable[..., Conclusion | None]) -> Callable[..., None]:
             raise
         except ShipcosimError as error:
             problems = error.problems
-            # A component that fails on the way is a finding; what does not even start is unusable.
+            # A component that fails on the way is a finding, in a process of its own too; what does not even start is
+            # unusable.
             table = getattr(error, "table", None)
-            is_on_its_way = table is not None and (table.sizes["time"] or kwargs.get("isolate"))
-            code = FAILED if is_on_its_way else UNUSABLE
+            code = FAILED if table is not None and table.sizes["time"] else UNUSABLE
             explain(problems, debug)
         except KeyboardInterrupt:
             say("Interrupted.", err=True)

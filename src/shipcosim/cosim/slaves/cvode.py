@@ -32,7 +32,7 @@ _free_matrix = freeing("SUNMatDestroy", SUNMatrix)
 
 
 class SolverError(Exception):
-    """CVode cannot go on; the text is its message."""
+    """CVode cannot go on."""
 
 
 class Cvode:
@@ -64,9 +64,8 @@ class Cvode:
         self._roots = roots
         self._tolerance = tolerance
         self._error: Exception | None = None
-        self._message = b""
         self._memory = None
-        self._context = Context(self._keep_message)
+        self._context = Context()
         context = self._context.arguments
         # SUNDIALS has no empty vector: without states there is one constant dummy.
         self._x, self._absolute = (N_VNew_Serial(max(n, 1), *context) for _ in range(2))
@@ -147,7 +146,5 @@ class Cvode:
             self._error = None
             raise error
         if flag < 0:
-            raise SolverError(f"CVode: {self._message.decode(errors='replace') or f'code {flag}'}")
-
-    def _keep_message(self, message):
-        self._message = message or b""
+            found = "The equations cannot be integrated further: a derivative is no number, jumps or grows without limit"
+            raise SolverError(f"{found} (code {flag} of CVode).")

@@ -13,12 +13,7 @@ except ImportError:
 
 
 class Context:
-    """The shared context of one solver's objects, and the receiver of its messages.
-
-    Parameters
-    ----------
-    note : callable
-        Takes each message, bytes. Without it SUNDIALS prints them.
+    """The shared context of one solver's objects. It takes its messages, which SUNDIALS would print.
 
     Attributes
     ----------
@@ -26,21 +21,19 @@ class Context:
         To be added to calls that make vectors, matrices and solvers.
     """
 
-    def __init__(self, note: Callable[[bytes], None]):
+    def __init__(self):
         self.arguments: tuple[Any, ...] = ()
         types: Any = sundials_types
         # Version 5 has no context; messages go to a handler of each CVode memory, see `watch`.
         if sundials_context is None:
             handler: Any = vars(cvode)["CVErrHandlerFn"]
-            self._handler = handler(lambda code, module, function, message, data: note(message))
+            self._handler = handler(lambda *message: None)
             return
         # Version 7: all objects belong to a context, and errors go to its handlers. Only ours shall
         # be there.
         context = types.SUNContext()
         sundials_context.SUNContext_Create(types.SUN_COMM_NULL, byref(context))
-        self._handler = types.SUNErrHandlerFn(
-            lambda line, function, file, message, *others: note(message)
-        )
+        self._handler = types.SUNErrHandlerFn(lambda *message: None)
         core_library().SUNContext_ClearErrHandlers(context)  # the one that is there prints
         sundials_context.SUNContext_PushErrHandler(context, self._handler, None)
         self.arguments = (context,)

@@ -26,6 +26,11 @@ def validation_problems(path: Path) -> list[Problem]:
     from fmpy.validation import validate_fmu
 
     found = (" ".join(str(one).split()) for one in validate_fmu(str(path)))
+    # FMPy passes on what Python says where an index leads to no variable.
+    unreadable = {
+        "list index out of range": "An index of ModelStructure or of a derivative leads to no variable."
+    }
+    found = (unreadable.get(text, text) for text in found)
     remedy = "FMI does not allow it; export the FMU anew."
     return [Problem(str(path), text, remedy) for text in dict.fromkeys(found) if text]
 

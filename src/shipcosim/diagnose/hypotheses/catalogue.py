@@ -13,8 +13,9 @@ from pydantic import ValidationError
 from shipcosim.diagnose.finding import ParameterEstimate, label_of
 from shipcosim.diagnose.hypotheses.cause import Cause, CauseParameter, Fault
 from shipcosim.diagnose.ship.model import ShipModel
-from shipcosim.errors import Problem, ShipcosimError, error_at
+from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.models.propulsion.azimuth import AzimuthParameters
+from shipcosim.scenario.reader import complaint_of, read_toml
 from shipcosim.series import conversion
 from shipcosim.ssp import AnyPath
 
@@ -150,16 +151,15 @@ def read_cause(path: Path) -> Cause:
     """
     remedy = "See docs/add-a-cause.md for what a cause's file holds."
     try:
-        return Cause.model_validate(tomllib.loads(path.read_text(encoding="utf-8-sig")))
+        return Cause.model_validate(read_toml(path, "Causes")[1])
     except ValidationError as error:
         problems = []
         for detail in error.errors():
             key = ".".join(map(str, detail["loc"]))
-            found = detail["msg"].removeprefix("Value error, ").removesuffix(".")
-            problems.append(Problem(f"{path}, {key}" if key else str(path), f"{found}.", remedy))
+            found, right = complaint_of(detail, Cause)
+            where = f"{path}, {key}" if key else str(path)
+            problems.append(Problem(where, found, f"{right} {remedy}".strip()))
         raise ShipcosimError(problems) from None
-    except (OSError, ValueError, RecursionError) as error:
-        raise error_at(str(path), f"It cannot be read: {error}.", remedy) from None
 
 
 @cache

@@ -13,8 +13,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.roles import ROLES, role_of
-from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
-from shipcosim.scenario import toml_of
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.scenario.reader import complaint_of, read_toml
 
 
 class Channel(BaseModel):
@@ -99,10 +99,7 @@ def read_channels(path: str | os.PathLike) -> ChannelFile:
         If the file cannot be read, misspells a role, or has no time.
     """
     path = Path(path)
-    try:
-        content = toml_of(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise error_at(str(path), f"cannot be read: {error}.") from error
+    content = read_toml(path, "Channel files")[1]
     channels = {}
     problems = []
     form = FileLayout()
@@ -110,9 +107,7 @@ def read_channels(path: str | os.PathLike) -> ChannelFile:
         try:
             form = FileLayout.model_validate(content.pop("file"))
         except ValidationError as error:
-            problems += _field_problems(
-                f"{path}, file", error, f"It can have {', '.join(FileLayout.model_fields)}."
-            )
+            problems += _field_problems(f"{path}, file", error, FileLayout)
     for name, entry in content.items():
         where = f"{path}, {name}"
         problems += _misspelt(where, name)
@@ -121,9 +116,7 @@ def read_channels(path: str | os.PathLike) -> ChannelFile:
                 {"column": entry} if isinstance(entry, str) else entry
             )
         except ValidationError as error:
-            problems += _field_problems(
-                where, error, f"A channel can have {', '.join(Channel.model_fields)}."
-            )
+            problems += _field_problems(where, error, Channel)
     problems += _together(path, content) if content or form == FileLayout() else ()
     if problems:
         raise ShipcosimError(problems)
@@ -158,8 +151,7 @@ def _together(path, names):
         )
 
 
-def _field_problems(where, error, remedy):
+def _field_problems(where, error, record):
     """What is wrong with the fields of an entry."""
     for detail in error.errors():
-        said = detail["msg"].removeprefix("Value error, ")
-        yield Problem(".".join(map(str, (where, *detail["loc"]))), f"{said}.", remedy)
+        yield Problem(".".join(map(str, (where, *detail["loc"]))), *complaint_of(detail, record))

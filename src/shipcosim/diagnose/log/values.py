@@ -33,6 +33,14 @@ _STEPS = (
     SHORTEST_STEP,
     90.0,
 )  # s between rows, beyond which numbers without a unit are hardly seconds. Assumed.
+_SIZES = {"d": 86400.0, "s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}  # s
+_NAMES = {
+    "d": "days",
+    "s": "seconds",
+    "ms": "milliseconds",
+    "us": "microseconds",
+    "ns": "nanoseconds",
+}
 _PERIODS = {86400.0: "day", 604800.0: "week"}  # s; after which clocks start anew
 _NEAR_END = 300.0  # s; within which of its end one was, and of its start it is. Assumed.
 
@@ -187,24 +195,28 @@ def _time(channel, column, stated, log, form):
         return numbers / EPOCHS[epoch], said
     factor, zero = conversion(unit or "s", "s")
     times = factor * numbers + (zero or -0.0)
-    # A guessed unit is checked by the distance of rows;
+    # A guessed unit is checked by the distance of rows, and one of days or longer;
     # then midnight or the end of a week is passed.
-    if not unit:
-        _check_steps(column, times)
+    if not unit or factor >= _SIZES["d"]:
+        _check_steps(column, times, factor, unit)
     return _past_the_end(times)
 
 
-def _check_steps(column, times):
-    """Raise ShipcosimError where rows would be so close or far apart that the numbers can hardly be seconds."""
+def _check_steps(column, times, factor, stated):
+    """Raise ShipcosimError where rows would be so close or far apart that the unit can hardly be right."""
     # Median of the positive steps: repeated times and steps back say nothing of the unit.
     step = usual_rise(finite(times), 1.0)
     if _STEPS[0] <= step <= _STEPS[1]:
         return
-    unit, name, size = ("d", "days", 86400.0) if step < _STEPS[0] else ("ms", "milliseconds", 1e-3)
-    found = f"its rows are {step:.2g} s apart: are these {name}? Then they are {size * step:.3g} s apart."
-    raise error_at(
-        "", found, f'Say the unit: time = {{column = "{column}", unit = "{unit}"}}, or "s".'
-    )
+    # Of the units in which the rows are plausibly far apart, the longest.
+    steps = {unit: size * step / factor for unit, size in _SIZES.items()}
+    plausible = [unit for unit, span in steps.items() if _STEPS[0] <= span <= _STEPS[1]]
+    unit = plausible[0] if plausible else "d" if step < _STEPS[0] else "ns"
+    name = _NAMES[unit]
+    question = "is the unit right" if stated else f"are these {name}"
+    found = f"its rows are {step:.2g} s apart: {question}? As {name} they are {steps[unit]:.3g} s apart."
+    remedy = f'Say the unit: time = {{column = "{column}", unit = "{unit}"}}'
+    raise error_at("", found, f"{remedy}." if stated else f'{remedy}, or "s".')
 
 
 def _without_summer_time(times):

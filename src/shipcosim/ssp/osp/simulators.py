@@ -121,7 +121,7 @@ class Simulators:
                 )
                 parts = urlsplit(text)
                 source = text
-            elif parts.scheme not in HERE:
+            elif parts.scheme not in HERE and len(parts.scheme) > 1:  # one letter is a drive
                 # Other addresses would need a server.
                 remedy = "Name the FMU's file: proxies and servers of FMUs are not supported."
                 self.findings.error(

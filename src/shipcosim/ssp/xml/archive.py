@@ -103,6 +103,9 @@ def read_entry(path: AnyPath, name: str, limit: int, shown: str | None = None) -
 
 def _opened(path: AnyPath, shown: str) -> zipfile.ZipFile:
     try:
+        # zipfile calls a file on a broken disk no archive.
+        with Path(path).open("rb") as file:
+            file.read(1)
         archive = zipfile.ZipFile(path)
     except OSError as error:
         raise error_at(shown, f"Cannot be read: {error.strerror}.") from None

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from shipcosim.checks import check_any
 from shipcosim.cosim.slaves.unpacked import UnpackedFmus
 from shipcosim.errors import Problem, ShipcosimError, printable, reading
 from shipcosim.native.compiler import is_intact, keep_digest
@@ -68,6 +69,20 @@ def test_names_that_netcdf_cannot_have_are_kept(tmp_path, name):
 def test_whatever_a_library_raises_names_the_file(error):
     with pytest.raises(ShipcosimError, match=r"^log\.csv: cannot be read: "), reading("log.csv"):
         raise error
+
+
+ENDINGS = ["csv", "xlsx", "xls", "parquet", "nc", "json", "mat", "toml", "ssd", "ssv", "ssp", "fmu"]
+
+
+@pytest.mark.skipif(not Path("/proc/self/mem").exists(), reason="reads a file that Linux refuses")
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_a_file_on_a_broken_disk_is_named_with_what_the_system_says(tmp_path, ending):
+    path = tmp_path / f"broken.{ending}"
+    path.symlink_to("/proc/self/mem")
+    problems = [str(problem).lower() for problem in check_any(str(path))]
+    assert len(problems) == 1 and "cannot be read: input/output error." in problems[0]
+    with pytest.raises(ShipcosimError, match=r"^\S*broken"):
+        read_table(path)
 
 
 @given(

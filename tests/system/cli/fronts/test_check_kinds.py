@@ -40,6 +40,13 @@ def test_a_cause_is_right_or_its_mistakes_are_said(root, tmp_path, call):
     assert done.code == 1 and "tow.toml, sentense" in done.out and "docs/add-a-cause.md" in done.out
 
 
+def test_a_value_of_another_kind_in_a_cause_is_told_in_plain_words(tmp_path, call):
+    (tmp_path / "tow.toml").write_text('cause = "tow"\nsentence = 3\nparameters = 4\n')
+    said = call("check", tmp_path / "tow.toml").out
+    assert "sentence = 3. It should be a text in quotes." in said and "valid" not in said
+    assert "'reference' is missing." in said and "should be a table" in said
+
+
 def test_a_channel_file_is_right_or_its_mistakes_are_said(root, tmp_path, call):
     assert call("check", root / "tests/system/measured/channels/otter.toml").code == 0
     wrong = tmp_path / "channels.toml"

@@ -95,6 +95,15 @@ def test_milliseconds_without_a_unit_are_refused_with_what_to_write(read):
         read("time", [f"{1000.0 * t:.0f}" for t in SECONDS])
 
 
+@pytest.mark.parametrize(
+    ("stated", "unit", "size"), [("", "ns", 1e9), ("", "us", 1e6), ("d", "s", 1)]
+)
+def test_rows_far_apart_are_refused_with_the_unit_that_fits(read, stated, unit, size):
+    name = f"time [{stated}]" if stated else "time"
+    with pytest.raises(ShipcosimError, match=f'0.5 s apart.*unit = "{unit}"'):
+        read(name, [f"{size * t:.1f}" for t in SECONDS])
+
+
 def test_a_stated_unit_is_believed(read):
     assert passed(read("time [ms]", [f"{1000.0 * t:.0f}" for t in SECONDS])) == pytest.approx(
         SECONDS

@@ -148,3 +148,25 @@ def test_zones_may_change_within_a_log_by_name_or_number(tmp_path, before, after
     (tmp_path / "log.csv").write_text(text, encoding="utf-8")
     time = read_log(tmp_path / "log.csv")["time"].values
     assert time - time[0] == pytest.approx(30.0 * np.arange(120))
+
+
+def test_a_far_cell_of_a_workbook_costs_no_memory(tmp_path):
+    book = openpyxl.load_workbook(io.BytesIO(CONTENTS["workbook"]))
+    book.active.cell(1_048_576, 16_384).value = 1
+    book.save(tmp_path / "log.xlsx")
+    times = read_log(tmp_path / "log.xlsx")["time"].values
+    assert (
+        times[: len(ROWS)] == pytest.approx([row[0] for row in ROWS])
+        and len(times) <= len(ROWS) + 1
+    )
+
+
+def test_a_stamp_that_stands_for_no_time_is_not_wrapped_into_another_century(tmp_path):
+    table = pandas.DataFrame(ROWS, columns=HEAD).drop(columns="time [s]")
+    stamps = np.datetime64("2024-03-30", "us") + np.arange(len(ROWS)).astype("timedelta64[s]")
+    stamps[40] = np.datetime64("9999-12-31", "us")
+    pandas.concat([pandas.Series(stamps, name="time"), table], axis=1).to_parquet(
+        tmp_path / "log.parquet"
+    )
+    times = read_table(tmp_path / "log.parquet")["time"].values
+    assert times[40] > 2e11 and times[41] == pytest.approx(41.0)

@@ -124,11 +124,17 @@ def test_an_unusable_file_is_refused_with_what_is_wrong(tmp_path, text, said):
         ('time = "t"\nnorth = "u"', "has north without east"),
         ('time = "t"\nsurge = {column = "u", sign = 2}', "surge.sign"),
         ('time = "t"\nsurge = {column = "u", scale = 2}', "surge.scale"),
+        ('time = "t"\nsurge = 3', "surge: is 3. It should be a table"),
+        (
+            'time = "t"\nsurge = {column = "u", offset = "a"}',
+            'offset = "a". It should be a number, wi',
+        ),
+        ('time = "t"\nsurge = {}', r"surge: it should name a column, .* quaternion\.$"),
         (
             'time = "t"\nsurge = {column = "u", unit = "deg"}',
             "its unit 'deg' is none that converts to m/s",
         ),
-        ("time = ", "cannot be read"),
+        ("time = ", "is no TOML: .*Channel files are text files in TOML"),
     ],
 )
 def test_a_bad_channel_file_is_refused_with_what_is_wrong(tmp_path, text, said):

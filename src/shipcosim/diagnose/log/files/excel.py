@@ -6,9 +6,10 @@ import datetime
 import io
 import zipfile
 from pathlib import Path
+from typing import Any
 
 from shipcosim.dialects import is_text
-from shipcosim.errors import error_at, suggestion
+from shipcosim.errors import ShipcosimError, error_at, suggestion
 
 LARGEST_WORKBOOK = 1 << 30
 """Most bytes that a workbook may unpack to."""
@@ -48,15 +49,19 @@ def text_of_sheet(path: Path, sheet: str | None = None) -> tuple[str, list[str]]
         raise error_at(str(path), "workbooks of Excel need openpyxl.", remedy) from error
     # Check the unpacked size before reading, against
     # archives that are small but unpack to a huge file.
-    with zipfile.ZipFile(path) as parts:
-        size = sum(part.file_size for part in parts.infolist())
-    if size > LARGEST_WORKBOOK:
-        raise ValueError(f"it unpacks to {size / 2**30:.3g} GiB")
     content = io.BytesIO(path.read_bytes())
-    book = openpyxl.load_workbook(content, read_only=True, data_only=True)
-    sheets = {
-        one.title: [row for row in one.iter_rows(values_only=True)] for one in book.worksheets
-    }
+    try:
+        with zipfile.ZipFile(content) as parts:
+            size = sum(part.file_size for part in parts.infolist())
+        if size > LARGEST_WORKBOOK:
+            raise error_at(str(path), f"cannot be read: it unpacks to {size / 2**30:.3g} GiB.")
+        book = openpyxl.load_workbook(content, read_only=True, data_only=True)
+        sheets = {one.title: _rows(one) for one in book.worksheets}
+    except (ShipcosimError, MemoryError):
+        raise
+    except Exception as error:  # openpyxl raises anything where a part is damaged
+        found = "cannot be read: it is no workbook of Excel, or a damaged one."
+        raise error_at(str(path), found, "Save it again, as .xlsx or .csv.") from error
     if sheet is not None and sheet not in sheets:
         raise error_at(str(path), f"has no sheet '{sheet}'.", suggestion(sheet, sheets))
     if not sheets:
@@ -68,6 +73,14 @@ def text_of_sheet(path: Path, sheet: str | None = None) -> tuple[str, list[str]]
         [f"Sheet '{used}' of {len(sheets)} is read."] if sheet is None and len(sheets) > 1 else []
     )
     return "\n".join("\t".join(row) if any(row) else "" for row in rows), said
+
+
+def _rows(sheet: Any) -> list[tuple[Any, ...]]:
+    """Rows of a sheet, each up to its last cell: one far cell would make every row as long as a sheet can be."""
+    sheet.reset_dimensions()
+    rows = list(sheet.iter_rows(values_only=True))
+    width = max((len(row) for row in rows), default=0)
+    return [row + (None,) * (width - len(row)) if row else row for row in rows]
 
 
 def _text(cell: object) -> str:
