@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 
+from shipcosim.native.array_statements import FEWEST, Statement, Term, goes_on, loop_of
 from shipcosim.native.error_texts import said
 from shipcosim.native.number_rows import Flat
 from shipcosim.native.recording import Block, RecordedLoop, Recording
@@ -93,6 +95,11 @@ def kept_sizes(recording: Recording) -> list[tuple[int, int]]:
 class Writer:
     """Writes the blocks of a recording as C."""
 
+    apart: tuple[str, ...] = ("guard", "call", "loop", "carried")
+    """Values that are no assignment; a carried one is declared at the head of its loop."""
+    results_in = "m"
+    """Memory that the results are written to."""
+
     def __init__(self, step: Step):
         self.step = step
         self.recording = step.recording
@@ -110,6 +117,8 @@ class Writer:
             for symbol in block.values
             if symbol.op == "after" and symbol.number in self.used
         }
+        self._elements: dict[int, Term] = {}  # where a value is found that has no variable
+        self._stored = _stored(step)
         self.lines: list[str] = []
 
     def text(self) -> str:
@@ -132,13 +141,11 @@ class Writer:
     def _block(self, block: Block, depth: int, finish):
         # Values in order, then the fork. Each branch goes on to its own end, so nothing has to be
         # joined.
-        for symbol in block.values:
-            if symbol.number in self.used:
-                self._value(symbol, depth)
+        self._values([symbol for symbol in block.values if symbol.number in self.used], depth)
         if block.condition is None:
             finish(block.result, depth)
             return
-        self._put(depth, f"if ({_name(block.condition)}) {{")
+        self._put(depth, f"if ({self.operand(block.condition)}) {{")
         self._block(_of(block.yes), depth + 1, finish)
         self._put(depth, "} else {")
         self._block(_of(block.no), depth + 1, finish)
@@ -151,12 +158,10 @@ class Writer:
             return
         # A sum is finite only if all terms are: one test for all outputs. Nothing is written before
         # it.
-        checked = [operand(number) for place, number in result if place in self.step.outputs]
+        checked = [self.operand(number) for place, number in result if place in self.step.outputs]
         if checked:
             self._put(depth, f"if (!isfinite({' + '.join(checked)})) return {GIVEN_UP};")
-        # All new values are constants by now, so the order of the writes does not matter.
-        for place, number in result:
-            self._put(depth, f"m[{self._place(place)}] = {operand(number)};")
+        self._write(result, depth)
         self._put(depth, f"return {DONE};")
 
     def _fail(self, error: Exception) -> str:
@@ -171,35 +176,133 @@ class Writer:
         """Place of a number in the memory."""
         return place
 
+    def _result(self, place: int) -> int:
+        """Place of a result in the memory that it is written to."""
+        return self._place(place)
+
+    def operand(self, value: Any) -> str:
+        """A symbol or number in C."""
+        return self.term(value).text
+
+    def term(self, value: Any) -> Term:
+        """Where the C text finds a symbol or number."""
+        if isinstance(value, Symbol):
+            return self._elements.get(value.number) or Term(_name(value))
+        return Term(literal(value), is_literal=True)
+
+    def _values(self, symbols: Sequence[Symbol], depth: int):
+        """Write values in order, those that make an array as a loop."""
+        run: list[Statement] = []
+        numbers: list[int] = []
+
+        def written():
+            for number, term in zip(numbers, self._put_run(run, depth), strict=False):
+                self._elements[number] = term
+            run.clear()
+            numbers.clear()
+
+        for symbol in symbols:
+            # What lies in the memory anyway needs no variable.
+            if (place := self._place_of(symbol)) is not None:
+                self._elements[symbol.number] = place
+                continue
+            if symbol.op in self.apart:
+                written()
+                self._value(symbol, depth)
+                continue
+            new = self._statement(symbol)
+            # Two statements may have the same form by chance: the second can begin a longer run.
+            if len(run) == 2 and not goes_on(run, new):
+                self._put(depth, _declared(run.pop(0)))
+                numbers.pop(0)
+            if run and not goes_on(run, new):
+                written()
+                new = self._statement(symbol)
+            run.append(new)
+            numbers.append(symbol.number)
+        written()
+
+    def _put_run(self, run: Sequence[Statement], depth: int) -> list[Term]:
+        """Write equal statements; returns where their values are, if these have no variables of their own."""
+        if len(run) < FEWEST:
+            for statement in run:
+                self._put(depth, _declared(statement))
+            return []
+        lines, elements = loop_of(run)
+        for line in lines:
+            self._put(depth, line)
+        return elements
+
+    def _write(self, result: Sequence[tuple[int, Any]], depth: int):
+        """Write results to their places."""
+        places = ((self._result(place), number) for place, number in result)
+        self._write_to(self.results_in, places, depth)
+
+    def _write_to(self, array: str, numbers: Iterable[tuple[int, Any]], depth: int):
+        """Write symbols and numbers to places of an array, in any order."""
+        statements = [
+            Statement("", "", f"{array}[{{}}] = {{}}", (Term("", place), self.term(number)))
+            for place, number in numbers
+        ]
+        # What comes from one array is written together. All values are known by now, so the order
+        # does not matter.
+        run: list[Statement] = []
+        for statement in sorted(statements, key=lambda statement: statement.terms[1].base):
+            if run and not goes_on(run, statement):
+                self._put_run(run, depth)
+                run = []
+            run.append(statement)
+        self._put_run(run, depth)
+
     def _value(self, symbol: Symbol, depth):
+        """Write a value that is more than an assignment."""
         op = symbol.op
         operands = symbol.operands
         if op == "guard":
+            given, found = operands
             self._put(
                 depth,
-                f"if ({operand(operands[0])} != {operand(operands[1])}) {self._other(*operands)}",
+                f"if ({self.operand(given)} != {self.operand(found)}) {self._other(given, found)}",
             )
         elif op == "call":
             self._call(operands, depth)
         elif op == "loop":
             self._loop(self.recording.loops[operands[0]], operands[0], depth)
-        # A carried value is declared at the head of its loop.
-        elif op != "carried":
-            self._put(depth, f"const {_type(symbol)} {_name(symbol)} = {self._expression(symbol)};")
 
-    def _expression(self, symbol) -> str:
+    def _place_of(self, symbol: Symbol) -> Term | None:
+        """Where a value lies in the memory until the results are written; None where it has to be kept."""
+        # C computes with whole numbers for truth values, and a result may be written over its source.
+        if symbol.kind == "b" or symbol.number in self._stored:
+            return None
+        if symbol.op == "load":
+            return Term("m", self._place(symbol.operands[0]))
+        if symbol.op == "kept":
+            call, place = symbol.operands
+            return Term("k", self.results[call] + place)
+        return None
+
+    def _statement(self, symbol: Symbol) -> Statement:
+        """The assignment of a value."""
+        template, operands = self._expression(symbol)
+        terms = tuple(
+            operand if isinstance(operand, Term) else self.term(operand) for operand in operands
+        )
+        return Statement(_name(symbol), _type(symbol), template, terms)
+
+    def _expression(self, symbol: Symbol) -> tuple[str, Sequence[Any]]:
+        """C text of a value with a pair of braces for each operand, and the operands."""
         op = symbol.op
         operands = symbol.operands
         if op == "load":
-            return f"m[{self._place(operands[0])}]"
+            return "m[{}]", [Term("", self._place(operands[0]))]
         if op == "kept":
-            return f"k[{self.results[operands[0]] + operands[1]}]"
+            return "k[{}]", [Term("", self.results[operands[0]] + operands[1])]
         if op == "after":
-            return f"c{operands[0]}_{operands[1]}"
+            return f"c{operands[0]}_{operands[1]}", []
         # A row of a table: its elements lie row by row.
         if op == "row":
             index, table, width, column = operands
-            return f"table_{table}[(long){operand(index)} * {width} + {column}]"
+            return f"table_{table}[(long){{}} * {width} + {{}}]", [index, Term("", column)]
         if op in ("load_row", "kept_row"):
             index, (*call, place), width, column = operands
             base = (
@@ -207,28 +310,28 @@ class Writer:
                 if op == "load_row"
                 else f"k[{self.results[call[0]] + place}"
             )
-            return f"{base} + (long){operand(index)} * {width} + {column}]"
+            return f"{base} + (long){{}} * {width} + {{}}]", [index, Term("", column)]
         if op == "interp":
             x, first, second, n = operands
-            return f"interpolated({operand(x)}, table_{first}, table_{second}, {n})"
+            return f"interpolated({{}}, table_{first}, table_{second}, {n})", [x]
         if op == "where":
-            condition, a, b = map(operand, operands)
-            return f"{condition} ? {a} : {b}"
+            return "{} ? {} : {}", operands
         if op == "round":
-            return f"rounded({operand(operands[0])}, 1e{operands[1]})"
+            return f"rounded({{}}, 1e{operands[1]})", operands[:1]
         # All others are one C operator or function.
-        return (UNARY if len(operands) == 1 else BINARY)[op].format(*map(operand, operands))
+        return (UNARY if len(operands) == 1 else BINARY)[op], operands
 
     def _call(self, operands, depth):
         number, *arguments = operands
         first = self.arguments[number]
         # The cached result holds while all arguments are equal. NaN is never equal.
         same = (
-            " || ".join(f"k[{first + i}] != {operand(a)}" for i, a in enumerate(arguments)) or "0"
+            " || ".join(f"k[{first + i}] != {self.operand(a)}" for i, a in enumerate(arguments))
+            or "0"
         )
         self._put(depth, f"if ({same}) {{")
         for i, a in enumerate(arguments):
-            self._put(depth + 1, f"k[{first + i}] = {operand(a)};")
+            self._put(depth + 1, f"k[{first + i}] = {self.operand(a)};")
         # After a failed call the arguments must not look valid: NaN forces the next call.
         again = f"k[{first}] = NAN; " if arguments else ""
         where = f"k + {first}, k + {self.results[number]}"
@@ -249,7 +352,7 @@ class Writer:
         for place in needed:
             symbol = loop.carried[place]
             start = loop.start[place]
-            self._put(depth, f"{_type(symbol)} c{number}_{place} = {operand(start)};")
+            self._put(depth, f"{_type(symbol)} c{number}_{place} = {self.operand(start)};")
         # The condition is a block of statements, so C loops forever and breaks where it fails.
         self._put(depth, "for (;;) {")
         # Each turn sees the values as constants; the variables change at its end, all together.
@@ -268,7 +371,7 @@ class Writer:
             for place in needed:
                 after = result.numbers[place]
                 if after is not loop.carried[place]:
-                    self._put(inner, f"c{number}_{place} = {operand(after)};")
+                    self._put(inner, f"c{number}_{place} = {self.operand(after)};")
 
         self._block(loop.body, depth + 1, turn)
         self._put(depth, "}")
@@ -277,7 +380,7 @@ class Writer:
         if isinstance(result, Exception):
             self._put(depth, self._fail(result))
         else:
-            self._put(depth, f"going = {operand(result)};")
+            self._put(depth, f"going = {self.operand(result)};")
 
 
 def _of(block: Block | None) -> Block:
@@ -293,9 +396,10 @@ def _type(symbol):
     return "int" if symbol.kind == "b" else "double"
 
 
-def operand(value: Any) -> str:
-    """A symbol or number in C."""
-    return _name(value) if isinstance(value, Symbol) else literal(value)
+def _declared(statement: Statement) -> str:
+    """The whole statement: the declaration of a variable, or a result."""
+    const = f"const {statement.type} {statement.name} = " if statement.name else ""
+    return f"{const}{statement.text};"
 
 
 def literal(value: Any) -> str:
@@ -307,6 +411,17 @@ def literal(value: Any) -> str:
     # repr gives the shortest text that reads back to the same double.
     text = repr(float(value))
     return f"({text})" if text.startswith("-") else text
+
+
+def _stored(step: Step) -> set[int]:
+    """Numbers of the values that are results as they are, such as what moves from one place to another."""
+    return {
+        number.number
+        for block in _all_blocks(step.root, step.recording)
+        if isinstance(block.result, list)
+        for _, number in block.result
+        if isinstance(number, Symbol)
+    }
 
 
 def _used(step: Step) -> set[int]:

@@ -5,16 +5,18 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
+from shipcosim.native.array_statements import Term
 from shipcosim.native.error_texts import parts
 from shipcosim.native.export.calls import procedure_of
 from shipcosim.native.export.variants import Variant
-from shipcosim.native.recording import Recording
-from shipcosim.native.source import Writer, kept_sizes, literal, operand
+from shipcosim.native.source import Writer, kept_sizes, literal
 from shipcosim.native.symbols import Symbol
 
 LEFT_OUT = 1e30
+RECORDER = str(Path(__file__).parents[1])
 MUCH = 3000
 """Lines of a function from which on a compiler takes minutes to make it fast, where it is called seldom."""
 
@@ -125,6 +127,8 @@ class ModelWriter(Writer):
         Functions that are written already: names by their texts.
     """
 
+    apart = (*Writer.apart, "primitive")
+
     def __init__(
         self,
         step: Any,
@@ -169,43 +173,55 @@ class ModelWriter(Writer):
 
     def _finish(self, result, depth):
         if isinstance(result, list):
-            for place, number in result:
-                self._put(depth, f"{self._result(place)} = {operand(number)};")
+            self._write(result, depth)
             self._put(depth, "return DONE;")
         else:
             self._put(depth, self._fail(result))
 
-    def _result(self, place):
-        """Where the function writes a result."""
-        return f"m[{self._place(place)}]"
-
     def _fail(self, error):
-        return f"{{ {say(self._words(error), self.recording)}return GIVEN_UP; }}"
+        _forget_recorder(error)
+        return f"{{ {self._say(self._words(error))}return GIVEN_UP; }}"
+
+    def _say(self, text: str) -> str:
+        """Write C statements that report a text with its values."""
+        said = []
+        for words, how in parts(text):
+            if not how:
+                said.append(f"say(o, {c_text(words)});")
+                continue
+            symbol = self.recording.said[int(words)]
+            value = self.operand(symbol)
+            # A value with a format goes to printf; integers are doubles in C, so `d` becomes `.0f`.
+            if how != "r":
+                said.append(f"say_number(o, {value}, {c_text('%' + how.replace('d', '.0f'))});")
+            elif symbol.kind == "i":
+                said.append(f'say_number(o, {value}, "%.0f");')
+            else:
+                said.append(f"{'say_truth' if symbol.kind == 'b' else 'say_float'}(o, {value});")
+        return "".join(f"{one} " for one in said)
 
     def _other(self, symbol, found):
         said = f'say(o, "this native FMU was built where a number that shapes its code is "); say_float(o, {found});'
-        said += f' say(o, ", and not for "); say_float(o, {operand(symbol)});'
+        said += f' say(o, ", and not for "); say_float(o, {self.operand(symbol)});'
         said += ' say(o, ": take the FMU in Python, or build it again"); o->is_for_others = 1;'
         return f"{{ {said} return GIVEN_UP; }}"
 
     def _value(self, symbol: Symbol, depth):
-        if symbol.op == "primitive":
-            name, size, *arguments = symbol.operands
-            # C cannot return an array: the primitive writes its result to a local one.
-            given = ", ".join(map(operand, arguments))
-            self._put(depth, f"double p{symbol.number}[{size}];")
-            self._put(
-                depth,
-                f"{{ const double a[] = {{{given}}}; {name}(p{symbol.number}, a, {len(arguments)}); }}",
-            )
-        else:
+        if symbol.op != "primitive":
             super()._value(symbol, depth)
+            return
+        name, size, *arguments = symbol.operands
+        # C cannot return an array: the primitive writes its result to a local one.
+        self._put(depth, f"double p{symbol.number}[{size}];")
+        self._put(depth, f"{{ double a[{len(arguments)}];")
+        self._write_to("a", enumerate(arguments), depth + 1)
+        self._put(depth + 1, f"{name}(p{symbol.number}, a, {len(arguments)}); }}")
 
-    def _expression(self, symbol):
+    def _place_of(self, symbol):
         if symbol.op == "part":
             primitive, place = symbol.operands
-            return f"p{primitive.number}[{place}]"
-        return super()._expression(symbol)
+            return Term(f"p{primitive.number}", place)
+        return super()._place_of(symbol)
 
     def _put_call(self, number, where, again, depth):
         self._put(depth, f"if ({self._names[number]}({where}, o)) {{")
@@ -215,6 +231,8 @@ class ModelWriter(Writer):
 
 class _Procedure(ModelWriter):
     """Writes a function with cached results: arguments in `m`, results in `k`."""
+
+    results_in = "k"
 
     def __init__(self, procedure: Any, words: Callable, others: dict[str, str]):
         super().__init__(procedure, "kept", words, lambda place: place, 0, others)
@@ -230,7 +248,7 @@ class _Procedure(ModelWriter):
         return name, text.replace(f"int {self.name}(", f"int {name}(", 1)
 
     def _result(self, place):
-        return f"k[{place}]"
+        return place
 
 
 def _plain(text: str) -> str:
@@ -241,26 +259,14 @@ def _plain(text: str) -> str:
     return _VALUES.sub(lambda found: numbers[found[0]], text)
 
 
-def say(text: str, recording: Recording) -> str:
-    """Write C statements that report a text with its values."""
-    said = []
-    for words, how in parts(text):
-        if not how:
-            said.append(f"say(o, {c_text(words)});")
-            continue
-        symbol = recording.said[int(words)]
-        # A value with a format goes to printf; integers are doubles in C, so `d` becomes `.0f`.
-        if how != "r":
-            said.append(
-                f"say_number(o, {operand(symbol)}, {c_text('%' + how.replace('d', '.0f'))});"
-            )
-        elif symbol.kind == "i":
-            said.append(f'say_number(o, {operand(symbol)}, "%.0f");')
+def _forget_recorder(error: Exception):
+    """Take the frames of the recorder out of a traceback: they lie on the machine that builds the FMU."""
+    trace = error.__traceback__
+    while trace:
+        if trace.tb_next and trace.tb_next.tb_frame.f_code.co_filename.startswith(RECORDER):
+            trace.tb_next = trace.tb_next.tb_next
         else:
-            said.append(
-                f"{'say_truth' if symbol.kind == 'b' else 'say_float'}(o, {operand(symbol)});"
-            )
-    return "".join(f"{one} " for one in said)
+            trace = trace.tb_next
 
 
 def _variable(variable) -> str:

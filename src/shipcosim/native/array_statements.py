@@ -1,0 +1,148 @@
+"""Loops of the C text: an operation that is recorded for each element of an array is written once, as a loop."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+FEWEST = 4
+"""Equal statements from which on a loop is shorter than the statements."""
+
+
+class Term(NamedTuple):
+    """What stands in the place of an operand: a variable, an element of an array, a number, or an index alone.
+
+    Parameters
+    ----------
+    base : str
+        Name of the variable or of the array, or the number as C writes it; empty for an index alone.
+    index : int, optional
+        Of the element, or the index itself.
+    is_literal : bool
+        Whether it is a number.
+    """
+
+    base: str
+    index: int | None = None
+    is_literal: bool = False
+
+    @property
+    def text(self) -> str:
+        """The operand in C."""
+        return self.base if self.index is None else _element(self.base, str(self.index))
+
+
+class Statement(NamedTuple):
+    """A value and how it is computed, or a result and where it is written.
+
+    Parameters
+    ----------
+    name : str
+        Of the variable that gets the value; empty for a result.
+    type : str
+        Of that variable.
+    template : str
+        The C text, with a pair of braces for each operand.
+    terms : tuple of Term
+        The operands.
+    """
+
+    name: str
+    type: str
+    template: str
+    terms: tuple[Term, ...]
+
+    @property
+    def text(self) -> str:
+        """The right side, or the whole result, in C."""
+        return self.template.format(*(term.text for term in self.terms))
+
+
+def goes_on(run: Sequence[Statement], new: Statement) -> bool:
+    """Whether a statement can be the next turn of the loop that a run of statements makes.
+
+    It must do the same. Each of its operands is the same as in the turns before, or the next element of the same array
+    (at an even distance), or another number, or in each turn the value of the turn before.
+    """
+    first = run[0]
+    if (new.template, new.type) != (first.template, first.type):
+        return False
+    # A sum needs one value to begin with, of the type of its array.
+    starts = {
+        first.terms[slot] for slot, term in enumerate(new.terms) if term == Term(run[-1].name)
+    }
+    if len(starts) > 1 or (starts and new.type != "double"):
+        return False
+    return all(_slot_goes_on(run, slot, term) for slot, term in enumerate(new.terms))
+
+
+def _slot_goes_on(run, slot, new):
+    first = run[0].terms[slot]
+    k = len(run)
+    if _is_chain(run, slot) or (k == 1 and new == Term(run[0].name)):
+        return new == Term(run[-1].name)
+    if first.is_literal or new.is_literal or first.index is None or new.index is None:
+        return new == first or (first.is_literal and new.is_literal)
+    # The distance of two elements follows from the first two turns.
+    distance = (run[1].terms[slot].index if k > 1 else new.index) - first.index
+    return new == Term(first.base, first.index + k * distance)
+
+
+def _is_chain(run, slot):
+    """Whether an operand is the value of the turn before, as in a sum."""
+    return len(run) > 1 and bool(run[0].name) and run[1].terms[slot] == Term(run[0].name)
+
+
+def loop_of(run: Sequence[Statement]) -> tuple[list[str], list[Term]]:
+    """Write a run of statements as a loop.
+
+    Returns
+    -------
+    lines : list of str
+        C text. The array of the values has the name of the first.
+    elements : list of Term
+        Where each value is found; empty for results.
+    """
+    first = run[0]
+    n = len(run)
+    slots = range(len(first.terms))
+    chains = [slot for slot in slots if _is_chain(run, slot)]
+    # A sum goes from each element of its array to the next; before them stands what it begins with.
+    before = 1 if chains else 0
+    tables = []
+    texts = []
+    for slot in slots:
+        terms = [statement.terms[slot] for statement in run]
+        if slot in chains:
+            texts.append(f"{first.name}[i]")
+        elif terms[0].index is not None:
+            texts.append(_element(terms[0].base, _affine(terms[0].index, terms[1].index)))
+        elif terms[0] == terms[-1] and len(set(terms)) == 1:
+            texts.append(terms[0].text)
+        else:
+            numbers = ", ".join(term.base for term in terms)
+            texts.append(f"n{len(tables)}[i]")
+            tables.append(f"static const double n{len(tables)}[] = {{{numbers}}};")
+    right = first.template.format(*texts)
+    left = f"{first.name}[{_affine(before, before + 1)}] = " if first.name else ""
+    loop = f"for (int i = 0; i < {n}; i++) {left}{right};"
+    lines = [f"{{ {' '.join(tables)} {loop} }}" if tables else loop]
+    if not first.name:
+        return lines, []
+    if chains:
+        lines.insert(0, f"{first.name}[0] = {first.terms[chains[0]].text};")
+    lines.insert(0, f"{first.type} {first.name}[{n + before}];")
+    return lines, [Term(first.name, before + k) for k in range(n)]
+
+
+def _element(base: str, index: str) -> str:
+    return f"{base}[{index}]" if base else index
+
+
+def _affine(start: Any, second: Any) -> str:
+    """The index of turn i as C text, from the indices of the first two turns."""
+    distance = second - start
+    if not distance:
+        return str(start)
+    steps = "i" if distance == 1 else f"{distance} * i"
+    return f"{steps} + {start}" if start else steps
