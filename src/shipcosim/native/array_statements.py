@@ -117,7 +117,7 @@ def loop_of(run: Sequence[Statement]) -> tuple[list[str], list[Term]]:
             texts.append(f"{first.name}[i]")
         elif terms[0].index is not None:
             texts.append(_element(terms[0].base, _affine(terms[0].index, terms[1].index)))
-        elif terms[0] == terms[-1] and len(set(terms)) == 1:
+        elif len(set(terms)) == 1:
             texts.append(terms[0].text)
         else:
             numbers = ", ".join(term.base for term in terms)

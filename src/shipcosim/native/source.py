@@ -97,8 +97,6 @@ class Writer:
 
     apart: tuple[str, ...] = ("guard", "call", "loop", "carried")
     """Values that are no assignment; a carried one is declared at the head of its loop."""
-    results_in = "m"
-    """Memory that the results are written to."""
 
     def __init__(self, step: Step):
         self.step = step
@@ -161,7 +159,7 @@ class Writer:
         checked = [self.operand(number) for place, number in result if place in self.step.outputs]
         if checked:
             self._put(depth, f"if (!isfinite({' + '.join(checked)})) return {GIVEN_UP};")
-        self._write(result, depth)
+        self._write("m", ((self._place(place), number) for place, number in result), depth)
         self._put(depth, f"return {DONE};")
 
     def _fail(self, error: Exception) -> str:
@@ -175,10 +173,6 @@ class Writer:
     def _place(self, place: int) -> int:
         """Place of a number in the memory."""
         return place
-
-    def _result(self, place: int) -> int:
-        """Place of a result in the memory that it is written to."""
-        return self._place(place)
 
     def operand(self, value: Any) -> str:
         """A symbol or number in C."""
@@ -233,12 +227,7 @@ class Writer:
             self._put(depth, line)
         return elements
 
-    def _write(self, result: Sequence[tuple[int, Any]], depth: int):
-        """Write results to their places."""
-        places = ((self._result(place), number) for place, number in result)
-        self._write_to(self.results_in, places, depth)
-
-    def _write_to(self, array: str, numbers: Iterable[tuple[int, Any]], depth: int):
+    def _write(self, array: str, numbers: Iterable[tuple[int, Any]], depth: int):
         """Write symbols and numbers to places of an array, in any order."""
         statements = [
             Statement("", "", f"{array}[{{}}] = {{}}", (Term("", place), self.term(number)))
@@ -274,6 +263,10 @@ class Writer:
         # C computes with whole numbers for truth values, and a result may be written over its source.
         if symbol.kind == "b" or symbol.number in self._stored:
             return None
+        return self._in_memory(symbol)
+
+    def _in_memory(self, symbol: Symbol) -> Term | None:
+        """Where a value lies in the memory before the step; None where it is computed."""
         if symbol.op == "load":
             return Term("m", self._place(symbol.operands[0]))
         if symbol.op == "kept":
@@ -293,10 +286,8 @@ class Writer:
         """C text of a value with a pair of braces for each operand, and the operands."""
         op = symbol.op
         operands = symbol.operands
-        if op == "load":
-            return "m[{}]", [Term("", self._place(operands[0]))]
-        if op == "kept":
-            return "k[{}]", [Term("", self.results[operands[0]] + operands[1])]
+        if (found := self._in_memory(symbol)) is not None:
+            return f"{found.base}[{{}}]", [Term("", found.index)]
         if op == "after":
             return f"c{operands[0]}_{operands[1]}", []
         # A row of a table: its elements lie row by row.

@@ -17,6 +17,7 @@ from shipcosim.native.symbols import Symbol
 
 LEFT_OUT = 1e30
 RECORDER = str(Path(__file__).parents[1])
+"""Folder of the code that records a model."""
 MUCH = 3000
 """Lines of a function from which on a compiler takes minutes to make it fast, where it is called seldom."""
 
@@ -128,6 +129,8 @@ class ModelWriter(Writer):
     """
 
     apart = (*Writer.apart, "primitive")
+    results_in = "m"
+    """Memory that the results are written to."""
 
     def __init__(
         self,
@@ -173,7 +176,8 @@ class ModelWriter(Writer):
 
     def _finish(self, result, depth):
         if isinstance(result, list):
-            self._write(result, depth)
+            places = ((self._place(place), number) for place, number in result)
+            self._write(self.results_in, places, depth)
             self._put(depth, "return DONE;")
         else:
             self._put(depth, self._fail(result))
@@ -214,7 +218,7 @@ class ModelWriter(Writer):
         # C cannot return an array: the primitive writes its result to a local one.
         self._put(depth, f"double p{symbol.number}[{size}];")
         self._put(depth, f"{{ double a[{len(arguments)}];")
-        self._write_to("a", enumerate(arguments), depth + 1)
+        self._write("a", enumerate(arguments), depth + 1)
         self._put(depth + 1, f"{name}(p{symbol.number}, a, {len(arguments)}); }}")
 
     def _place_of(self, symbol):
@@ -246,9 +250,6 @@ class _Procedure(ModelWriter):
             return self._others[plain], ""
         name = self._others[plain] = f"kept_{len(self._others)}"
         return name, text.replace(f"int {self.name}(", f"int {name}(", 1)
-
-    def _result(self, place):
-        return place
 
 
 def _plain(text: str) -> str:
