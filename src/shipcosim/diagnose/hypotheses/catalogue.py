@@ -2,7 +2,7 @@
 
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -149,17 +149,20 @@ def read_cause(path: Path) -> Cause:
     ShipcosimError
         With everything that is wrong in it.
     """
-    remedy = "See docs/add-a-cause.md for what a cause's file holds."
     try:
         return Cause.model_validate(read_toml(path, "Causes")[1])
+    except ShipcosimError as error:
+        problems = error.problems
     except ValidationError as error:
         problems = []
         for detail in error.errors():
             key = ".".join(map(str, detail["loc"]))
-            found, right = complaint_of(detail, Cause)
             where = f"{path}, {key}" if key else str(path)
-            problems.append(Problem(where, found, f"{right} {remedy}".strip()))
-        raise ShipcosimError(problems) from None
+            problems.append(Problem(where, *complaint_of(detail, Cause)))
+    page = "See docs/add-a-cause.md for what a cause's file holds."
+    raise ShipcosimError(
+        [replace(problem, remedy=f"{problem.remedy} {page}".strip()) for problem in problems]
+    )
 
 
 @cache
