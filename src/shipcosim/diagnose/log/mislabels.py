@@ -42,6 +42,7 @@ CHANNEL_UNITS = {
 }
 """Units in which channels can be, and their size in the role's unit, which comes first."""
 TURNED = "north and east are turned against heading and velocities"
+AXES_TURNED = "surge and sway are turned against the ship"
 
 
 @dataclass(frozen=True)
@@ -141,11 +142,17 @@ def _from_degrees(log):
 
 def turned_grid(angle: float) -> Mislabel:
     """Positions in a grid that is turned against heading and velocities, clockwise by some degrees."""
-    return Mislabel("frame", POSITION, TURNED, partial(_turned_back, angle))
+    return Mislabel("frame", POSITION, TURNED, partial(_turned_back, POSITION, angle))
 
 
-def _turned_back(angle, log):
-    return _turned_to_body(POSITION, log["north"], log["east"], angle)
+def turned_axes(angle: float) -> Mislabel:
+    """Surge and sway along axes that are turned against the ship's, clockwise by some degrees."""
+    # Along axes turned clockwise, the same velocity is turned anticlockwise.
+    return Mislabel("frame", VELOCITY, AXES_TURNED, partial(_turned_back, VELOCITY, -angle))
+
+
+def _turned_back(roles, angle, log):
+    return _turned_to_body(roles, *(log[role] for role in roles), angle)
 
 
 def _from_bow(log):

@@ -6,7 +6,7 @@ from diagnose.logs import measured, table
 
 from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.log.reader import read_log
-from shipcosim.diagnose.log.readings.reading import misread
+from shipcosim.diagnose.log.readings.reading import CONTRADICTION, misread
 from shipcosim.diagnose.log.repair import repaired
 
 
@@ -110,6 +110,57 @@ def test_positions_of_latitude_and_longitude_are_in_no_turned_grid():
     )
     (finding,) = examine(wrong)
     assert "the heading is off by that angle" in finding.alternatives
+
+
+@pytest.mark.parametrize(
+    ("degrees", "seed"), [(45.0, 25), (90.0, 26), (-135.0, 1005), (180.0, 1007)]
+)
+def test_axes_of_the_velocity_that_are_turned_are_named_with_their_angle(degrees, seed):
+    log = measured(seed=seed)
+    along = (log["surge"] + 1j * log["sway"]) * np.exp(-1j * np.radians(degrees))
+    wrong = log | {"surge": along.real, "sway": along.imag}
+    (finding,) = examine(table(wrong))
+    assert (finding.cause, finding.channels, finding.alternatives) == (
+        "frame",
+        ("surge", "sway"),
+        (),
+    )
+    angle = finding.parameters["angle"]
+    off = (angle.estimate - degrees + 180.0) % 360.0 - 180.0
+    assert abs(off) < 4.0 * angle.std and angle.std < 2.0
+    again = repaired(table(wrong), [finding])
+    off = again["surge"].values - log["surge"] + 1j * (again["sway"].values - log["sway"])
+    assert np.abs(off).max() < 0.05 * np.abs(along).max()
+    assert examine(again.drop_vars("logged_time")) == []
+
+
+@pytest.mark.parametrize("seed", [25, 1005])
+def test_signs_of_heading_and_yaw_rate_that_agree_with_each_other_are_named(seed):
+    """The two agree as they are labelled; position against velocity tells that both are wrong."""
+    log = measured(seed=seed)
+    wrong = log | {"heading": np.mod(-log["heading"], 360.0), "yaw_rate": -log["yaw_rate"]}
+    assert {f.note for f in examine(table(wrong))} == {
+        "heading has the other sign",
+        "yaw_rate has the other sign",
+    }
+
+
+MORE_THAN_TWO = [
+    (25, "north and east are in km, not m", "heading has the other sign", "yaw_rate"),
+    (1005, "time is in ms, not s", "surge and sway are in km/h, not m/s", "east"),
+    (1007, "time is in ms, not s", "heading has the other sign", "yaw_rate"),
+]
+
+
+@pytest.mark.parametrize(("seed", "one", "other", "negative"), MORE_THAN_TWO)
+def test_more_mistakes_than_are_looked_for_are_a_contradiction(seed, one, other, negative):
+    """Neither silence nor a wrong name; and the wind is not judged by velocities and headings that are wrong."""
+    log = measured(seed=seed)
+    for mistake in (one, other):
+        log = log | CHANGES[mistake](log)
+    (finding,) = examine(table(log | {negative: -log[negative]}))
+    assert CONTRADICTION in finding.note and finding.alternatives
+    assert finding.probability > 0.9 and "nothing is corrected" in finding.sentence
 
 
 def two_mirrors(log):
@@ -240,4 +291,4 @@ def test_nothing_is_said_where_the_heading_cannot_be_followed():
         "wind_speed": 8.0 + rng.normal(0.0, 0.3, time.size),
         "wind_from": rng.uniform(0.0, 360.0, time.size),
     }
-    assert misread(log, {}) == []
+    assert misread(log, {}).findings == []

@@ -36,7 +36,8 @@ def examine(log: xarray.Dataset) -> list[Finding]:
     useless = [*wraps(logged), *lifeless(logged)]
     used = without_findings(logged, useless)
     # Mistakes of the whole log, judged jointly by all relations.
-    throughout = _unless_in_part(misread(used, _stated_units(log)), used, _stated_units(log))
+    labels = misread(used, _stated_units(log))
+    throughout = _unless_in_part(labels.findings, used, _stated_units(log))
     # Gaps and faults of parts are looked for in the log with these corrected.
     table = read_anew(used, throughout)
     start = logged["time"][0]
@@ -45,7 +46,8 @@ def examine(log: xarray.Dataset) -> list[Finding]:
     }  # not lost, but unusable
     found = gaps(table | empty)
     if not any(finding.alternatives for finding in throughout):
-        found += _in_parts(without_findings(table, found), _stated_units(log))
+        right = without_findings(table, found)
+        found += _in_parts(right, _stated_units(log), labels.contradiction)
     # Segments were found in corrected time; give them in the log's own.
     rate = rate_of(throughout)
     found = [
@@ -65,8 +67,8 @@ def _unless_in_part(throughout, table, stated):
     return throughout
 
 
-def _in_parts(table, stated):
-    """Mistakes of parts of a log, and those of the wind.
+def _in_parts(table, stated, contradiction):
+    """Mistakes of parts of a log, and those of the wind; a contradiction where no part explains it.
 
     A label is wrong in a part of a log only where all channels agree throughout once it is corrected.
     """
@@ -88,7 +90,11 @@ def _in_parts(table, stated):
         for label in kept:
             right = undone(right, label.mislabel, label.segments)
         clock = wrong_clock(right)
-    return [*kept, *(mislabelled_wind(right) or jumping_wind(right)), *_agreeing(clock)]
+    # The wind is judged by headings and velocities, so not where these contradict each other.
+    clock = _agreeing(clock)
+    if contradiction is not None and not kept and not clock:
+        return [contradiction]
+    return [*kept, *(mislabelled_wind(right) or jumping_wind(right)), *clock]
 
 
 def _agreeing(clock):

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from shipcosim.diagnose.log.mislabels import (
+    AXES_TURNED,
     CHANNEL_UNITS,
     HEADING_FROM_EAST,
     POSITION,
@@ -299,5 +300,5 @@ def _odd(stated) -> Iterator[LogMistake]:
         None,
         ("the heading is off by that angle",),
     )
-    said = "surge and sway are turned against the ship"
-    yield LogMistake("axes turned", 8.5, lambda r: _freed(_freed(r, "angle"), "axes"), None, said)
+    axes = lambda r: _freed(_freed(r, "angle"), "axes")  # noqa: E731
+    yield LogMistake("axes turned", 8.5, axes, None, AXES_TURNED)

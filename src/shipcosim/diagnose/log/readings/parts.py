@@ -90,7 +90,7 @@ def _probability(log, mislabel, segment, stated):
     """Probability of a mislabel by the rows of a segment alone; 0 where they say anything else, or leave it open."""
     here = inside(log["time"], [segment])
     part = {role: values[here] for role, values in log.items()}
-    said = misread(part, stated, SEGMENT_COST)
+    said = misread(part, stated, SEGMENT_COST).findings
     is_it = len(said) == 1 and not said[0].alternatives and said[0].note == mislabel.sentence
     return said[0].probability if is_it else 0.0
 

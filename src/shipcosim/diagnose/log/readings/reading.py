@@ -1,6 +1,7 @@
 """The joint judgement of a log: which of its channels are not what they are labelled, or what is left open."""
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from shipcosim.diagnose.log.mislabels import (
     POSITION_IN_DEGREES,
     VELOCITY,
     finding_of,
+    turned_axes,
     turned_grid,
 )
 from shipcosim.diagnose.log.readings.changes import CLOCK, LogMistake, changes
@@ -33,10 +35,28 @@ from shipcosim.diagnose.log.thresholds import (
 from shipcosim.diagnose.numerics import finite, root_mean_square
 
 NOTHING_ELSE = "nothing else is wrong"
+ANOTHER_WAY = "the channels contradict each other in another way"
+CONTRADICTION = "positions, heading, velocities and yaw rate contradict each other"
 DEGREE = float(np.degrees(1.0))
 
 
-def misread(log: dict, stated: dict[str, str], more: float = 0.0) -> list[Finding]:
+class Judgement(NamedTuple):
+    """What is wrong throughout a log, by its labels and its time base.
+
+    Attributes
+    ----------
+    findings : list of Finding
+        What is sure; and what is left open, as one finding with `alternatives`.
+    contradiction : Finding or None
+        Channels contradict each other, and no mistakes that are looked for explain it all. There are no findings then;
+        a fault in a part of the log may be the reason.
+    """
+
+    findings: list[Finding]
+    contradiction: Finding | None = None
+
+
+def misread(log: dict, stated: dict[str, str], more: float = 0.0) -> Judgement:
     """Mistakes of units, frames, signs and of the time base that hold throughout a log.
 
     Parameters
@@ -47,23 +67,17 @@ def misread(log: dict, stated: dict[str, str], more: float = 0.0) -> list[Findin
         Units that headers or a channel file state, by role.
     more : float
         What any mistake costs more, as one of a part of a log does. [nats]
-
-    Returns
-    -------
-    list of Finding
-        What is sure; and what is left open, as one finding with `alternatives`.
     """
     # The kinematic relations in the log; without any there is nothing to compare.
     evidence = evidence_of(log)
     if not evidence.position and not evidence.rate:
-        return []  # what is usual alone says nothing
-    # Posterior of all combinations of mistakes. The angle of a grid is estimated
-    # only where positions were not converted from latitude and longitude.
+        return Judgement([])  # what is usual alone says nothing
+    # Posterior of all combinations of mistakes.
     readings, unexplained = judged(evidence, changes(stated), more)
-    angle = _angle(readings[0], evidence) if "latitude" not in stated else None
-    return (
-        _findings(readings, unexplained, angle) if _holds_throughout(readings[0], evidence) else []
-    )
+    angle = _angle(readings[0], evidence, "latitude" in stated)
+    if not _holds_throughout(readings[0], evidence):
+        return Judgement([])
+    return _findings(readings, unexplained, angle)
 
 
 def explained(log: dict) -> float:
@@ -173,10 +187,10 @@ def _holds_throughout(best, evidence):
     # Relations concern the best reading only through the channels that it changes.
     reading = reading_of(best.changes)
     changed = {role for change in best.changes for role in change.channels}
-    relations = [
-        (evidence.relation_of(reading), {*POSITION, *VELOCITY, "heading", "time"}),
-        (evidence.rate.get(reading.heading_unit), {"yaw_rate", "heading", "time"}),
-    ]
+    relations = [(evidence.relation_of(reading), {*POSITION, *VELOCITY, "heading", "time"})]
+    # With both signs wrong, heading and yaw rate agree as they are labelled: they do not tell.
+    if not ({"heading", "yaw_rate"} <= changed and reading.rate_factor == 1.0):
+        relations.append((evidence.rate.get(reading.heading_unit), {"yaw_rate", "heading", "time"}))
     return all(
         relation.throughout
         for relation, roles in relations
@@ -184,24 +198,28 @@ def _holds_throughout(best, evidence):
     )
 
 
-def _angle(best, evidence):
-    """By how much the grid is turned where no compass can be off by as much; None where it is not, or not alone."""
-    # An angle is estimated only where it is free, and unique only without mirrored positions.
+def _angle(best, evidence, is_geodetic):
+    """By how much the grid or the axes of the velocity are turned; None where that is not known, or not the cause."""
+    # An angle is estimated only where it is free, and unique only without mirrored axes.
     reading = reading_of(best.changes)
     relation = evidence.relation_of(reading)
-    if relation is None or "angle" not in reading.free or "position" in reading.mirrored:
+    axes = "axes" in reading.free
+    mirrored = reading.mirrored & ({"position", "velocity"} if axes else {"position"})
+    if relation is None or "angle" not in reading.free or mirrored:
         return None
-    # Larger than any error of a compass, the angle must be one of the grid.
     angle = ParameterEstimate(
         float(np.degrees(off_angle(relation, reading))), float(np.degrees(relation.std[1])), "deg"
     )
-    return angle if abs(angle.estimate) > COMPASS_OFF else None
+    # Larger than any error of a compass, the angle must be one of the grid. Positions
+    # that were converted from latitude and longitude have no grid that could be turned.
+    grid = abs(angle.estimate) > COMPASS_OFF and not is_geodetic
+    return angle if axes or grid else None
 
 
 def _findings(
     readings: list[Judged], unexplained: float, angle: ParameterEstimate | None
-) -> list[Finding]:
-    """Findings of the changes that are sure, and one of what is left open; `angle`: of a grid that can be corrected."""
+) -> Judgement:
+    """Findings of the changes that are sure, and one of what is left open; `angle`: of a frame that can be corrected."""
     # Marginal probability of each mistake: the sum over all combinations that contain it.
     readings = _with_known_rates(readings)
     shares: dict[str, float] = {}
@@ -229,11 +247,19 @@ def _findings(
             )
             rests[rest] = rests.get(rest, 0.0) + one.probability
             rates.setdefault(rest, one.rate[0])
-    # The rest may well be nothing, and is not reported
-    # then. If no combination explains the log, nothing is.
+    # If no combination explains the log, no mistake is sure. Something is
+    # wrong all the same, where the log as labelled is unlikely, too.
+    if unexplained > LEFT_OPEN:
+        as_labelled = sum(one.probability for one in readings if not one.changes)
+        if as_labelled > UNLIKELY_READING:
+            return Judgement([])
+        if unexplained > 1.0 - UNLIKELY_READING:
+            return Judgement([], _contradiction(unexplained))
+        return Judgement([], _left_open(rests, rates, unexplained))
+    # The rest may well be nothing, and is not reported then.
     if unexplained + rests.get((), 0.0) > LEFT_OPEN:
-        return found if unexplained < LEFT_OPEN else []
-    return [*found, _left_open(rests, rates)]
+        return Judgement(found)
+    return Judgement([*found, _left_open(rests, rates, unexplained)])
 
 
 def _with_known_rates(readings):
@@ -276,9 +302,15 @@ def _named(change, probability, readings, angle):
             parameters={"angle": angle},
             note=said,
         )
+    if change.slot == "time":
+        return replace(_clock(change, readings), probability=probability)
     if change.mislabel is not None:
         return finding_of(change.mislabel, probability)
-    return replace(_clock(change, readings), probability=probability)
+    # Only the turned axes of the velocity are left. Without a known angle they cannot be corrected.
+    if angle is None:
+        return log_fault(change.cause, change.channels, change.sentence, probability=probability)
+    turned = finding_of(turned_axes(angle.estimate), probability)
+    return replace(turned, parameters={"angle": angle})
 
 
 def _clock(change, readings):
@@ -287,7 +319,7 @@ def _clock(change, readings):
     return log_fault("clock", ("time",), change.sentence, parameters=rates)
 
 
-def _left_open(rests, rates):
+def _left_open(rests, rates, unexplained):
     """One finding of several readings that explain a log alike: the likeliest, and the others beside it."""
     # The likeliest non-empty set leads; the others are its alternatives.
     (first, share), *others = sorted(rests.items(), key=lambda entry: (not entry[0], -entry[1]))
@@ -298,6 +330,8 @@ def _left_open(rests, rates):
     ]
     beside = [said for change in first for said in change.or_else]
     beside += [words[rest] or NOTHING_ELSE for rest in likely if words[rest] != words[first]]
+    if unexplained > UNLIKELY_READING:
+        beside = [*beside[: MOST_ALTERNATIVES - 1], ANOTHER_WAY]
     channels = tuple(dict.fromkeys(role for change in first for role in change.channels))
     # Causes that no log can tell apart share the probability.
     share = share / (1 + len(first[0].or_else))
@@ -313,6 +347,14 @@ def _left_open(rests, rates):
         note=words[first],
         alternatives=alternatives,
     )
+
+
+def _contradiction(probability):
+    """The finding that no combination explains a log."""
+    channels = (*POSITION, "heading", *VELOCITY, "yaw_rate")
+    note = f"{CONTRADICTION}: more than two labels are wrong"
+    found = log_fault("frame", channels, note, probability=min(probability, MOST_SURE))
+    return replace(found, alternatives=("one of the sensors is wrong",))
 
 
 def _words(rest, rate):
