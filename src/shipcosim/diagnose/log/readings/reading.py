@@ -77,7 +77,12 @@ def misread(log: dict, stated: dict[str, str], more: float = 0.0) -> Judgement:
     angle = _angle(readings[0], evidence, "latitude" in stated)
     if not _holds_throughout(readings[0], evidence):
         return Judgement([])
-    return _findings(readings, unexplained, angle)
+    found = _findings(readings, unexplained, angle)
+    # A heading that cannot be followed as it is labelled contradicts nothing: its rows may be too far apart.
+    followed = (not evidence.position or (1.0, False) in evidence.position) and (
+        not evidence.rate or 1.0 in evidence.rate
+    )
+    return found if followed else found._replace(contradiction=None)
 
 
 def explained(log: dict) -> float:
