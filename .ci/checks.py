@@ -49,7 +49,13 @@ def main(target: str) -> int:
         "tests/system/bench",
         *(f"--ignore={folder}" for folder in TIMED),
     ]
-    numeric = [*TESTS, "tests/unit/models", "tests/system/learn", "tests/system/diagnose"]
+    numeric = [
+        *TESTS,
+        "tests/unit/models",
+        "tests/system/models",
+        "tests/system/learn",
+        "tests/system/diagnose",
+    ]
     failed = run(BUILD | {"tests by the clock": [*ALONE, *TIMED]})
     failed |= run({"benches": benches}, SHIPCOSIM_FRESH_SEEDS="1")
     failed |= run({"tests as on another processor": numeric}, **OTHER_PROCESSOR)

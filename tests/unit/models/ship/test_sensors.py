@@ -74,10 +74,13 @@ def record(truth, parameters, duration, h=0.1):
 
 def test_wandering_error_keeps_its_stationary_size_and_forgets_with_its_time_constant():
     parameters = replace(PERFECT, position_drift_std=0.1, position_drift_time=4.0)
-    error = record(lambda t: REST, parameters, 8000.0)[1:, :2]  # 1000 independent pieces per axis
+    h = 0.5  # s; four of 0.1 s between would tell no more
+    error = record(lambda t: REST, parameters, 8000.0, h)[
+        1:, :2
+    ]  # 1000 independent pieces per axis
     assert_allclose(np.std(error, axis=0), 0.1, rtol=0.09)  # 4 standard errors
     for lag in (2.0, 4.0, 8.0):
-        k = round(lag / 0.1)
+        k = round(lag / h)
         correlation = np.mean(error[k:] * error[:-k], axis=0) / np.mean(error**2, axis=0)
         assert_allclose(correlation, np.exp(-lag / 4.0), atol=0.12)
 
