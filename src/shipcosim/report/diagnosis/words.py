@@ -245,16 +245,20 @@ def _better_predictor(diagnosis: Diagnosis) -> str:
 
 
 def _unknown(diagnosis: Diagnosis, physics: Sequence[str]) -> str:
-    """What is certain without a named cause: the largest discrepancy and sure findings."""
+    """What is certain without a named cause: why none was tried, the largest discrepancy and sure findings."""
     said = f" Certain is: {listed(physics)}." if physics else ""
+    wrong = [
+        f" The simulation is wrong, first of all: {d.what}." for d in diagnosis.discrepancies[:1]
+    ]
+    if diagnosis.obstacles:
+        return f"No cause was tried. {diagnosis.obstacles[0]}{''.join(wrong)}{said}"
     likely = [one for one in diagnosis.candidates if one.probability >= LIKELY]
     if likely:
         names = [title_of(one).lower() for one in likely]
         said += f" Of the known ones {listed(names)} explain{'s' * (len(names) == 1)} most."
-    if not diagnosis.discrepancies:
+    if not wrong:
         return f"The simulation is wrong by more than noise, and none of the known causes explains it.{said}"
-    first = diagnosis.discrepancies[0].what
-    return f"The simulation is wrong, first of all: {first}. None of the known causes explains all of it.{said}"
+    return f"{wrong[0].strip()} None of the known causes explains all of it.{said}"
 
 
 def craft_sentence(craft: LearnedCraft | None) -> str:

@@ -4,10 +4,24 @@ import numpy as np
 import pytest
 from diagnose.logs import measured, table
 
+from mistakes.runs import log_of
 from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.log.reader import read_log
-from shipcosim.diagnose.log.readings.reading import CONTRADICTION, misread
+from shipcosim.diagnose.log.readings.reading import CONTRADICTION, IN_PART, misread
 from shipcosim.diagnose.log.repair import repaired
+from truth import draw
+
+MOTION = (
+    "time",
+    "north",
+    "east",
+    "heading",
+    "surge",
+    "sway",
+    "yaw_rate",
+    "wind_speed",
+    "wind_from",
+)
 
 
 def without_wind(log):
@@ -161,6 +175,27 @@ def test_more_mistakes_than_are_looked_for_are_a_contradiction(seed, one, other,
     (finding,) = examine(table(log | {negative: -log[negative]}))
     assert CONTRADICTION in finding.note and finding.alternatives
     assert finding.probability > 0.9 and "nothing is corrected" in finding.sentence
+
+
+@pytest.mark.parametrize(
+    ("seed", "role", "said"),
+    [(201, "north", "north has the other sign"), (203, "sway", "sway has the other sign")],
+)
+def test_a_mistake_that_too_little_motion_shows_in_all_parts_is_left_open(seed, role, said):
+    """A ship that holds her place moves in some parts only: what these say is said, and nothing is corrected."""
+    log = log_of("hold", seed)
+    (finding,) = examine(table(log | {role: -log[role]}))
+    assert said in (finding.note, *finding.alternatives) and IN_PART in finding.alternatives
+    assert finding.probability <= 0.5
+    assert examine(table(log)) == []
+
+
+@pytest.mark.parametrize("every", [5, 10, 25])
+def test_a_right_log_with_rows_far_apart_is_right(every):
+    """Where a part is suspected, its ends are looked for among few rows, of which some cannot be compared."""
+    log = draw("work", 91022, minutes=20, form=1.0).log.iloc[::every]
+    roles = {name.partition(" [")[0]: log[name].to_numpy(float) for name in log}
+    assert examine(table({role: values for role, values in roles.items() if role in MOTION})) == []
 
 
 def two_mirrors(log):

@@ -164,6 +164,11 @@ def test_every_cause_of_the_catalogue_has_advice():
             ["none of the known causes explains", "The log itself is faulty"],
         ),
         (
+            Diagnosis("unknown", (GAP,), obstacles=("Rows 5 s apart do not show it.",)),
+            "UNKNOWN",
+            ["No cause was tried. Rows 5 s apart do not show it.", "The log itself is faulty"],
+        ),
+        (
             Diagnosis(
                 "ambiguous",
                 indistinguishable=(Candidate("mass", None, 0.6), Candidate("drag", None, 0.4)),
@@ -172,7 +177,7 @@ def test_every_cause_of_the_catalogue_has_advice():
             ["cannot tell which: mass or drag"],
         ),
     ],
-    ids=["consistent", "one", "two", "data", "both", "unknown", "ambiguous"],
+    ids=["consistent", "one", "two", "data", "both", "unknown", "not tried", "ambiguous"],
 )
 def test_verdict_is_one_sentence_on_model_and_log(diagnosis, word, said):
     found = outcome(diagnosis)

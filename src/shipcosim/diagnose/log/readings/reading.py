@@ -36,6 +36,7 @@ from shipcosim.diagnose.numerics import finite, root_mean_square
 
 NOTHING_ELSE = "nothing else is wrong"
 ANOTHER_WAY = "the channels contradict each other in another way"
+IN_PART = "only a part of the log is like that"
 CONTRADICTION = "positions, heading, velocities and yaw rate contradict each other"
 DEGREE = float(np.degrees(1.0))
 
@@ -48,8 +49,8 @@ class Judgement(NamedTuple):
     findings : list of Finding
         What is sure; and what is left open, as one finding with `alternatives`.
     contradiction : Finding or None
-        Channels contradict each other, and no mistakes that are looked for explain it all. There are no findings then;
-        a fault in a part of the log may be the reason.
+        Channels contradict each other, and what is looked for explains it not throughout the log, or not at all. There
+        are no findings then; a fault in a part of the log may be the reason.
     """
 
     findings: list[Finding]
@@ -74,15 +75,15 @@ def misread(log: dict, stated: dict[str, str], more: float = 0.0) -> Judgement:
         return Judgement([])  # what is usual alone says nothing
     # Posterior of all combinations of mistakes.
     readings, unexplained = judged(evidence, changes(stated), more)
-    angle = _angle(readings[0], evidence, "latitude" in stated)
-    if not _holds_throughout(readings[0], evidence):
-        return Judgement([])
-    found = _findings(readings, unexplained, angle)
+    throughout = _holds_throughout(readings[0], evidence)
+    if throughout and unexplained < LEFT_OPEN:
+        angle = _angle(readings[0], evidence, "latitude" in stated)
+        return Judgement(_findings(readings, unexplained, angle))
     # A heading that cannot be followed as it is labelled contradicts nothing: its rows may be too far apart.
     followed = (not evidence.position or (1.0, False) in evidence.position) and (
         not evidence.rate or 1.0 in evidence.rate
     )
-    return found if followed else found._replace(contradiction=None)
+    return Judgement([], _contradiction(readings, unexplained, throughout) if followed else None)
 
 
 def explained(log: dict) -> float:
@@ -223,7 +224,7 @@ def _angle(best, evidence, is_geodetic):
 
 def _findings(
     readings: list[Judged], unexplained: float, angle: ParameterEstimate | None
-) -> Judgement:
+) -> list[Finding]:
     """Findings of the changes that are sure, and one of what is left open; `angle`: of a frame that can be corrected."""
     # Marginal probability of each mistake: the sum over all combinations that contain it.
     readings = _with_known_rates(readings)
@@ -231,10 +232,7 @@ def _findings(
     for one in readings:
         for change in one.changes:
             shares[change.sentence] = shares.get(change.sentence, 0.0) + one.probability
-    # Each sentence stands for the change of its likeliest combination.
-    first = {
-        change.sentence: change for one in reversed(readings) for change in one.changes
-    }  # likeliest last
+    first = _likeliest(readings)
     # Sure mistakes are findings of their own, unless another cause looks the same.
     sure = [
         said
@@ -242,29 +240,45 @@ def _findings(
         if share > READING_SURE and (not first[said].or_else or angle)
     ]
     found = [_named(first[said], shares[said], readings, angle) for said in sure]
-    # What remains besides the sure mistakes, with its probability and clock rate.
+    rests, rates = _rests(readings, sure)
+    # The rest may well be nothing, and is not reported then.
+    if unexplained + rests.get((), 0.0) > LEFT_OPEN:
+        return found
+    return [*found, _left_open(rests, rates, [ANOTHER_WAY] * (unexplained > UNLIKELY_READING))]
+
+
+def _likeliest(readings):
+    """By sentence: the change of its likeliest combination."""
+    return {change.sentence: change for one in reversed(readings) for change in one.changes}
+
+
+def _rests(readings, sure):
+    """What remains besides the sure mistakes, with its probability and its rate of the clock."""
+    first = _likeliest(readings)
     rests: dict[tuple[LogMistake, ...], float] = {}
     rates: dict[tuple[LogMistake, ...], float] = {}
     for one in readings:
-        if set(sure) <= {change.sentence for change in one.changes}:
-            rest = tuple(
-                first[change.sentence] for change in one.changes if change.sentence not in sure
-            )
+        said = [change.sentence for change in one.changes]
+        if set(sure) <= set(said):
+            rest = tuple(first[sentence] for sentence in said if sentence not in sure)
             rests[rest] = rests.get(rest, 0.0) + one.probability
             rates.setdefault(rest, one.rate[0])
-    # If no combination explains the log, no mistake is sure. Something is
-    # wrong all the same, where the log as labelled is unlikely, too.
-    if unexplained > LEFT_OPEN:
-        as_labelled = sum(one.probability for one in readings if not one.changes)
-        if as_labelled > UNLIKELY_READING:
-            return Judgement([])
-        if unexplained > 1.0 - UNLIKELY_READING:
-            return Judgement([], _contradiction(unexplained))
-        return Judgement([], _left_open(rests, rates, unexplained))
-    # The rest may well be nothing, and is not reported then.
-    if unexplained + rests.get((), 0.0) > LEFT_OPEN:
-        return Judgement(found)
-    return Judgement([*found, _left_open(rests, rates, unexplained)])
+    return rests, rates
+
+
+def _contradiction(readings, unexplained, throughout):
+    """What is left open where nothing is sure throughout a log; None where the log as labelled is not unlikely."""
+    if sum(one.probability for one in readings if not one.changes) > UNLIKELY_READING:
+        return None
+    if unexplained > 1.0 - UNLIKELY_READING:
+        channels = (*POSITION, "heading", *VELOCITY, "yaw_rate")
+        note = f"{CONTRADICTION}: more than two labels are wrong"
+        found = log_fault("frame", channels, note, probability=min(unexplained, MOST_SURE))
+        return replace(found, alternatives=("one of the sensors is wrong",))
+    readings = _with_known_rates(readings)
+    rests, rates = _rests(readings, [])
+    beside = [ANOTHER_WAY] * (unexplained > UNLIKELY_READING) + [IN_PART] * (not throughout)
+    return _left_open(rests, rates, beside)
 
 
 def _with_known_rates(readings):
@@ -324,8 +338,8 @@ def _clock(change, readings):
     return log_fault("clock", ("time",), change.sentence, parameters=rates)
 
 
-def _left_open(rests, rates, unexplained):
-    """One finding of several readings that explain a log alike: the likeliest, and the others beside it."""
+def _left_open(rests, rates, besides):
+    """One finding of readings that explain a log alike: the likeliest; beside it others, and `besides`."""
     # The likeliest non-empty set leads; the others are its alternatives.
     (first, share), *others = sorted(rests.items(), key=lambda entry: (not entry[0], -entry[1]))
     words = {rest: _words(rest, rates[rest]) for rest in rests}
@@ -335,12 +349,10 @@ def _left_open(rests, rates, unexplained):
     ]
     beside = [said for change in first for said in change.or_else]
     beside += [words[rest] or NOTHING_ELSE for rest in likely if words[rest] != words[first]]
-    if unexplained > UNLIKELY_READING:
-        beside = [*beside[: MOST_ALTERNATIVES - 1], ANOTHER_WAY]
     channels = tuple(dict.fromkeys(role for change in first for role in change.channels))
-    # Causes that no log can tell apart share the probability.
-    share = share / (1 + len(first[0].or_else))
-    alternatives = tuple(dict.fromkeys(beside))[:MOST_ALTERNATIVES]
+    # What this log or no log can tell apart from it shares the probability.
+    share = share / (1 + len(first[0].or_else) + len(besides))
+    alternatives = tuple(dict.fromkeys(beside))[: MOST_ALTERNATIVES - len(besides)]
     return Finding(
         first[0].cause,
         None,
@@ -350,16 +362,8 @@ def _left_open(rests, rates, unexplained):
         (),
         channels,
         note=words[first],
-        alternatives=alternatives,
+        alternatives=(*alternatives, *besides),
     )
-
-
-def _contradiction(probability):
-    """The finding that no combination explains a log."""
-    channels = (*POSITION, "heading", *VELOCITY, "yaw_rate")
-    note = f"{CONTRADICTION}: more than two labels are wrong"
-    found = log_fault("frame", channels, note, probability=min(probability, MOST_SURE))
-    return replace(found, alternatives=("one of the sensors is wrong",))
 
 
 def _words(rest, rate):
