@@ -52,6 +52,12 @@ def test_sentences_are_told_apart(texts):
     assert [texts.length(one) for one in texts.sentences(text)] == [1, 10, 1, 1, 1, 1]
 
 
+def test_a_draw_can_be_repeated_and_has_all_kinds(texts):
+    one, again, other = (texts.drawn(50, seed) for seed in (1, 1, 2))
+    assert one == again != other
+    assert [kind for kind, _, _ in one] == ["docs"] * 17 + ["message"] * 17 + ["docstring"] * 16
+
+
 def test_pages_have_no_turn_of_phrase_that_must_be_read_twice(texts, pages):
     found = {name: texts.turns(text) for name, text in pages.items()}
     assert {name: turns for name, turns in found.items() if turns} == {}
