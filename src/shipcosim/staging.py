@@ -123,7 +123,7 @@ def set_aside(folder: Path, names: Iterable[str], *, force: bool = False) -> Non
 
 
 def set_file_aside(path: Path, *, force: bool = False) -> None:
-    """The same with a single file: ``state.bin`` becomes ``state-1.bin``."""
+    """Rename an earlier file: ``state.bin`` becomes ``state-1.bin``."""
     if path.is_file() and not force:
         aside = numbered(path.resolve())
         os.replace(path, aside)

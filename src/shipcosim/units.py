@@ -497,7 +497,7 @@ def seconds(given: str | float) -> float:
     >>> seconds("1.5 min"), seconds("90"), seconds(90.0)
     (90.0, 90.0, 90.0)
     """
-    remedy = "Give seconds, or such as '10 min'."
+    remedy = "Give seconds, or a text with a unit, such as '10 min'."
     try:
         number = float(given)
     except ValueError:

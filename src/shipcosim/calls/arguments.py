@@ -44,7 +44,7 @@ Components = Mapping[str, AnyPath] | None
 
 
 AnyTime = float | str | None
-"""A time as users give it: in s, or such as ``"10 min"``."""
+"""A time as users give it: in s, or a text with a unit, such as ``"10 min"``."""
 
 
 AnyScenario = AnyPath | Scenario

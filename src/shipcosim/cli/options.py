@@ -131,7 +131,8 @@ Record = Annotated[
     ),
 ]
 Every = Annotated[
-    float | None, time_option("--every", "Keep a row each so often; in s, or such as '500 ms'.")
+    float | None,
+    time_option("--every", "Time between the rows that are kept; in s, or with a unit: '500 ms'."),
 ]
 Realtime = Annotated[
     float | None,
@@ -153,7 +154,7 @@ Force = Annotated[
 ]
 Until = Annotated[
     float | None,
-    time_option("--until", "End here, before the stop time; in s, or such as '10 min'."),
+    time_option("--until", "End here, before the stop time; in s, or with a unit: '10 min'."),
 ]
 Store = Annotated[
     Path | None,
@@ -175,7 +176,7 @@ Timeout = Annotated[
     float | None,
     time_option(
         "--timeout",
-        "Longest wait for a component of --isolate; in s, or such as '2 min'. Default: 60.",
+        "Longest wait for a component of --isolate; in s, or with a unit: '2 min'. Default: 60.",
     ),
 ]
 AsJson = Annotated[

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import xarray
 
 TOLERANCE = 1e-9
-"""Of a signal's range."""
+"""Largest difference that counts as none, over a signal's range. [1]"""
 FULL_TURN = {"rad": 2.0 * np.pi, "deg": 360.0}
 
 

@@ -310,7 +310,7 @@ def _reference_logs(found: Mapping[str, Identification]) -> list[ReferenceLog]:
 def _written(
     result: CalibratedShip, given: System, out: AnyPath | None, is_assumed: bool = False
 ) -> CalibratedShip:
-    """The same, once its files are in a folder; nothing is written unless asked, or the logs are refused.
+    """Write the files of a calibration; nothing is written unless asked, or if the logs are refused.
 
     A craft of whom all was guessed is no reference: her form is too rough for causes to be named beside it.
     """
@@ -376,7 +376,7 @@ def _judged(reference, found, suspects):
             )
         else:
             remarks.append(
-                f"{text}. If it is there, later logs will be held against a ship that has it."
+                f"{text}. If the ship has this fault, later logs will be compared with a faulty ship."
             )
     # Numbers at their bounds refuse the reference; those at the edge of their tolerances get a
     # remark.

@@ -142,7 +142,7 @@ class Diagnosis:
 
     @property
     def name(self) -> str:
-        """Of the log's file."""
+        """Name of the log's file."""
         return self.log.name if self.log else "a log"
 
     @property

@@ -244,7 +244,7 @@ class LikeTable:
 
 
 def finite(value: Any) -> Any:
-    """The same with numbers that JSON does not have, infinity and NaN, as texts."""
+    """Turn numbers that JSON does not have, infinity and NaN, into texts."""
     if isinstance(value, dict):
         return {name: finite(part) for name, part in value.items()}
     if isinstance(value, (list, tuple)):

@@ -253,7 +253,7 @@ class CompiledMaster(Master):
 def why_in_python(
     sequential: bool, string_connections: Sequence[object], kinds: Container[str]
 ) -> str:
-    """Why nothing of a run is compiled, by its order and what it exchanges; empty if something can be."""
+    """Reason why no component of a run can be compiled; empty if some can."""
     if not is_installed():
         return "there is no compiler, install it: pip install 'shipcosim[native]'"
     if sequential:

@@ -25,7 +25,7 @@ MOST_LINES = 1000
 LAST_LINES = 3
 """Lines that a component prints and that are shown at most, and of them those that an error repeats."""
 MOST_BYTES = 4096
-"""Of a line that a component prints."""
+"""Longest line of a component that is shown. [bytes]"""
 
 
 class ComponentProcess:

@@ -31,7 +31,7 @@ def validation_problems(path: Path) -> list[Problem]:
         "list index out of range": "An index of ModelStructure or of a derivative leads to no variable."
     }
     found = (unreadable.get(text, text) for text in found)
-    remedy = "FMI does not allow it; export the FMU anew."
+    remedy = "FMI does not allow it; export the FMU again."
     return [Problem(str(path), text, remedy) for text in dict.fromkeys(found) if text]
 
 

@@ -143,7 +143,7 @@ class Axis:
         return self._fit(columns, True)
 
     def compared(self, columns: np.ndarray) -> AxisFit:
-        """The same with gains of any sign."""
+        """Fit of the measured force by commanded loads, with gains of any sign."""
         return self._fit(columns, False)
 
     def most_gain(self, total: np.ndarray) -> tuple[float, float]:
@@ -185,7 +185,7 @@ class Axis:
         return root_mean_square(self.felt) + 1e-30
 
     def both_ways(self, ahead: np.ndarray, astern: np.ndarray) -> AxisFit:
-        """The same by what thrusters do ahead and astern, neither way much weaker than the other.
+        """Fit of the measured force by loads ahead and astern, neither much weaker than the other.
 
         Parameters
         ----------

@@ -216,7 +216,7 @@ def _drives(commanded: Commanded, felt: Felt) -> float:
 def _likelihoods(
     log: Blocks, commanded: Commanded, one: LabelHypothesis, unit: float
 ) -> Iterator[float]:
-    """Of a reading with several lags, less what those cost."""
+    """Log-likelihood of a reading for each lag of the thrusters, less the cost of the lag. [nats]"""
     for lag in LIKELIHOOD_LAGS:
         # A longer delay is less likely beforehand.
         moved = late(commanded, lag * unit / one.step) if lag else commanded

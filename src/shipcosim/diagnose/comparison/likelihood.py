@@ -81,7 +81,7 @@ class Blocks:
 
 
 def smoothed(felt: Felt) -> Felt:
-    """The same with a smoothed motion, so that noise of the velocities does not go with the loads that they make."""
+    """Measured force with loads from smoothed motion, so that they do not correlate with velocity noise."""
     return replace(felt, motion=felt.smooth_motion)
 
 

@@ -90,7 +90,7 @@ class MissingLoad:
 
     @property
     def discrepancy(self) -> Discrepancy:
-        """The same in words."""
+        """The missing load as a discrepancy in words."""
         unit = _UNITS[self.axis]
         text = f"{FORCES[self.axis]}: {self._sense()}"
         return Discrepancy(text, None, self.axis, float(self.missing), float(self.std), unit, 1.0)

@@ -100,7 +100,7 @@ class CraftLog:
         return self._off(readings(predicted(start, rows, self.record, model, self.counts), model))
 
     def missed_if_steady(self) -> np.ndarray:
-        """The same errors, (1, 3, h, s), of a craft that keeps the velocity and the rate of turn of the start."""
+        """Prediction errors, (1, 3, h, s) array, of a craft that keeps the velocity and the rate of turn of the start."""
         start = at_rows(self.seen, self.rows)
         time = self.record.step * np.array(self.counts)[:, None, None]
         # The way along an arc: the velocity at half of its turn, shorter by the chord over the arc.

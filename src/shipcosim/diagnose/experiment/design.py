@@ -104,7 +104,7 @@ class Separation:
 
     @property
     def least(self) -> float:
-        """Of the closest pair. [nats]"""
+        """Evidence between the closest pair. [nats]"""
         return min(self.nats.values())
 
     def clear(self, wanted: Collection[tuple[int, int]]) -> dict[tuple[int, int], float]:

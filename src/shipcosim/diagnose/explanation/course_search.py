@@ -102,12 +102,12 @@ class _Fitted(NamedTuple):
 
     @property
     def theta(self) -> np.ndarray:
-        """Of the cause's columns."""
+        """Estimates of the cause's columns."""
         return self.fit.theta[len(self.of.base.columns) :]
 
     @property
     def covariance(self) -> np.ndarray:
-        """Of the cause's columns."""
+        """Covariance of the cause's columns."""
         count = len(self.of.base.columns)
         return self.fit.covariance[count:, count:]
 

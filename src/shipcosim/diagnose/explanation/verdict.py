@@ -391,7 +391,7 @@ def _in_shape(hypothesis, fit):
 
 
 def _size(hypothesis, fit):
-    """Of a cause in a fit, in units of its typical size."""
+    """Size of a cause in a fit, over its typical size. [1]"""
     return np.hypot.reduce(
         [(fit.values[k.path] - k.neutral) / k.typical for k in hypothesis.parameters]
     )

@@ -19,7 +19,7 @@ _SLOW = range(9, 12)  # states of slow errors
 _PLACE = range(12, 15)  # of what waves add to position and heading
 _SPEED = range(15, 18)  # and to the velocity
 WAVE_DAMPING = 0.1
-"""Of the oscillator whose answer to white noise first-order wave motion resembles (Fossen 2011, section 8.2.6)."""
+"""Damping ratio of the oscillator that stands for first-order wave motion (Fossen 2011, section 8.2.6)."""
 
 
 @dataclass(frozen=True)

@@ -164,7 +164,7 @@ def _apparent(log):
 
 
 def _apparent_from_north(log):
-    """The same, with the direction from north."""
+    """Apparent wind of a log with its direction from north."""
     return _apparent(log | _from_bow(log))
 
 

@@ -58,9 +58,10 @@ Assumed."""
 CALM_SHARE = 0.25
 """Share of the parts of a log that are calm."""
 UNSURE_NOISE = (0.25, 0.35, 0.15)
-"""Of what noise takes from a factor, measured in two ways: how far from the larger to the smaller the value is taken,
-how unsure it is as a share of their difference, and as a share of the larger even where both agree. Set on hold logs
-of seeds 200 to 213: 28 factors are off by 0.6 of their stated error, as a root mean square."""
+"""Uncertainty of the loss that noise causes in a factor, which is measured in two ways: how far from the larger to the
+smaller the value is taken, how unsure it is as a share of their difference, and as a share of the larger even where
+both agree. Set on hold logs of seeds 200 to 213: 28 factors are off by 0.6 of their stated error, as a root mean
+square."""
 HEARD = 12.0
 """What the best form of a relation must gain over none, to be heard. [nats] Assumed; of 36 forms without any relation
 the best one gains 5."""
@@ -81,9 +82,9 @@ SCALE_TOLERANCE = (0.007, 0.08)
 """By how much velocity and position of a right log differ in scale, as standard deviations: of most, and of a few.
 Assumed."""
 RATE_TOLERANCE = (0.012, 0.08)
-"""The same of yaw rate and heading. Assumed."""
+"""Standard deviations of the scale between yaw rate and heading: of most logs, and of a few. Assumed."""
 ANGLE_TOLERANCE = (0.02, 0.1)
-"""The same of the angle between velocity and change of position. [rad] Assumed."""
+"""Standard deviations of the angle between velocity and change of position. [rad] Assumed."""
 FAR_SHARE = 0.03
 """Share of those few. Assumed."""
 GOES_AHEAD = 0.8
@@ -118,7 +119,7 @@ say, so it is less than UNEXPLAINED_COST. [nats] Assumed."""
 THROUGHOUT = 0.75
 """Share of a log, by what its parts say, in which a reading holds that is one of all of it. Assumed."""
 UNLABELLED = 0.95
-"""The same where the log as labelled can be held against a reading, by the logarithms of what both leave in each part.
+"""Such a share where both labels are compared, by the logarithms of their residuals in each part.
 Drawn boats (tests/bench/mistakes, seeds 3000 to 3024): 1.00 in all 293 with a label that is wrong throughout; where it
 is wrong in three quarters, 119 of 161 are below 0.95 and the rest above 0.98: there the last quarter does not tell."""
 READING_SURE = 0.95
@@ -228,7 +229,7 @@ SCALE_SLAB = {1: 0.03, 2: 0.1}
 CLOCK_GAIN = 8.0
 """What a segment must gain after the cost of choosing it. [nats]"""
 CLOCK_TOLERANCE = 0.05
-"""Of ρ, below which it is no fault. Assumed."""
+"""Deviation of ρ from 1 below which the clock counts as right. Assumed."""
 PLAUSIBLE_RATES = (0.65, 1.5)
 """ρ of a clock; noise alone, where a ship hardly moves, looks like a clock of a half."""
 MOST_BLOCKS = 160
@@ -246,7 +247,7 @@ MOST_SEGMENTS = 4
 CLOCK_CLIP = 25.0
 """Standard deviations beyond which an innovation counts no more."""
 RATE_UNSURE = 0.03
-"""Of ρ - 1, what the ends of segments and the scale of the whole log leave open, as a standard deviation. Assumed."""
+"""Standard deviation of ρ from the ends of segments and the scale of the whole log. Assumed."""
 ROUGHEST = 3.5
 """Innovations that are more correlated, after all that was found, say nothing about a clock."""
 

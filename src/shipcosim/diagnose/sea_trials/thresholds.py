@@ -60,23 +60,23 @@ RATE = 0.025
 DRIFT = 0.026
 """How well the steady speed, rate (shares) and drift angle (rad) of a circle repeat, assumed: waves, wind, helm."""
 TIMES = (0.10, 0.06, 0.05, 0.04)
-"""The same of the times to `HEADINGS`, assumed. [1]"""
+"""How well the times to `HEADINGS` repeat, assumed. [1]"""
 SPEEDS = 0.05
-"""The same of the speeds at `HEADINGS_OF_SPEED`, assumed. [1]"""
+"""How well the speeds at `HEADINGS_OF_SPEED` repeat, assumed. [1]"""
 WAYS = (0.04, 0.06, 0.04)
-"""The same of advance, transfer and tactical diameter, assumed. [1]"""
+"""How well advance, transfer and tactical diameter repeat, assumed. [1]"""
 STRAIGHT_SPEED = 0.015
-"""The same of the speed of a straight run, beside the current, assumed. [1]"""
+"""How well the speed of a straight run repeats, apart from the current, assumed. [1]"""
 PEAK_RATE = 0.04
 SWING = 0.08
 ZIG_ZAG_SPEED = 0.03
-"""The same of a zig-zag's mean largest rate, mean heading change of a swing, and mean speed, assumed. [1]"""
+"""How well mean largest rate, mean heading change and mean speed of a zig-zag repeat, assumed. [1]"""
 PULL_OUT_RATE = 0.04
 SPIRAL_RATE = 0.03
 CHANGED_SPEED = 0.025
 TURNED = 0.1
-"""The same of the rates of a pull-out and a spiral over the first, of a changing speed over the first (shares), and of
-the change of heading while a course is held (rad), assumed."""
+"""How well these repeat: the rates of a pull-out and a spiral over the first, of a changing speed over the first
+(shares), and of the change of heading while a course is held (rad), assumed."""
 START = 0.12
 """How well the start of a circle's order is known, times the root of the length in m: 0.7 s for 34 m. [s/m^0.5]"""
 COMMON = 0.02

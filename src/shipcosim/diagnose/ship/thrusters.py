@@ -211,12 +211,12 @@ def fixed_of(system: System, parts: Mapping[str, Any]) -> dict[str, float]:
 
 
 def thrust_numbers(model: ShipModel) -> tuple[str, ...]:
-    """Of each thruster, the number that scales all its thrust."""
+    """The number of each thruster that scales all its thrust."""
     return tuple(path for name in model.thrusters if model.has(path := f"{name}.thrust_loss"))
 
 
 def astern_numbers(model: ShipModel) -> tuple[str, ...]:
-    """Of each thruster, the number that scales its thrust astern, where it has one."""
+    """The number of each thruster that scales its thrust astern, where it has one."""
     kinds = ("reverse_loss", "gain_astern")
     paths = [f"{name}.{kind}" for name in model.thrusters for kind in kinds]
     return tuple(path for path in paths if model.has(path))

@@ -10,7 +10,7 @@ _COEFFICIENT = 0.05  # of a hull's coefficient, as of the damping in surge (assu
 
 
 def tolerances_of(system: System, parts: Mapping[str, Any], vessel: str) -> dict[str, float]:
-    """Tolerances of the system's parameter sets, where they are silent what such a number is known to.
+    """Tolerances of the system's parameter sets, and usual ones where these have none.
 
     Parameters
     ----------

@@ -111,7 +111,7 @@ class World:
 
 
 class Record(NamedTuple):
-    """Of one world or several.
+    """Record of one world or several.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ from shipcosim.learn.regions import conformal
 from shipcosim.models.prediction import docking
 
 HORIZONS = (10, 20, 30)
-"""Of the regions. [s]"""
+"""Horizons of the regions. [s]"""
 
 
 def misses(places: Places, after: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:

@@ -21,7 +21,7 @@ from shipcosim.models.ship.mast import MastParameters
 OURS = distance_ensemble.DockingTraining()
 PAPER_III = paper_iii.PaperIIITraining()
 COMPONENT = "docking_predictor"
-"""Of the system, whose parameters the predictor has."""
+"""Component of the system that has the predictor's parameters."""
 SETS = {
     "training": dockings.TRAINING,
     "choices": dockings.CHOICES[:12],

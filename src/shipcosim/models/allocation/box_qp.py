@@ -259,7 +259,7 @@ def _round(request, commands, slack, zero, count, x, side, freed, done, multipli
 
 
 def _first(flags, asked):
-    """Of each element the first flag that is set, where one is asked for."""
+    """The first flag that is set of each element, where one is asked for."""
     found = []
     for flag in flags:
         found.append(flag & asked)

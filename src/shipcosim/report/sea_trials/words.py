@@ -22,7 +22,9 @@ def outcome(found: SeaTrialStudy) -> Outcome:
 def sentence(found: SeaTrialStudy) -> str:
     """The verdict in a sentence."""
     if found.verdict == "consistent":
-        return "The model sails these trials as the ship did, as far as such trials repeat."
+        return (
+            "The model sails these trials as the ship did, within the repeatability of such trials."
+        )
     best = said(found.best.label)
     best = f"{best[0].upper()}{best[1:]}"
     if found.verdict == "named":

@@ -58,7 +58,7 @@ class Function:
 
 
 MOST_SIGNALS = 10_000
-"""Of one function: a few digits in a file can ask for more than any memory holds."""
+"""Most signals of one function: a few digits in a file can ask for more than any memory holds."""
 
 
 def read_function(element: etree._Element, place: str, findings: Findings) -> Function | None:

@@ -262,7 +262,7 @@ def parse(
         findings.error(
             f"{file}, line {line}" if line else file,
             f"Not well-formed XML: {text}.",
-            "Correct or export anew.",
+            "Correct the file, or export it again.",
         )
         return None
     # Entities could expand without limit.

@@ -14,7 +14,7 @@ from shipcosim.errors import error_at
 
 @dataclass(frozen=True)
 class Layout:
-    """How a text is a table.
+    """Layout of a text file as a table.
 
     Attributes
     ----------

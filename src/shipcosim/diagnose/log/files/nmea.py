@@ -201,7 +201,7 @@ def columns_of_sentences(
     if len(read.damaged) > _MOST_DAMAGED * count:
         found = f"{len(read.damaged)} of {count} sentences of NMEA do not fit their checksum or their form."
         raise error_at(
-            f"{source}, line {read.damaged[0] + 1}", found, "Record them anew, or as a table."
+            f"{source}, line {read.damaged[0] + 1}", found, "Record them again, or as a table."
         )
     said = _told(read)
     # Time of each sentence, and the channels that the sentences give.

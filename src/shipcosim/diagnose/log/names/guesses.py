@@ -60,7 +60,7 @@ class Guess:
     said: tuple[str, ...] = field(default=())
 
     def read_as(self, settings: Mapping[str, Any], **more: Any) -> Guess:
-        """The same column read by other settings of its channel, and what else changes of the guess."""
+        """Guess for this column with other settings of its channel and other changes."""
         return replace(self, channel=self.channel.model_copy(update=settings), **more)
 
     @property

@@ -271,7 +271,7 @@ def _one_factor(value, std, tolerance, free):
 
 
 def _log_density(value, std, tolerance):
-    """Of a deviation as measured, and as instruments differ: mostly by the first tolerance, a few by the second."""
+    """Log-density of a deviation: measured uncertainty and the spread of instruments, of which a few differ more."""
     # Measured uncertainty and both tolerances of instruments: a mixture of two normal densities.
     near = math.hypot(std, tolerance[0])
     far = math.hypot(std, tolerance[1])
