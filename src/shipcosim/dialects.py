@@ -77,7 +77,7 @@ def is_text(head: bytes) -> bool:
 
 
 def is_comment(line: str) -> bool:
-    """Whether a line is none of the table."""
+    """Whether a line is no part of the table."""
     return line.lstrip().startswith(_MARKS)
 
 

@@ -533,7 +533,7 @@ def _cells(path: Path, text: str) -> tuple[list[list[str]], str]:
 
 
 def _without_comments(text: str) -> str:
-    """The text without lines with # above its header; where numbers follow at once, the last of them are names, units."""
+    """Text without the comment lines above its header; without a header the last comments give names and units."""
     lines = text.splitlines(keepends=True)
     is_above = [not line.strip() or line.startswith("#") for line in lines]
     if not text.startswith("#") or all(is_above):

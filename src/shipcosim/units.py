@@ -527,7 +527,7 @@ def whole_steps(duration: float, step_size: float) -> int | None:
 
 
 def _same_kind(source: Unit, target: Unit) -> bool:
-    """Whether an amount in one unit can be meant where the other is wanted.
+    """Whether an amount in one unit can stand for an amount in the other.
 
     An angle is no ratio, but files that define rad or deg without the radian mean the angle.
     """

@@ -50,7 +50,7 @@ AnyTime = float | str | None
 AnyScenario = AnyPath | Scenario
 
 SYSTEM_OF_LOGS = "gunnerus_open"
-"""What logs are held against where no system is given."""
+"""System that logs are compared with if none is given."""
 
 
 def named(argument: str) -> str:
@@ -192,7 +192,7 @@ def _path_of_system(given: AnyPath, argument: str) -> Path:
 
 
 def is_scenario(given: AnyPath) -> bool:
-    """Whether what is a scenario or a system is a scenario: by its ending, else by what has this name.
+    """True for a scenario, False for a system: by the ending, else by which of them has this name.
 
     Raises
     ------

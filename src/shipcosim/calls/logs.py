@@ -92,7 +92,7 @@ def isolability(
     channels: AnyPath | None = None,
     progress: Progress | None = None,
 ) -> tuple[Isolability, ...]:
-    """Which causes a log could tell apart, by its channels and its motion, whatever is the matter in it.
+    """Which causes a log could tell apart, by its channels and its motion, whatever is wrong in it.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ def diagnose(
     log : path, name of an example, Log, Run, xarray.Dataset, or a list of them
         Measured data, see docs/measured-data.md; several logs of one ship are weighed together.
     system : path, name, SystemStructure or System, optional
-        The ship that the log is held against; gunnerus_open if not given.
+        The ship that the log is compared with; gunnerus_open if not given.
     channels : path, optional
         Channel file: which column is what, in which unit.
     causes : path, optional

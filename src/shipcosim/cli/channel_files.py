@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ProposedFile:
-    """A proposal, what is to be said of the log, and the text of the channel file.
+    """A proposal, remarks on the log, and the text of the channel file.
 
     Attributes
     ----------

@@ -196,7 +196,7 @@ def _put(project: Path, files: Mapping[str, Path], over: bool) -> list[Path]:
 
 
 def _scenario(ship: Described, has_dp: bool) -> str:
-    """A first scenario of a ship: she holds her place, or goes ahead."""
+    """Write a first scenario of a ship: she holds her position, or sails ahead."""
     if has_dp:
         return HOLDS.format(name=ship.name)
     ahead = [f'"{name}" = {value:g}' for name, value in _half_ahead(ship)]

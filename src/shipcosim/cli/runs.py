@@ -25,7 +25,7 @@ from shipcosim.results.run import VERDICT
 from shipcosim.staging import set_aside
 
 SLOW = 10.0
-"""Seconds of a run from which on it is worth to say that there is a faster way."""
+"""Seconds of a run above which it is worth to say that there is a faster way."""
 FASTER = "Compiled models run faster: pip install 'shipcosim[native]'."
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""From logs of a ship that is well to her own parameter set, and the reference that other logs are held against."""
+"""From logs of a ship that is well to her own parameter set, and the reference that other logs are compared with."""
 
 import os
 from collections.abc import Mapping, Sequence

@@ -118,7 +118,7 @@ class LogComparison:
 
 @dataclass(frozen=True)
 class ComparedLog(CheckedLog):
-    """A checked log held against the simulation; what is grossly wrong is corrected, in the log and in the ship.
+    """A checked log compared with the simulation; what is grossly wrong is corrected, in the log and in the ship.
 
     Attributes
     ----------
@@ -129,7 +129,7 @@ class ComparedLog(CheckedLog):
 
 
 def compared(log: CheckedLog, is_assumed: bool = False) -> ComparedLog:
-    """A checked log held against the simulation: what is grossly wrong is corrected before anything else.
+    """A checked log compared with the simulation: what is grossly wrong is corrected before anything else.
 
     Sides and signs of thrusters that the motion contradicts are faults of the log; a common ratio of thrust to inertia
     that is far off is in the ship from here on. Where all numbers of the ship are guesses, she is learned instead.

@@ -185,7 +185,7 @@ def find_common_causes(
     ----------
     logs : sequence of path or xarray.Dataset
     system : System
-        The ship that the logs are held against.
+        The ship that the logs are compared with.
     channels : path, optional
         Channel file, the same for all.
     causes : path, optional
@@ -310,7 +310,7 @@ def _relabelled(
 
 
 def _as_read(one: Identification, ship: ShipModel) -> ReadLog:
-    """A log as it was read, to be diagnosed anew."""
+    """A log as it was read, to be diagnosed again."""
     return ReadLog(one.log, ship, one.causes)
 
 
@@ -397,7 +397,7 @@ def _with_relabelled(one: Finding, relabelled: Mapping[str, Sequence[Finding]]) 
 
 
 def _telling(logs: SeveralLogs, hypothesis: Hypothesis) -> tuple[str, ...]:
-    """Logs that have something to say of a cause."""
+    """Logs that can show a cause."""
     return tuple(name for name in logs.problems if logs.within(name, hypothesis) is not None)
 
 

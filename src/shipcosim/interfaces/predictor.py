@@ -239,7 +239,7 @@ class MotionPredictor(Fmu):
                 setattr(self, output, where(is_sound, value, getattr(self, output)))
 
     def _show_nothing(self, known, t, error):
-        """Keep the prediction before, and begin anew: wind and current may be no number either."""
+        """Keep the prediction before, and begin again: wind and current may be no number either."""
         if not self.has_diverged:
             self.log(
                 f"the prediction at t = {t:.9g} s diverges ({error}): none is shown", "warning"

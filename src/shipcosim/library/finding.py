@@ -71,7 +71,7 @@ def find(
 
 
 def find_any(given: str) -> str:
-    """Path of a thing of any kind, as for `find`; of what has the same name a scenario goes before a system.
+    """Path of a thing of any kind, as for `find`; a scenario comes before a system of the same name.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A run without end that goes on as far as its page asks, and takes changes between two steps."""
+"""A run without end: it steps as far as its page asks, and takes changes between two steps."""
 
 from __future__ import annotations
 
@@ -230,7 +230,7 @@ class LiveRun:
                 self._pages.send(json.dumps({"left": True}))
 
     def _obey(self, page: Any, text: str) -> None:
-        """Do what a page asks for; refuse what our page never would."""
+        """Do what a page asks for; refuse requests that our page never sends."""
         try:
             asked = json.loads(text)
             if asked["do"] == "advance":

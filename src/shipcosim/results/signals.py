@@ -44,7 +44,7 @@ def chosen(names: Iterable[str], wanted: Sequence[str]) -> list[str]:
 
 
 def _matching(known: Sequence[str], wanted: str) -> list[str]:
-    """Signals of one name; the nearest meaning goes first."""
+    """Signals that a name means; the nearest meaning comes first."""
     if wanted in known:
         return [wanted]
     of_component = [name for name in known if name.startswith(f"{wanted}.")]

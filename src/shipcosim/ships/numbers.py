@@ -42,7 +42,7 @@ class Numbers:
     entries: dict[str, Quantity] = field(default_factory=dict)
 
     def give(self, name: str, given: Given | None) -> bool:
-        """Take a number from the file; return whether there is one."""
+        """Take a number from the file; return True if it has one."""
         if given is None:
             return False
         # Origin: the number's own, else that of the file.

@@ -236,7 +236,7 @@ def restore_snapshot(
 
 
 def _fill(values, names, known):
-    """Set values by name where they are known; others stay."""
+    """Set the values of known names; keep the others."""
     values[:] = [known.get(name, value) for name, value in zip(names, values, strict=True)]
 
 

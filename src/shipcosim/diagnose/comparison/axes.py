@@ -125,7 +125,7 @@ class Axis:
         return bool(apart > 0.1 * self.size)
 
     def is_driven(self, commanded: Commanded) -> bool:
-        """Whether the thrusters are commanded to do something on this axis, beside what is felt."""
+        """Whether the commanded force on this axis is large enough against the measured force."""
         total = self.total(commanded)
         return bool(total.std() > LEAST_COMMANDED * max(self.felt.std(), 1e-9))
 
@@ -147,7 +147,7 @@ class Axis:
         return self._fit(columns, False)
 
     def most_gain(self, total: np.ndarray) -> tuple[float, float]:
-        """Largest gain that a commanded load may have, with its standard deviation: what is felt explains it in turn.
+        """Largest gain that a commanded load may have, with its standard deviation: the measured force explains it in turn.
 
         Where thrust and damping balance, what is left over is small, and any error of either makes the gain look small.
         Explained the other way round, the same errors make it look large: the truth is between.
@@ -159,7 +159,7 @@ class Axis:
         Returns
         -------
         tuple of float, float
-            Infinite where nothing of what is felt goes with it.
+            Infinite where the measured force does not correlate with it.
         """
         # Reverse regression: commanded load on measured force and all other loads, whose signs
         # turn.
@@ -322,7 +322,7 @@ def rest_of(motion: Motion, commanded: Commanded) -> list[tuple[np.ndarray, np.n
 
 
 def _beside(speeds: np.ndarray, psi: np.ndarray) -> list[Mapping[str, list[np.ndarray]]]:
-    """By axis: what else damps it, what couples it to the others, and what is steady."""
+    """Further loads by axis: damping, coupling to other axes, and a steady load."""
     u, v, r = speeds
     # A steady force lies in the earth's frame where the ship turned enough to tell it from one in
     # her own.

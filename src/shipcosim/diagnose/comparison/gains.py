@@ -22,7 +22,7 @@ from shipcosim.diagnose.numerics import root_mean_square
 
 
 def is_beyond(ratio: float, std: float, least: float, deviations: float) -> bool:
-    """Whether a ratio is surely more than a factor away from 1, by so many standard deviations."""
+    """Whether a ratio differs from 1 by more than a factor, with a margin in standard deviations."""
     return bool(abs(np.log(ratio)) - deviations * std / ratio > np.log(least))
 
 
@@ -69,12 +69,12 @@ class AxisGain:
 
     @property
     def is_off(self) -> bool:
-        """Whether the model as it is is far from what is felt."""
+        """Whether the unchanged model is far from the measured force."""
         return self.error > OFF
 
     @property
     def is_told(self) -> bool:
-        """Whether thrusters and water explain most of what is felt."""
+        """Whether thrusters and water explain most of the measured force."""
         return self.share_of_each > TOLD
 
     @property

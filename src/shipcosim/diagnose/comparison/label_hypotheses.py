@@ -52,7 +52,7 @@ class LabelError:
 
 @dataclass(frozen=True)
 class LabelHypothesis:
-    """One way to read the thrusters' channels, and how well what is commanded then agrees with what is felt.
+    """One way to read the thrusters' channels, and how well the commanded force then agrees with the measured force.
 
     Attributes
     ----------
@@ -177,7 +177,7 @@ def ahead_of(units: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> dict[str, np
 
 
 def driven(units: ThrusterSeries, record: Record, felt: Felt, model: ShipModel) -> Commanded:
-    """The loads of a model along what a log shows, with thrusters that are driven otherwise.
+    """Loads of a model along a log, with thrusters driven under another label.
 
     Parameters
     ----------

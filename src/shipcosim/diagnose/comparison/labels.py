@@ -1,4 +1,4 @@
-"""Sides and signs of thrusters: which labels of their channels make what is commanded agree with what is felt.
+"""Sides and signs of thrusters: which labels of their channels make the commanded force agree with the measured force.
 
 Three measures tell. The *fit* holds commanded against measured force, smoothed, each axis by itself. The *foresight* asks
 whether commands come before what they do. The *likelihood* takes all axes at once, with errors that are autocorrelated
@@ -91,7 +91,7 @@ class Labels:
 
 @dataclass(frozen=True)
 class _Weighed:
-    """A reading with what each measure says for it, less what its changes cost. [nats]
+    """A reading with its evidence by each measure, less the cost of its changes. [nats]
 
     `drives`: the correlation of what the thrusters are commanded with how the craft moves, the lesser of surge and yaw.
     """
@@ -264,7 +264,7 @@ def _by_fit(weighed: Sequence[_Weighed], axes: Sequence[Axis]) -> Labels:
 
 
 def _by_agreement(weighed: Sequence[_Weighed]) -> Labels | None:
-    """A reading that two measures prefer beyond doubt to the logged one, and to all others, if there is one."""
+    """The reading that two measures clearly prefer to all others, the logged one included; None if there is none."""
     first = weighed[0]
     for one in weighed[1:]:
         # Interpretations with the same effect are no competitors.

@@ -1,4 +1,4 @@
-"""What the motion needs against what the model gives on each axis, whatever the cause: no large error goes unsaid."""
+"""Needed against modelled force on each axis, whatever the cause: every large error is reported."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

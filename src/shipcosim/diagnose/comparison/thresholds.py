@@ -30,7 +30,7 @@ STEADY_SHARE = 0.3
 TURNED_ROUND = 1.5
 """Turn in a log from which a steady force is taken as fixed in the earth's frame. [rad]"""
 LEAST_COMMANDED = 0.05
-"""Deviation of what is commanded on an axis over what is felt, below which the thrusters do not drive it."""
+"""Deviation of the commanded force on an axis over the measured force, below which the thrusters do not drive it."""
 WEAKER_WAY = 0.2
 """Least gain astern over that ahead, and ahead over that astern, while the sides and signs of thrusters are judged.
 Assumed: no propeller is dead one way."""
@@ -128,7 +128,7 @@ PLAIN = 1.3
 """Factor from which it is reported, where no cause in the catalogue explains the log. Loads of another form differ by as
 much: zig-zags of a tanker's model, whose hull bears far more than her rudder, gave 1.2 to 1.4 of published numbers."""
 LEAST_DAMPING = 0.05
-"""Damping over the model's below which it is not said: a hull that is unstable on her course has none to compare."""
+"""Damping over the model's below which it is not reported: a hull that is unstable on her course has none to compare."""
 LEAST_WAY = 0.15
 """Root mean square of thrust astern over that ahead, or the other way round, from which both are compared. Assumed."""
 MENTIONED = 1.25
@@ -142,9 +142,9 @@ the mean square is unexplained. Beyond 1 a model without any load would be neare
 ABOVE_NOISE = 3.0
 """Root mean square of the missing load over that of velocity noise, for an error to be large. Assumed."""
 STEADY = 0.7
-"""Mean of what the model lacks over its root mean square, above which it is said to be steady."""
+"""Mean of the missing force over its root mean square, above which it is called steady."""
 GOES_WITH = 0.3
-"""Correlation from which what the model gives goes with what the motion needs. Assumed."""
+"""Correlation above which the modelled force follows the needed force. Assumed."""
 
 # Predictions
 

@@ -123,7 +123,7 @@ class CraftLog:
         return np.moveaxis(off, 2, 0)
 
     def typical(self) -> dict[str, np.ndarray]:
-        """Root mean squares of the velocities and of what is commanded, and of the wind where it is logged."""
+        """Root mean squares of the velocities and of the commanded force, and of the wind where it is logged."""
         usable = self.felt.usable
         motion = self.felt.velocity[:, usable]
         told = commanded_by(self.record, self.felt, self.model)

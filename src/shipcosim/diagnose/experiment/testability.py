@@ -1,4 +1,4 @@
-"""What a log could not have shown, whatever is the matter: causes for which it has too little excitation."""
+"""What a log could not have shown, whatever is wrong: causes for which it has too little excitation."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -119,7 +119,7 @@ def hidden_by_form(log: JudgedLog, excitation: Excitation) -> tuple[str, ...]:
 
 
 def _as_known(column: Regressor, model: ShipModel) -> Regressor:
-    """A column of a number that is known within its tolerance, whatever the form says."""
+    """Column of a number known within its tolerance; the form does not matter."""
     path = next(iter(column.changes))
     if path not in model.form_sizes or column.prior != 1.0:
         return column

@@ -407,7 +407,7 @@ class _Blocks:
         return inverse, total[known, 0] + total[known, known] @ self.base.centre
 
     def gains(self, own: slice, shares: np.ndarray) -> np.ndarray:
-        """Gain of a cause's columns with courses, (c,) array; `shares` of its size in each block, (c, b). [nats]"""
+        """Gain of a cause for each course, (c,) array; `shares` is its size in each block, (c, b). [nats]"""
         # Products of the cause's columns times the course: linear in the share with others,
         # quadratic with themselves.
         known = slice(1, len(self.base.columns) + 1)

@@ -169,7 +169,7 @@ def _simplify(
 
 
 def _values(hypotheses, fit):
-    """What a fit says of the numbers of some hypotheses."""
+    """Estimates of the numbers of some hypotheses by a fit."""
     parameters = [
         (parameter, hypothesis) for hypothesis in hypotheses for parameter in hypothesis.parameters
     ]
@@ -197,7 +197,7 @@ def _simpler(problem, hypotheses):
 
 
 def _value(parameter, hypothesis, fit):
-    """What a fit says of a number: its own value, or the mean of those of the more general cause."""
+    """Estimate of a number by a fit: its own, or the mean of those of the more general cause."""
     if parameter.path in fit.values:
         return fit.values[parameter.path]
     # A general cause has several copies of the parameter, as start and end; their mean is the start

@@ -42,7 +42,7 @@ _AS_THEY_ARE = (
 
 @dataclass(frozen=True)
 class Judgement:
-    """What the evidence says of the sets of causes.
+    """Evidence on the sets of causes.
 
     Attributes
     ----------

@@ -145,7 +145,7 @@ class ExtensionDraft:
         return found or library.find("fmu", name)
 
     def load(self, component: str) -> bool:
-        """Connect a component's loads to a free input of the ship; whether there is one."""
+        """Connect a component's loads to a free input of the ship; return True if there is one."""
         used = {target for _, target in self.structure.connections} | {
             source for source, _ in self.structure.connections
         }

@@ -31,7 +31,7 @@ class ExtendedSystem:
     Attributes
     ----------
     given : System
-        That the log was held against.
+        That the log was compared with.
     source : path or SystemStructure
         What is extended.
     extension : Extension or None

@@ -138,7 +138,7 @@ class Fit:
 
     @property
     def linear(self) -> InParts:
-        """The linear problem that was fitted; it is made anew, as all of many fits would fill the memory."""
+        """The linear problem that was fitted; it is made again, as all of many fits would fill the memory."""
         return linearised_by_parts(self.about, self.record, self.model, self.columns, kept=False)
 
     @property
@@ -223,7 +223,7 @@ def fitted(
 
 
 def _fitted(problem, hypotheses, values, rounds):
-    """A fit, made anew."""
+    """A fit, made again."""
     # Start from finite values within their bounds.
     finite = {
         path: v if np.isfinite(v) else problem.model.get(path) for path, v in (values or {}).items()

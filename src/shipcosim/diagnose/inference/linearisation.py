@@ -51,7 +51,7 @@ class Regressor:
     beside: bool = False
 
     def gives_way(self, taken: Collection[str]) -> bool:
-        """Whether a cause that changes these numbers is evidence for what this one would say of them."""
+        """True if a cause on these numbers replaces this regressor."""
         return not self.beside and not self.changes.keys().isdisjoint(taken)
 
 

@@ -120,7 +120,7 @@ free, it swallowed every cause (prototypes)."""
 GUST_FACTOR = 10.0
 """Times as fast may it walk where the wind is unknown. Assumed."""
 TUNED_BESIDE = 3.0
-"""Gain of a cause at first sight, from which on noise is tuned beside it. [nats]"""
+"""Gain of a cause at first sight, above which noise is tuned beside it. [nats]"""
 NOISE_MARGIN = 1.5
 """Factor on the noise that position and velocity leave room for. Assumed."""
 NOISE_WIDTHS = (2.0, 4.0, 8.0)

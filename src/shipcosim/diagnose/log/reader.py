@@ -212,7 +212,7 @@ _WHICH = 'Rename one, or name it in a channel file; the second is "NAME (2)".'
 
 
 def _signals(columns, mapping, form, is_asked):
-    """Values and unit of each channel, by role or connector, and what is to be said.
+    """Values and unit of each channel, by role or connector, and remarks.
 
     A column in a wrong unit is an error where somebody asked for it or the navigation needs it; else it is not used.
     """

@@ -48,7 +48,7 @@ _NEAR_END = 300.0  # s; within which of its end one was, and of its start it is.
 def values_of(
     channel: Channel, name: str, log: LogColumns, form: FileLayout
 ) -> tuple[np.ndarray, str, list[str]]:
-    """Values of a channel, their unit, and what is to be said of them.
+    """Values of a channel, their unit, and remarks on them.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def values_of(
 
 
 def _without_placeholders(values, name, column):
-    """The values without numbers that stand for none, and what is to be said of them."""
+    """The values without numbers that stand for none, and remarks on them."""
     rows = values == NOT_AVAILABLE.get(name)
     if not rows.any():
         return values, []
@@ -170,7 +170,7 @@ def _is_number(text):
 
 
 def _time(channel, column, stated, log, form):
-    """Times in seconds and what is to be said."""
+    """Times in seconds and remarks."""
     values = log.values[column]
     # Texts and time stamps: read dates and clock times,
     # with the date from its own column if there is one.
@@ -220,7 +220,7 @@ def _check_steps(column, times, factor, stated):
 
 
 def _without_summer_time(times):
-    """Stamps of a clock that is once put back by an hour, which go on, and what is to be said."""
+    """Stamps of a clock that is once put back by an hour, which go on, and remarks."""
     # One step back of nearly an hour, and no other, is the end of summer time.
     known = np.flatnonzero(np.isfinite(times))
     steps = np.diff(times[known])
@@ -236,7 +236,7 @@ def _without_summer_time(times):
 
 
 def _past_the_end(times):
-    """Seconds of the day, or of the week of GPS, that go on past its end, and what is to be said."""
+    """Seconds of the day, or of the week of GPS, that go on past its end, and remarks."""
     # The clock must fall by nearly a whole period, from
     # near its end to near its start, at each fall.
     known = finite(times)

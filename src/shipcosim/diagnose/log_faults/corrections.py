@@ -169,7 +169,7 @@ def with_right_connections(found: Identification) -> Identification:
 
 
 def with_right_inputs(explained: ExplainedLog) -> ExplainedLog:
-    """The log with mislabelled channels of thrusters and wind corrected, where it is not healthy; explained anew."""
+    """The log with mislabelled channels of thrusters and wind corrected, where it is not healthy; explained again."""
     known = len(explained.identification.faults)
     for _ in range(MOST_INPUT_FAULTS):
         better = None if explained.is_healthy else _with_right_input(explained)
@@ -185,7 +185,7 @@ def with_right_inputs(explained: ExplainedLog) -> ExplainedLog:
 def _with_right_input(explained):
     """The log with the likeliest fault of thrusters' or the wind's channels corrected; None if there is none.
 
-    The ends of a segment are rough until they are settled, so the likeliest fault is settled before it is held against
+    The ends of a segment are rough until they are settled, so the likeliest fault is settled before it is compared with
     all causes; further ones only where they are better than those even so.
     """
     found = explained.identification

@@ -22,15 +22,15 @@ ROUNDS_OF_SEGMENT = 2
 # Labels of thrusters and wind
 
 LEAST_ROW_GAIN = 10.0
-"""Log-likelihood over the rows of its segment from which on a mislabel is tried. [nats] Assumed."""
+"""Log-likelihood over the rows of its segment above which a mislabel is tried. [nats] Assumed."""
 SHORTEST_INPUT = 60.0
 """Shortest segment in which an input is wrong. [s] Assumed."""
 WHOLE = 0.85
-"""Share of the log from which on a segment is taken as all of it. Assumed."""
+"""Share of the log above which a segment is taken as all of it. Assumed."""
 BESIDE_AN_END = 4
 """Rows on either side of an end that are neither as logged nor corrected: series are averaged over neighbours. [1]"""
 SEARCH_STEP = 60.0
-"""Time between the places where an end of a segment is sought first. [s]"""
+"""Time between the first candidates for the end of a segment. [s]"""
 MOST_PLACES = 80
 """So many places at most; in a log of more than 80 minutes they are farther apart, as the time goes with both."""
 FIRST_MOVE = 32
@@ -52,7 +52,7 @@ SHORTEST_LABEL = 180.0
 CHANGED = 0.7
 """Share of the root mean square of its channels that another frame must change. Assumed."""
 LIKELY_LABELS = 4
-"""Labels for which the noise is tuned anew."""
+"""Labels for which the noise is tuned again."""
 CALM_JOLT = 0.2
 """Share of the first guess of the jolts that the noise may have: under a wrong label jolts grow to cover it."""
 

@@ -73,7 +73,7 @@ class SeveralLogs:
         return (*ship.values(), *day)
 
     def within(self, name: str, hypothesis: Hypothesis) -> Hypothesis | None:
-        """A cause as the problem of one log has it; None where that log has nothing to say of it."""
+        """A cause in the problem of one log; None if that log cannot show it."""
         # A cause of the day exists in its own log only, and there without the log's name.
         component = hypothesis.component
         if is_in_one_log(hypothesis):
@@ -89,7 +89,7 @@ class SeveralLogs:
     def all_within(
         self, name: str, hypotheses: Sequence[Hypothesis]
     ) -> list[tuple[Hypothesis, Hypothesis]]:
-        """Causes that one log has something to say of, each with what it is there."""
+        """Causes that one log can show, each as it is in that log."""
         pairs = ((one, self.within(name, one)) for one in hypotheses)
         return [(one, own) for one, own in pairs if own is not None]
 

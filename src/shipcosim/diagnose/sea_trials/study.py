@@ -121,7 +121,7 @@ class SeaTrialStudy:
 
     @property
     def pairs(self) -> list[tuple[str, str]]:
-        """What each two of the compared sets do not share."""
+        """Causes that two compared sets do not share, for each pair."""
         return [differing(one, other) for one, other in combinations(self.compared, 2)]
 
     @property
@@ -401,7 +401,7 @@ def best_of(ranking: Iterable[SetOfCauses]) -> SetOfCauses:
 
 
 def _worth(one):
-    """Evidence less what is asked of each cause. [nats]"""
+    """Evidence minus the cost of each cause. [nats]"""
     return one.evidence - thresholds.NAMED * len(one.hypotheses)
 
 

@@ -12,9 +12,9 @@ ZIG_ZAG = 0.06
 CIRCLE = 330.0
 """Heading turned by a circle that can be used, from the start of the order. [deg]"""
 HALF_A_CIRCLE = 180.0
-"""Heading turned from which on a circle is steady: speeds of the trials of 2022 change little after it. [deg]"""
+"""Change of heading after which a circle is steady: speeds of the trials of 2022 change little after it. [deg]"""
 DRIFT_TOLD = 270.0
-"""Heading turned in steady state from which on the drift of a circle's centre tells the current. [deg]"""
+"""Change of heading in a steady circle after which the drift of its centre gives the current. [deg]"""
 CIRCLES = 540.0
 """Heading turned up to which a circle is used. [deg]"""
 SWINGS = 3
@@ -99,7 +99,7 @@ MOST_CAUSES = 3
 RELINEARISED = 8
 """Sets, best in the linear approximation, that are fitted to the simulation itself. [1]"""
 ROUNDS = 2
-"""Times that they are linearised anew. [1]"""
+"""Times that they are linearised again. [1]"""
 NAMED = 5.0
 """Evidence that each cause of a set must add. [nats]"""
 RIVAL = NAMED

@@ -14,7 +14,7 @@ from shipcosim.series import conversion
 from shipcosim.ssp import Component, Connection, System
 
 DRIVES = {"rpm": "rpm", "thrust": "N", "azimuth": "rad"}
-"""What a log says of a thruster, and in which unit it is handed on."""
+"""Quantity of a thruster in a log, and the unit in which the FMU gets it."""
 MOTION = ("x", "y", "psi", "u", "v", "r", "u_r", "v_r")
 """Outputs of the ship that a log tells."""
 _UNITS = {
@@ -244,7 +244,7 @@ def part_of(third_party: ThirdPartyFmu) -> ThirdPartyPart:
 
 
 def problem_of(system: System, name: str, ship: str, one: ThirdPartyFmu) -> Problem | None:
-    """What to say of a third-party FMU whose load no log tells; None where it does."""
+    """Remark on a third-party FMU whose load a log does not determine; None if it does."""
     if one.links and not one.unclear:
         return None
     why = (

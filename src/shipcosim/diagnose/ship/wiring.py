@@ -16,7 +16,7 @@ _DRIVES = ("rpm", "azimuth")
 
 @dataclass(frozen=True)
 class Wiring:
-    """What is wired otherwise than named.
+    """Connections that contradict the names of their connectors.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Wiring:
 
 
 def wiring_of(system: System, vessel: str, thrusters: Sequence[str]) -> Wiring | None:
-    """What a system wires otherwise than its connectors' names say.
+    """Connections of a system that contradict the names of its connectors.
 
     Parameters
     ----------

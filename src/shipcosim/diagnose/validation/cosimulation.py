@@ -121,7 +121,7 @@ def replayed(
     step_size: float = STEP,
     progress: CountProgress | None = None,
 ) -> Motion:
-    """What a system, run from some rows of a log, says that the log will show after the horizons.
+    """Predictions of a log after the horizons, by a system that is run from some rows.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ STEPS = 40
 """Steps that are compared, for each set of parameters."""
 
 LARGEST = 1e-9
-"""Difference of a variable, over its size or 1, from which on an FMU is refused."""
+"""Difference of a variable, over its size or 1, above which an FMU is refused."""
 
 SHARES = 1e-3, 1e-2, 0.1, 1.0
 """Size of random inputs in each round, over `SIZES`: inputs for a ship are too large for a boat."""

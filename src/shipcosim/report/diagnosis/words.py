@@ -18,7 +18,7 @@ from shipcosim.report.theme.numbers import metres, percent, plain, span
 from shipcosim.report.theme.views import Fact, Outcome, known_facts
 
 LIKELY = 0.25
-"""Probability of a candidate beside an unknown error, half of what it were alone, from which on it is mentioned."""
+"""Probability of a candidate beside an unknown error, half of what it were alone, above which it is mentioned."""
 
 
 def title(cause: str, component: str | None = None) -> str:

@@ -50,7 +50,7 @@ def _says_nothing(element: etree._Element, base: etree._Element) -> bool:
 def noted_units(
     document: Document, elements: Iterable[etree._Element], findings: Findings
 ) -> dict[str, Unit]:
-    """Units by name, as `read_units`, with what is to be said of their definitions.
+    """Units by name, as `read_units`, with remarks on their definitions.
 
     Parameters
     ----------

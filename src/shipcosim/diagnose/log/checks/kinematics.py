@@ -152,7 +152,7 @@ class Filter:
     ratio: float = 0.0
 
     def __call__(self, levels: np.ndarray) -> np.ndarray:
-        """Innovations of levels (n, ...) in units of their standard deviation; 0 where a row starts anew."""
+        """Innovations of levels (n, ...) in units of their standard deviation; 0 where a row starts again."""
         # The level that the filter predicts follows a linear recursion.
         # It is solved for all rows at once as a bidiagonal system.
         flat = levels.reshape(len(levels), -1)

@@ -32,7 +32,7 @@ _MOST_DAMAGED = 0.01  # share of a column's cells that may be no numbers; more m
 
 
 def numbers_of(name: str, cells: Any, decimal: str) -> tuple[np.ndarray, list[str]]:
-    """A column of texts as numbers where nearly all of them are such, with what is to be said.
+    """A column of texts as numbers where nearly all of them are such, with remarks.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def numbers_of(name: str, cells: Any, decimal: str) -> tuple[np.ndarray, list[st
 
 
 def without_fillers(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
-    """A column without the number that stands for nothing in it, and what is to be said.
+    """A column without the number that stands for nothing in it, and remarks.
 
     It is one of those that loggers take for it, stands there more than once, and is further from all other values
     than these are from each other.

@@ -28,7 +28,7 @@ def is_workbook(path: Path) -> bool:
 
 
 def text_of_sheet(path: Path, sheet: str | None = None) -> tuple[str, list[str]]:
-    """Cells of a sheet as lines of text with tabs between, and what is to be said.
+    """Cells of a sheet as lines of text with tabs between, and remarks.
 
     Parameters
     ----------

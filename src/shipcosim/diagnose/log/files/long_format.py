@@ -150,7 +150,7 @@ def brought_together(
     Returns
     -------
     time, signals and list of str
-        Interpolated between a channel's own times, angles the short way round, not across holes; what is to be said.
+        Interpolated between a channel's own times, angles the short way round, not across holes; remarks.
     """
     # If more than a few rows hold most of the channels, the log needs no interpolation.
     is_finite = {name: np.isfinite(values) for name, (values, _) in signals.items()}

@@ -181,7 +181,7 @@ def holds_sentences(lines: list[str]) -> bool:
 def columns_of_sentences(
     source: str, lines: list[str]
 ) -> tuple[dict[str, np.ndarray], dict[str, str], list[str]]:
-    """Values and units by role, and what is to be said.
+    """Values and units by role, and remarks.
 
     Parameters
     ----------
@@ -279,7 +279,7 @@ def _told(read: _Read) -> list[str]:
 
 
 def _times(source: str, read: _Read) -> tuple[np.ndarray, list[str]]:
-    """Time of each sentence that was read, NaN where it is not known, and what is to be said. [s]"""
+    """Time of each sentence that was read, NaN where it is not known, and remarks. [s]"""
     # Stamps before the sentences are the time of reception, if nearly all sentences have one.
     stamped = [read.stamps[number] for number, *_ in read.sentences]
     if sum(map(bool, stamped)) > _ENOUGH * len(stamped):

@@ -1,4 +1,4 @@
-"""Any file that is a log as columns: their names, values and units as they stand there, and what is to be said."""
+"""Any file that is a log as columns: their names, values and units as they stand there, and remarks."""
 
 from __future__ import annotations
 
@@ -302,7 +302,7 @@ def _with_comma(columns):
 
 
 def _column(name, cells, decimal):
-    """Values of a column, and what is to be said of them."""
+    """Values of a column, and remarks on them."""
     if cells.dtype.kind in "fiub":
         return without_fillers(name, cells.to_numpy(float))
     values, said = numbers_of(name, cells, decimal)

@@ -322,7 +322,7 @@ def _largest_step(values):
 
 
 def seconds_of_clock(seconds: np.ndarray, period: float = DAY) -> tuple[np.ndarray, list[str]]:
-    """Times of day that go on past midnight, and what is to be said.
+    """Times of day that go on past midnight, and remarks.
 
     Parameters
     ----------
