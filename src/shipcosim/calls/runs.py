@@ -552,7 +552,7 @@ def fed_by(
     """The table that feeds a system's inputs, with what its columns do between their rows; arguments of `simulate`."""
     if table is None:
         if interpolate or max_gap is not None:
-            found = "There is no table that this could be about."
+            found = "There is no table to which this could apply."
             raise error_at(
                 f"{named('interpolate')}, {named('max_gap')}",
                 found,

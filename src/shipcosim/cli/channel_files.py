@@ -130,7 +130,7 @@ def print_isolability(log: Path, system: str | None, channels: Path | None) -> N
         print_table(console, rows, ("cause of typical size", "would show", "cannot be told from"))
     else:
         console.print(
-            Text("This log tells no causes: `shipcosim diagnose` says why.", style="yellow")
+            Text("This log cannot show causes: `shipcosim diagnose` says why.", style="yellow")
         )
 
 

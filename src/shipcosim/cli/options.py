@@ -97,16 +97,20 @@ Length = Annotated[
     typer.Option("--length", metavar="LENGTH", help='With --learn: her length, "1.2 m".'),
 ]
 SystemsStopTime = Annotated[
-    float | None, time_option("--stop-time", "In s, or as '10 min'. Default: the system's.")
+    float | None,
+    time_option("--stop-time", "In s, or with a unit: '10 min'. Default: the system's."),
 ]
 SystemsStepSize = Annotated[
-    float | None, time_option("--step-size", "In s, or as '50 ms'. Default: the system's.")
+    float | None,
+    time_option("--step-size", "In s, or with a unit: '50 ms'. Default: the system's."),
 ]
 ScenariosStopTime = Annotated[
-    float | None, time_option("--stop-time", "In s, or as '10 min'. Default: the scenario's.")
+    float | None,
+    time_option("--stop-time", "In s, or with a unit: '10 min'. Default: the scenario's."),
 ]
 ScenariosStepSize = Annotated[
-    float | None, time_option("--step-size", "In s, or as '50 ms'. Default: the scenario's.")
+    float | None,
+    time_option("--step-size", "In s, or with a unit: '50 ms'. Default: the scenario's."),
 ]
 Out = Annotated[
     Path | None,
@@ -191,8 +195,6 @@ Quiet = Annotated[
 ]
 Strict = Annotated[
     bool,
-    typer.Option(
-        "--strict", help="Refuse what breaks a standard, even where it can mean one thing only."
-    ),
+    typer.Option("--strict", help="Refuse what breaks a standard, even if its meaning is clear."),
 ]
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]

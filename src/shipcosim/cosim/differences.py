@@ -115,7 +115,7 @@ def _cause(name, ours, theirs, step_size):
     distance = _distance(name, ours, theirs)
     largest = np.max(np.abs(distance))
     if not np.isfinite(largest):
-        return f"{name} is no number somewhere."
+        return f"{name} is not a number in some rows."
     # The relations need a signal that moves. Each counts if it leaves less than 1 % of the largest
     # difference.
     if len(x) > 2 and np.ptp(x) > 0.0:

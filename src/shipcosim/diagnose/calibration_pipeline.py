@@ -45,12 +45,12 @@ from shipcosim.ssp import AnyPath, System
 READING = "are the logs right?"
 
 _ANOTHER_CRAFT = (
-    "The craft is not the file's by far, so her numbers are learned from the accelerations that the logs show. Whether "
-    "she was well these logs cannot say."
+    "The craft differs far from her file, so her numbers are learned from the accelerations that the logs show. These "
+    "logs cannot say whether she was in good condition."
 )
 _ALL_LEARNED = (
-    "All numbers of the craft were assumed from her length or learned from these logs. They make no reference: whether "
-    "she was well, and later has a fault, such a rough craft cannot show."
+    "All numbers of the craft were assumed from her length or learned from these logs. They make no reference: such a "
+    "rough craft cannot show whether she has a fault, now or later."
 )
 _KINDS_OF_THE_LOG = ("slow", "with the heading", "periodic", "in a channel")
 
@@ -218,7 +218,7 @@ def _calibrated_craft(
         right = ""
     else:
         craft = learned_from(compared, ship)
-        what = "Numbers learned from the others predict a log, or a part of it, no better than the system for sure."
+        what = "Numbers learned from the others do not clearly predict a log, or a part of it, better than the system."
         right = "Give more logs, with turns and with thrust ahead and astern."
     if craft is None:
         raise error_at(", ".join(found), what, right)

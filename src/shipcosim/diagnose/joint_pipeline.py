@@ -427,7 +427,7 @@ def remarks_on(found: JointDiagnosis) -> list[str]:
     for name, faults in found.relabelled.items():
         what = "; ".join(fault.sentence for fault in faults)
         remarks.append(
-            f"{name} is read as the other logs show ({what}): by itself it does not tell."
+            f"{name} is read as the other logs show ({what}): by itself it does not show it."
         )
     if basis is None:
         return remarks
@@ -436,7 +436,7 @@ def remarks_on(found: JointDiagnosis) -> list[str]:
     for name in basis.ratios.apart if basis.has_ratio else ():
         own = basis.ratios.each[name]
         remarks.append(
-            f"{name} by itself says {own.ratio:.2f} ± {own.std:.2f} of thrust over inertia, away from all others. "
+            f"{name} by itself says {own.ratio:.2f} ± {own.std:.2f} of thrust over inertia, far from all others. "
             "The common ratio is that much less certain."
         )
     return remarks

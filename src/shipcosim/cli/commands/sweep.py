@@ -24,7 +24,9 @@ Serve = Annotated[
 ]
 Port = Annotated[
     int | None,
-    typer.Option("--port", metavar="N", min=1, max=65535, help="Of --serve. Default: a free one."),
+    typer.Option(
+        "--port", metavar="N", min=1, max=65535, help="Port of --serve. Default: a free one."
+    ),
 ]
 Scheduler = Annotated[
     str | None,

@@ -168,7 +168,9 @@ def _say_trials(console: Console, swept: Swept) -> None:
     assert tune is not None
     names = [one.quantity for one in tune.objective]
     front = trials.loc[trials["pareto"]].sort_values(by=names[0])
-    said = f"of {len(trials)} trials no other beats {len(front)}; trial 0 is as shipped."
+    said = (
+        f"{len(front)} of {len(trials)} trials are Pareto-optimal; trial 0 has the shipped gains."
+    )
     console.print(
         f"{', '.join(f'{one.quantity} {one.direction}d' for one in tune.objective)}: {said}",
     )

@@ -35,7 +35,7 @@ TYPES = {
     "Boolean": ("bool", c_bool, bool),
 }
 """Names and types that it has for values."""
-REMARK = "ecos does not say when an FMU fails, it goes on: hold the result against that of another engine."
+REMARK = "ecos does not say when an FMU fails, it goes on: compare the result with that of another engine."
 START = "start"  # name of the parameter set; ecos applies none without a name
 
 

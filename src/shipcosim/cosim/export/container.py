@@ -110,7 +110,7 @@ def _component_problems(component, step_size):
     fmu = component.fmu
     if fmu.fmi_version not in ("2.0", "3.0") or "CoSimulation" not in fmu.interfaces:
         found = f"{fmu.path.name} is no co-simulation FMU of FMI 2.0 or 3.0."
-        yield Problem(component.name, found, "The container FMU steps no other ones.")
+        yield Problem(component.name, found, "The container FMU steps no other FMUs.")
     elif component.implementation == "ModelExchange":
         yield Problem(
             component.name,

@@ -304,7 +304,7 @@ def _position(channel, column, stated, name, log):
         hemisphere = _found(log, channel.hemisphere)
         signs = hemisphere_signs(log.values[hemisphere], name)
         if signs is None:
-            found = f"column '{hemisphere}' is none of hemispheres."
+            found = f"column '{hemisphere}' does not hold hemispheres."
             raise error_at("", found, "It should hold N and S, or E and W.")
         degrees = np.abs(degrees) * signs
     return channel.sign * degrees + channel.offset, said

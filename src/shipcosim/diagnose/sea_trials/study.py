@@ -276,7 +276,7 @@ def study(
     read = checked(ReadLog(read_log(log, channels, drives), ship, read_catalogue(causes)))
     if read.ship.third_party:
         found = f"{', '.join(read.ship.third_party)}: third-party FMUs, which are only known where a log has been."
-        raise error_at(system.file, found, "Sea trials are sailed with thrusters of ours.")
+        raise error_at(system.file, found, "Sea trials need thruster FMUs of shipcosim.")
     # Gaps must not fall within a trial.
     lost = [segment for fault in read.faults if fault.cause == "gap" for segment in fault.segments]
     record = record_of(read.repaired, read.ship)

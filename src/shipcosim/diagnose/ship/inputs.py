@@ -277,7 +277,7 @@ def _about_stretches(time: np.ndarray) -> list[str]:
     span = (time[-1] - time[0]) / 3600.0
     what = f"{len(parts)} stretches, {used:.0f} min together, spread evenly over its rows"
     return [
-        f"Of this log of {span:.1f} h {what}, are held against the ship; all of it was checked for faults."
+        f"Of this log of {span:.1f} h {what}, are compared with the ship. All of it was checked for faults."
     ]
 
 
@@ -385,7 +385,7 @@ def _check_third_party(log: xarray.Dataset, model: ShipModel) -> None:
     lacking += [
         Problem(
             str(name),
-            f"{one.component.fmu.model_name} follows {', '.join(one.idle)}, which no log can tell.",
+            f"{one.component.fmu.model_name} follows {', '.join(one.idle)}, which no log contains.",
             "A diagnosis knows what drives a thruster as rpm, azimuth or thrust: describe her by another kind.",
         )
         for name, one in model.third_party.items()
@@ -398,7 +398,7 @@ def _check_third_party(log: xarray.Dataset, model: ShipModel) -> None:
 def _about_third_party(name: str, one: ThirdPartyFmu) -> str:
     """What the user should know of a third-party FMU."""
     idle = (
-        f" What the log does not tell keeps its start value: {', '.join(one.idle)}."
+        f" Inputs that the log does not have keep their start values: {', '.join(one.idle)}."
         if one.idle
         else ""
     )

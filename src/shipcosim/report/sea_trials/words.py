@@ -28,10 +28,10 @@ def sentence(found: SeaTrialStudy) -> str:
     best = said(found.best.label)
     best = f"{best[0].upper()}{best[1:]}"
     if found.verdict == "named":
-        return f"{best} explains best what the model sails otherwise than the ship."
+        return f"{best} fits best where the model sails differently from the ship."
     count = len(found.rivals)
     others = "another set" if count == 1 else f"{count} other sets"
-    return f"{best} explains best what the model sails otherwise than the ship; {others} of causes fit equally well."
+    return f"{best} fits best where the model sails differently from the ship; {others} of causes fit equally well."
 
 
 def said(label: str) -> str:

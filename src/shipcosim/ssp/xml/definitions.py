@@ -73,7 +73,7 @@ def noted_units(
                 _note_contradiction(unit, document.place(element), findings)
         for base in (part for part in element if local(part) == "BaseUnit"):
             if _says_nothing(element, base):
-                found = f"The base unit of '{name}' says nothing; the unit is what it is commonly."
+                found = f"The base unit of '{name}' is empty; the unit has its usual meaning."
                 findings.flaw(
                     document.place(base), found, "State its exponents, or leave BaseUnit out."
                 )

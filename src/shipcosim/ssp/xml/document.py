@@ -350,7 +350,7 @@ def with_prefixes(data: bytes, shown: str, findings: Findings) -> bytes:
     line = data[: start.start()].count(b"\n") + 1
     findings.flaw(
         f"{shown}, line {line}",
-        f"Prefixes that are not declared: {listed}. Those of SSP are taken as everywhere, others as unknown.",
+        f"Prefixes that are not declared: {listed}. Those of SSP have their usual meaning, others are unknown.",
         f"Add {known} to the outermost element." if known else "Declare them.",
     )
     declared = b"".join(

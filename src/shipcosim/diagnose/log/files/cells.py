@@ -82,7 +82,7 @@ def numbers_of(name: str, cells: Any, decimal: str) -> tuple[np.ndarray, list[st
 
 
 def without_fillers(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
-    """A column without the number that stands for nothing in it, and remarks.
+    """A column without the number that means 'no value' in it, and remarks.
 
     It is one of those that loggers take for it, stands there more than once, and is further from all other values
     than these are from each other.
@@ -99,9 +99,7 @@ def without_fillers(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str
         if filler not in _FILLERS or len(known) - len(rest) < 2 or not len(rest):
             continue
         if np.abs(rest - filler).min() > max(np.ptp(rest), 10.0):
-            said = (
-                f"Column '{name}': {filler:g} stands for nothing in {len(known) - len(rest)} rows."
-            )
+            said = f"Column '{name}': {filler:g} means 'no value' in {len(known) - len(rest)} rows."
             return np.where(values == filler, np.nan, values), [said]
     return values, []
 

@@ -180,7 +180,7 @@ def _rows(source: str, lines: list[str], layout: Layout) -> tuple[list[str], lis
         if header[-1] in line and cells_in(line, separator) == header
     }
     if again:
-        said.append(f"The header stands there again in {_count(len(again), 'row')}: left out.")
+        said.append(f"The header is repeated in {_count(len(again), 'row')}: left out.")
         rows = [line for i, line in enumerate(rows) if i not in again]
     return rows, said
 
