@@ -1,4 +1,4 @@
-"""What is wrong with a file of any kind that the commands take."""
+"""Checks of files of all kinds that the commands take."""
 
 from __future__ import annotations
 
@@ -79,14 +79,14 @@ def _names_events(path: Path) -> bool:
 
 
 def check_ship_file(path: Path) -> list[Problem]:
-    """What is missing or impossible of a ship, as her file describes her."""
+    """Problems of a ship file: missing and impossible numbers."""
     from shipcosim.ships.check import check_ship
 
     return check_ship(str(path))
 
 
 def estimates_in(file: str) -> list[tuple[str, ...]]:
-    """What is estimated of a ship, as rows of text: number, value, tolerance, source; none for other files."""
+    """Estimated numbers of a ship as rows of text: number, value, tolerance, source; none for other files."""
     path = Path(file)
     if not _is_ship(path):
         return []
@@ -184,7 +184,7 @@ def check_study_file(path: Path) -> list[Problem]:
 
 
 def _host_problems(file: str, path: Path, hosts: Iterable[str]) -> list[Problem] | None:
-    """What tools would make of a system, or of a scenario's with the FMUs that it swaps; None for other files."""
+    """How other tools would interpret a system, or a scenario's system with its exchanged FMUs; None for other files."""
     from shipcosim.scenario import check_files, read_scenario
     from shipcosim.ssp.portability.check import check_for
 

@@ -589,7 +589,7 @@ def changes(
     fmus: Sequence[AnyPath],
     options: RunOptions,
 ) -> list[str]:
-    """What a run changes of what the files say, each as a text; files by their names, whoever runs it from wherever."""
+    """Changes of a run against its files, each as a text; files by their names, so that the folder does not matter."""
     texts = [f"{name} = {_text(value)}" for name, value in start_values.items()]
     texts += [f"parameter set {Path(one).name}" for one in listed(parameters)]
     texts += [f"{name} runs {Path(fmu).name}" for name, fmu in (components or {}).items()]

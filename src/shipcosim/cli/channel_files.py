@@ -36,7 +36,7 @@ class ProposedFile:
 def proposed(
     log: str | os.PathLike, system: str | None = None, form: str | os.PathLike | None = None
 ) -> ProposedFile:
-    """What the columns of a log are.
+    """Columns of a log with their roles.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def proposed(
 
 
 def print_channels(proposed: ProposedFile) -> None:
-    """What each column is, on stdout."""
+    """Print the role of each column."""
     from rich.text import Text
 
     from shipcosim.cli.tables import print_table

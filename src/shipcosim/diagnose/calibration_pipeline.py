@@ -297,7 +297,7 @@ def problems_of(
 
 
 def _reference_logs(found: Mapping[str, Identification]) -> list[ReferenceLog]:
-    """What a reference says of the logs that it was made from."""
+    """Entry of a reference on the logs that it was made from."""
     logs = []
     for name, one in found.items():
         time = one.log["time"].values

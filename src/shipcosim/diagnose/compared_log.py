@@ -98,7 +98,7 @@ class LogComparison:
 
     @property
     def started_craft(self) -> LearnedCraft | None:
-        """What the ship is started with beyond doubt."""
+        """The learned craft with which the fit starts; None if there is none."""
         return self.craft if self.is_started_with else None
 
     def findings(self, causes: Mapping[str, Cause]) -> tuple[Finding, ...]:
@@ -302,7 +302,7 @@ def _taught_by(
 
 
 def _unknown_thrusters(repaired: xarray.Dataset, ship: ShipModel) -> tuple[str, ...]:
-    """What to say of thrusters that a log lacks."""
+    """Remarks on thrusters that a log lacks."""
     found = []
     for name in ship.thrusters:
         lacking = [

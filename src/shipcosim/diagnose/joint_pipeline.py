@@ -257,7 +257,7 @@ def _unusable(one: Diagnosis) -> str:
 def _together(
     found: JointDiagnosis, usable: dict[str, Identification], ship: ShipModel, say: Progress
 ) -> JointDiagnosis:
-    """What the usable logs say together."""
+    """Joint result of the usable logs."""
     # Labels that other logs show are corrected in logs that do not tell; these are compared anew.
     relabelled = _relabelled(found.findings, usable)
     read = {
@@ -421,7 +421,7 @@ def _longest(basis: JointBasis) -> tuple[str, IdentificationProblem]:
 
 
 def remarks_on(found: JointDiagnosis) -> list[str]:
-    """What to know of logs that differ from the others, or say nothing of the ship."""
+    """Remarks on logs that differ from the others or are not usable."""
     basis = found.together
     remarks = [f"{name} says nothing of the ship. {why}" for name, why in found.left_out.items()]
     for name, faults in found.relabelled.items():

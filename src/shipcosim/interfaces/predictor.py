@@ -20,7 +20,7 @@ NO_GOAL = 1e9  # m, where no reference model goes: nobody says where she goes to
 
 
 class Prediction(NamedTuple):
-    """What a predictor says, each with one value a horizon.
+    """Outputs of a predictor, each with one value for each horizon.
 
     Parameters
     ----------

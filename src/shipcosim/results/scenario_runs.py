@@ -59,7 +59,7 @@ class ScenarioRuns(Result):
 
     @property
     def checks(self) -> tuple[Check, ...]:
-        """Those of all runs, each with its scenario."""
+        """Problems of all runs, each with its scenario."""
         return tuple(
             replace(check, group=name, page=f"{name}/{check.page}")
             for name, run in self.runs.items()

@@ -11,7 +11,7 @@ from shipcosim.ships.given import PLAIN, Given, given_in_unit
 from shipcosim.ships.kinds import metadata_of
 
 ESTIMATED = "estimated: "
-"""What the origin of a number begins with that a formula gave."""
+"""First words of the origin of a number that a formula gave."""
 
 
 @dataclass

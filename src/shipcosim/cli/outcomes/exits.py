@@ -36,7 +36,7 @@ SUMMARY_OF_STEP = "GITHUB_STEP_SUMMARY"
 
 @dataclass(frozen=True)
 class Conclusion:
-    """What a command found.
+    """Result of a command.
 
     Attributes
     ----------

@@ -95,7 +95,7 @@ def exchange_tables(
     external: Sequence[int] | np.ndarray,
     inputs: Sequence[int] | np.ndarray,
 ) -> dict[str, Any]:
-    """What does not change of an exchange, by the names of the structure in `native/loop.c`.
+    """Constant parts of an exchange, by the names of the structure in `native/loop.c`.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux: a component that hangs does no
 
 
 class Garbled(Exception):
-    """What came through a pipe is no message: an FMU has written into it."""
+    """Raised for a damaged message from a pipe: an FMU has written into it."""
 
 
 def send(pipe: BinaryIO, message: object) -> None:

@@ -12,7 +12,7 @@ from shipcosim.ssp.fmu.reader import describe_fmu
 from shipcosim.ssp.xml.document import Findings
 
 LONGEST = 10.0
-"""For the system's loader to list what a binary needs. [s]"""
+"""Time limit for the system's loader to list the libraries of a binary. [s]"""
 
 
 def validation_problems(path: Path) -> list[Problem]:
@@ -36,7 +36,7 @@ def validation_problems(path: Path) -> list[Problem]:
 
 
 def library_problems(path: Path) -> list[Problem]:
-    """What is wrong with an FMU's libraries for this platform, and which others they need that are not here, as errors.
+    """Errors of an FMU's libraries for this platform, and libraries that they need and that are missing.
 
     The others only on Linux with glibc: its loader lists them without running any code of the binary.
 

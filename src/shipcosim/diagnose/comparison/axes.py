@@ -103,7 +103,7 @@ class Axis:
         return self.felt_by.kernel.smooth(loads[self.number])[self.rows]
 
     def total(self, commanded: Commanded) -> np.ndarray:
-        """What all thrusters are commanded, (n,) array."""
+        """Commanded force of all thrusters, (n,) array."""
         return sum(
             (self.smoothed(load) for load in commanded.thrusters.values()), np.zeros(self.felt.size)
         )
@@ -238,7 +238,7 @@ class Axis:
 
 
 def prior_of(rest: np.ndarray, positive: np.ndarray, size: float) -> np.ndarray:
-    """What forces that no model knows may be, as standard deviations of the coefficients of their columns.
+    """Standard deviations of the coefficients of unmodelled forces.
 
     Parameters
     ----------

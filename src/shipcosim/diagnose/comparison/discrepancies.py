@@ -179,7 +179,7 @@ def _weak(one: AxisGain) -> Iterator[Discrepancy]:
 
 
 def _damping(one: AxisGain) -> Iterator[Discrepancy]:
-    """What the water resists, where the log tells it."""
+    """Discrepancy of the resistance, if the log shows it."""
     axis = one.axis
     fit = one.fit
     # Damping can only be compared where thrust has a positive gain and the model a load of the
@@ -221,7 +221,7 @@ def _of_lag(labels: Labels) -> float:
 
 
 def _rest(one: AxisGain) -> Iterator[Discrepancy]:
-    """What nothing of all this explains."""
+    """Discrepancy that no other finding explains."""
     left = one.fit.squares / float((one.axis.felt**2).mean())
     if left > REMAINS:
         name = FORCES[one.axis.name]

@@ -104,11 +104,11 @@ class _Weighed:
 
     @property
     def measures(self) -> np.ndarray:
-        """What the three measures say, (3,) array."""
+        """Evidence by the three measures, (3,) array."""
         return np.array([self.fit, self.foresight, self.likelihood])
 
     def over(self, other: _Weighed) -> np.ndarray:
-        """By how much it is better, (3,) array, the least first."""
+        """Gain by the three measures, (3,) array, the smallest first."""
         # Differences by measure in ascending order.
         return np.sort(self.measures - other.measures)
 
@@ -320,7 +320,7 @@ def _does_as_told(axis: Axis, commanded: Commanded) -> bool:
 
 
 def _each(axis: Axis, commanded: Commanded) -> np.ndarray:
-    """What each thruster that acts on an axis is commanded, (k, n) array."""
+    """Commanded force of each thruster that acts on an axis, (k, n) array."""
     return np.stack(
         [axis.smoothed(load) for load in commanded.thrusters.values() if np.any(load[axis.number])]
     )

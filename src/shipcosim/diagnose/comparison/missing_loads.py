@@ -31,7 +31,7 @@ _UNITS = {"surge": "N", "sway": "N", "yaw": "N.m"}
 
 @dataclass(frozen=True)
 class MissingLoad:
-    """What the model lacks on one axis along a log.
+    """Missing load on one axis along a log.
 
     Attributes
     ----------
@@ -130,7 +130,7 @@ def missing_loads(
     model: ShipModel,
     predicted: Mapping[str, float],
 ) -> list[MissingLoad]:
-    """What the model lacks on each axis, the largest beside what is needed first.
+    """Missing load on each axis, the largest share of the needed load first.
 
     Parameters
     ----------
@@ -181,7 +181,7 @@ def _missing(axis: Axis, commanded: Commanded, noise: float, predicted: float) -
 
 
 def _noise(felt: Felt, model: ShipModel) -> np.ndarray:
-    """What white noise of the velocities makes of the needed load, (3,) array: by their third differences."""
+    """Part of the needed load that comes from white noise of the velocities, (3,) array: by their third differences."""
     # White noise from third differences, by the median: their variance is 20 times that of the
     # noise.
     kernel = felt.kernel

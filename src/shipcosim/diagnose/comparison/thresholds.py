@@ -69,9 +69,9 @@ GAIN_OF_AXES = 0.3
 LEAST_GAIN_STD = 0.05
 """Standard deviation of a gain to which it is never known better, whatever the rows say. Assumed."""
 THRUSTER_WIDTH = 0.2
-"""What a thruster's gain may be off that of all. Assumed."""
+"""Standard deviation of a thruster's gain about that of all. Assumed."""
 WAY_WIDTH = 0.4
-"""What the gain of all thrusters ahead may be off that astern. Assumed."""
+"""Standard deviation of the gain ahead about that astern, of all thrusters. Assumed."""
 LEAST_OF_ALL = 0.1
 """Share of their force that thrusters must have on an axis, before it is compared. Assumed."""
 LEAST_LEVER = 0.3
@@ -100,7 +100,7 @@ OPPOSITE = 4.0
 LEAST_GAIN = 0.1
 """Gain below which thrusters do not do what they are commanded. Assumed."""
 LAG_COST = 3.0
-"""What a lag costs beside none, and one more for each root of the ship's length over gravity. [nats] Assumed."""
+"""Cost of a lag against none, and of each further root of length over gravity. [nats] Assumed."""
 LEAST_LAG = 2.0
 """Least lag that is reported. [rows]"""
 LAGS = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 5.0)

@@ -38,7 +38,7 @@ class _HeldOut:
 
 
 def _jackknife(without: np.ndarray) -> np.ndarray:
-    """Standard deviation of values by what they are without each part, along the first axis."""
+    """Standard deviation by the jackknife: from the values without each part, along the first axis."""
     parts = len(without)
     return np.sqrt((parts - 1) / parts * ((without - without.mean(0)) ** 2).sum(0))
 
@@ -53,7 +53,7 @@ def _logs(squares: np.ndarray, counts: np.ndarray) -> np.ndarray:
 
 
 def learn(logs: Sequence[CraftLog]) -> LearnedCraft | None:
-    """What logs teach of a craft; None where no ship has the numbers that suit them best.
+    """Learn a craft from logs; None if no ship can have the best-fitting numbers.
 
     Numbers that the file has are free from the start. One by one those are added that lower the error most on parts
     that were held out, then those given back to the file without which the error is no larger.
@@ -178,7 +178,7 @@ def _without_idle(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> 
 
 
 def _stated(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> LearnedCraft:
-    """What was learned, with what each number and all of them gain on parts that were held out."""
+    """The learned numbers, with the gain of each and of all on held-out parts."""
     numbers = [normal.numbers[i] for i in free]
     # The learned set, the set without each number, and the file's ship.
     tries = [free, *([i for i in free if i != one] for one in free), []]

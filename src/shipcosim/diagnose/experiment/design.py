@@ -80,7 +80,7 @@ class TellingFeature(NamedTuple):
 
 @dataclass(frozen=True)
 class Separation:
-    """What a manoeuvre would tell of sets of causes.
+    """Evidence on sets of causes that a manoeuvre would give.
 
     Attributes
     ----------
@@ -108,7 +108,7 @@ class Separation:
         return min(self.nats.values())
 
     def clear(self, wanted: Collection[tuple[int, int]]) -> dict[tuple[int, int], float]:
-        """Those of some pairs that it tells apart clearly, with their nats."""
+        """Pairs that it separates clearly, with their nats."""
         return {pair: nats for pair, nats in self.nats.items() if pair in wanted and nats >= CLEAR}
 
 
@@ -192,7 +192,7 @@ def design_experiment(
 
 
 def differing(one: Any, other: Any) -> tuple[str, str]:
-    """What two sets of causes, with their `hypotheses`, do not share."""
+    """Causes that two sets, with their `hypotheses`, do not share."""
     a, b = ([hypothesis.label for hypothesis in fit.hypotheses] for fit in (one, other))
     only_a, only_b = (
         " + ".join(x for x in mine if x not in yours) for mine, yours in ((a, b), (b, a))

@@ -17,7 +17,7 @@ from shipcosim.diagnose.inference.thresholds import APART
 
 @dataclass(frozen=True)
 class Isolability:
-    """What a log could tell of a cause.
+    """Evidence on a cause that a log could give.
 
     Attributes
     ----------

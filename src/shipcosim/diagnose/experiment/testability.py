@@ -28,7 +28,7 @@ from shipcosim.diagnose.ship.model import ShipModel
 
 @dataclass(frozen=True)
 class Excitation:
-    """What a log tells of each cause, had it its typical size.
+    """Information of a log on each cause of typical size.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ class Excitation:
 
 
 def excitation_of(log: JudgedLog) -> Excitation:
-    """What a log tells of each cause that can be sought in it."""
+    """Information of a log on each cause that can be sought in it."""
     problem = log.problem
     # Known numbers and first columns of all causes, about the ship without one.
     known = without_causes(log.fits).columns

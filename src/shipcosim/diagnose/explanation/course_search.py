@@ -97,7 +97,7 @@ class _Fitted(NamedTuple):
 
     @property
     def columns(self) -> list[Regressor]:
-        """Those of the cause."""
+        """Columns of the cause."""
         return self.fit.columns[len(self.of.base.columns) :]
 
     @property
@@ -223,7 +223,7 @@ def _otherwise(given: ExplainedLog, plain: Identification) -> Iterator[Explained
 
 
 def _cost(explained: ExplainedLog) -> float:
-    """What the form of a log's ship costs, where it is another than the model's. [nats]"""
+    """Cost of a form that differs from the model's. [nats]"""
     model = explained.identification.problem.model
     return FORM_COST if model.form_scale and not model.directions else 0.0
 
@@ -280,7 +280,7 @@ def _tries(problem: IdentificationProblem, base: Fit, linear: InParts) -> list[_
 
 
 def _values(problem, group, theta) -> dict[str, float]:
-    """What numbers of the ship are with the columns of a group at some θ."""
+    """Numbers of the ship with the columns of a group at some θ."""
     return moved(group, theta, problem.model.get)
 
 

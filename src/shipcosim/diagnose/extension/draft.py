@@ -69,7 +69,7 @@ class ExtensionDraft:
 
     @property
     def around(self) -> str:
-        """What the full names of components beside the ship begin with."""
+        """Prefix of the full names of components beside the ship."""
         return self.ship[: self.ship.rfind(".") + 1]
 
     def remark(self, finding: Finding, what: str) -> None:

@@ -30,7 +30,7 @@ SLOW_TIME = np.array([240.0, 240.0, 60.0])
 
 @dataclass(frozen=True)
 class Regressor:
-    """What one θ changes of the ship, and how large θ may be.
+    """Numbers of the ship that one θ changes, and the size that θ may have.
 
     Attributes
     ----------

@@ -313,7 +313,7 @@ def error_with(comparison: Comparison, numbers: Mapping[str, float]) -> float:
 
 
 def sailed(comparison: Comparison, model: ShipModel) -> Motion:
-    """Where a ship is after the longest horizon of each held-out stretch, from what the plain model knew at its start.
+    """Position after the longest horizon of each held-out stretch, from the plain model's estimate at its start.
 
     Parameters
     ----------

@@ -66,7 +66,7 @@ class ConeChoice(NamedTuple):
 
 
 class ConeMemory(NamedTuple):
-    """What the choice remembers.
+    """State of the choice between cones.
 
     Parameters
     ----------

@@ -230,7 +230,7 @@ class OptimalUnitsParameters(numbered_units(_fields), FixedAngleParameters):
 
 
 def design(parameters: OptimalParameters | OptimalUnitsParameters) -> OptimalProblem:
-    """What the law needs of the parameters.
+    """Parameters in the form that the law needs.
 
     Parameters
     ----------

@@ -80,7 +80,7 @@ class AllocatedThruster(NamedTuple):
 
 
 class OptimalProblem(NamedTuple):
-    """What a step needs of the parameters.
+    """Parameters in the form that a step needs.
 
     Parameters
     ----------

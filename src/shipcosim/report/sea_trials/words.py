@@ -1,4 +1,4 @@
-"""What sea trials say in words and rows."""
+"""Texts and rows of sea trials."""
 
 from collections import Counter
 

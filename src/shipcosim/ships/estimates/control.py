@@ -76,7 +76,7 @@ FILTERS = {"wind_filter_time": 0.7, "force_filter_time": 1.19, "moment_filter_ti
 
 @dataclass(frozen=True, kw_only=True)
 class ControlledShip:
-    """What the rule needs of a ship.
+    """Numbers of a ship that the rule needs.
 
     Attributes
     ----------

@@ -126,7 +126,7 @@ class Draft:
             self._assembled = None
 
     def _content(self) -> dict[Path, bytes | Path]:
-        """What the files say from which the system is assembled."""
+        """Content of the files from which the system is assembled."""
         return {
             path: etree.tostring(held.root) if isinstance(held, Document) else held
             for path, held in self.package.held.items()

@@ -44,7 +44,7 @@ class SystemContents:
 
     @property
     def description(self) -> str:
-        """What the system is, one line."""
+        """Description of the system in one line."""
         return self._draft.root.get("description", "")
 
     @description.setter

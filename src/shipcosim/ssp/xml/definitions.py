@@ -113,7 +113,7 @@ def _items_of(elements: Iterable[etree._Element]) -> dict[str, int]:
 
 
 def by_name(what: str, pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
-    """What a file defines by its names.
+    """Definitions of a file by their names.
 
     Raises
     ------

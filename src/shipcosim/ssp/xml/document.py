@@ -31,7 +31,7 @@ REMEDIES = {
     "is not expected": "Remove it.",
     "is invalid": "Correct it.",
 }
-"""What would be right, by part of what was found."""
+"""Remedy by a part of the message."""
 MOST_PREFIXES = 10
 UNDECLARED = "Namespace prefix"
 LARGEST_FILE = 64 * 2**20  # bytes; the largest model descriptions in the wild are a few MB
@@ -100,7 +100,7 @@ class Findings:
 
     @property
     def remarks(self) -> list[Problem]:
-        """Those of the problems that stop nothing."""
+        """Problems that stop nothing."""
         return [problem for problem in self.problems if problem.severity != "error"]
 
 
