@@ -48,6 +48,11 @@ PLAIN = {
     r"\bbut for\b": "except",
     r"\bnameless\b": "unmodelled",
     r"\btelegrams?\b": "message",
+    r"\bdearer\b": "takes more time",
+    r"\bhardly meant\b": "implausible",
+    r"\bwhat is to be said\b": "remarks",
+    r"\bwhat is felt\b": "the measured force",
+    r"\bsails otherwise\b": "sails differently",
 }
 """Turns of phrase of ours that readers had to read twice, and what to write instead."""
 

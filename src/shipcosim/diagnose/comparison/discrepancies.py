@@ -225,5 +225,5 @@ def _rest(one: AxisGain) -> Iterator[Discrepancy]:
     left = one.fit.squares / float((one.axis.felt**2).mean())
     if left > REMAINS:
         name = FORCES[one.axis.name]
-        text = f"{name}: {100.0 * left:.0f} % of what is felt remains unexplained"
+        text = f"{name}: {100.0 * left:.0f} % of the measured force remains unexplained"
         yield Discrepancy(text, None, one.axis.name, left, 0.0, "1", 0.0)

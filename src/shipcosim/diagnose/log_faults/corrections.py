@@ -223,7 +223,7 @@ def _with_right_input(explained):
 
 
 def _repaired(found, faults, noise=None):
-    """An identification anew, of the log as read with some faults corrected."""
+    """A repeated identification, of the log as read with some faults corrected."""
     log = _without(found, faults)
     problem = identification_problem(log, found.ship, found.causes, noise)
     return replace(found, faults=tuple(faults), repaired=log, problem=problem)
@@ -235,7 +235,7 @@ def _without(found, faults):
 
 
 def _relabelled(found, fault):
-    """An identification anew, of its repaired log with a mislabel undone too."""
+    """A repeated identification, of its repaired log with a mislabel undone too."""
     log = with_label(found.repaired, fault.mislabel, fault.segments)
     return replace(
         found, repaired=log, problem=identification_problem(log, found.ship, found.causes)
