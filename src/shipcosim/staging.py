@@ -1,4 +1,4 @@
-"""Files of results: all are there afterwards, or none of them has changed; earlier ones are kept beside them.
+"""Files of results: either all are written or none changes; earlier ones are kept.
 
 What an earlier run left under the same names moves into a numbered folder beside the results, which hold the newest,
 unless it is said to be replaced.

@@ -461,7 +461,7 @@ def number_in(text: str, target: Unit | None, *, difference: bool = False) -> fl
 
 
 def value_of(text: str) -> Any:
-    """Value of a text that somebody typed, as TOML has it; what is no TOML is text.
+    """Value of a typed text, read as TOML; other text stays text.
 
     Examples
     --------

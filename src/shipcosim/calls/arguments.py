@@ -77,7 +77,7 @@ def find(kind: str, given: Any, argument: str = "") -> Path:
 
 
 def listed(given: AnyPath | Iterable[AnyPath] | None) -> list[AnyPath]:
-    """Paths as a list, also where one alone is given."""
+    """Paths as a list, also for a single path."""
     if given is None:
         return []
     return [given] if isinstance(given, (str, os.PathLike)) else list(given)
@@ -96,7 +96,7 @@ def without_none(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def in_seconds(arguments: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
-    """Arguments with the times of these names as numbers, where they are amounts such as ``"10 min"``. [s]"""
+    """Arguments with times as numbers, where they were amounts such as ``"10 min"``. [s]"""
     found = dict(arguments)
     problems = []
     for name in names:
@@ -396,7 +396,7 @@ def sources_of(logs: Any, channels: AnyPath | None) -> tuple[list[Any], AnyPath 
 def check_inputs(
     logs: Iterable[Any], channels: AnyPath | None, causes: AnyPath | None = None
 ) -> None:
-    """Raise ShipcosimError where a file or folder that was given is not there."""
+    """Raise ShipcosimError if a given file or folder does not exist."""
     problems = []
     remedy = "Give the path of one."
     for log in logs:

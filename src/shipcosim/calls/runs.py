@@ -163,7 +163,7 @@ class PreparedRun:
         )
 
     def _recorded(self, table: xarray.Dataset) -> xarray.Dataset:
-        """The signals that the scenario has recorded, and those of its expectations; all where it chooses none."""
+        """Signals that the scenario records, and those of its expectations; all signals if it chooses none."""
         if not self.scenario.record.signals:
             return table
         names = list(map(str, table.data_vars))

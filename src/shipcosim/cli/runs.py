@@ -100,7 +100,7 @@ def run_folder(
 
 
 def print_run(result: Run, out: Path) -> None:
-    """How a run went, and where its page is; what there is of one that failed goes to stderr."""
+    """Print the outcome of a run and the path of its page; errors of a failed run go to stderr."""
     page = out / result.as_json()["page"]
     print_summary(result, page, to_stderr=bool(result.errors))
 

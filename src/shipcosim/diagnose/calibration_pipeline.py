@@ -106,7 +106,7 @@ class CalibratedShip:
 
 
 def steps_of(logs: Sequence[LogSource]) -> dict[str, float]:
-    """What `calibrate` tells its progress function, in order, with the time that it typically takes. [s]"""
+    """Steps that `calibrate` reports to its progress function, in order, with their typical times. [s]"""
     many = len(logs)
     return {
         READING: 2.5 * many,
@@ -361,7 +361,7 @@ def _reasons_not_to_trust(
 
 
 def _judged(reference, found, suspects):
-    """Why these logs make no reference, and what to know of one that they do make."""
+    """Reasons why these logs make no reference, and remarks on the reference that they make."""
     refusals = []
     remarks = []
     # Unbounded moves of the numbers, to compare with the bounded estimates.

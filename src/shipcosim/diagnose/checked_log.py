@@ -32,7 +32,7 @@ class ReadLog:
 
 @dataclass(frozen=True)
 class CheckedLog(ReadLog):
-    """A log of which is known what is wrong with it by its own channels alone.
+    """A log with the faults that its own channels show.
 
     Attributes
     ----------

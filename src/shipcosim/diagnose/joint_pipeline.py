@@ -72,7 +72,7 @@ from shipcosim.ssp import AnyPath, System
 
 
 def steps_of(logs: Sequence[LogSource]) -> dict[str, float]:
-    """What `diagnose_jointly` tells its progress function, in order, with the time that it typically takes. [s]"""
+    """Steps that `diagnose_jointly` reports to its progress function, in order, with their typical times. [s]"""
     names = log_names(logs)
     return {
         READING: 2.5 * len(names),
@@ -248,7 +248,7 @@ def _identification(one: Diagnosis) -> Identification:
 
 
 def _unusable(one: Diagnosis) -> str:
-    """Why a log says nothing of the ship; empty where it does."""
+    """Reason why a log gives no evidence on the ship; empty if it does."""
     if any(finding.alternatives for finding in one.findings):
         return "Its channels may be misread, and it does not tell which."
     return " ".join(_identification(one).comparison.obstacles)

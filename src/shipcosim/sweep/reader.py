@@ -16,7 +16,7 @@ from shipcosim.ssp import AnyPath
 from shipcosim.sweep.study_model import Study
 
 LISTS = {"factor": "name", "quantity": "name", "summary": "name", "view": "title"}
-"""Lists of which a later study replaces what has the same name."""
+"""Lists in which a later study replaces entries of the same name."""
 
 
 @dataclass

@@ -95,7 +95,7 @@ class Samples:
 
 
 def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
-    """Samples of a study; None if it has none. Problems go to `levels`.
+    """Samples of a study, or None. Problems go to `levels`.
 
     Raises
     ------

@@ -58,7 +58,7 @@ class Conclusion:
 
 @dataclass(frozen=True)
 class Output:
-    """Forms in which a command says what it found, as its options ask for them."""
+    """Forms of a command's output, as its options ask for."""
 
     as_json: bool = False
     quiet: bool = False

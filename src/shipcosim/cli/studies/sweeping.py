@@ -162,7 +162,7 @@ def _say_indices(console: Console, swept: Swept) -> None:
 
 
 def _say_trials(console: Console, swept: Swept) -> None:
-    """Trials of a search that no other beats, and the one as shipped."""
+    """Pareto-optimal trials of a search, and the trial with the shipped gains."""
     trials = swept.tables["trials"]
     tune = swept.plan.study.tune
     assert tune is not None

@@ -90,7 +90,7 @@ def serve() -> None:
 
 
 def end_with_parent(parent: int | None = None) -> None:
-    """Have this process end where the one that started it ends, also where that is killed.
+    """Make this process end with its parent process, also if that is killed.
 
     Parameters
     ----------

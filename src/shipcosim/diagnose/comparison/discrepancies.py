@@ -151,7 +151,7 @@ def _explained_by_gain(one: AxisGain) -> float:
 
 
 def _weak(one: AxisGain) -> Iterator[Discrepancy]:
-    """A gain on one axis, or those of its thrusters where they differ."""
+    """Gain on one axis, or the gains of its thrusters if they differ."""
     if max(one.support_of_each, one.fit.support) < LEAST_SUPPORT:
         return
     # Different gains ahead and astern say more than a mean of the two.

@@ -210,7 +210,7 @@ class CommonRatio:
 
 
 def common_ratio(gains: Sequence[AxisGain]) -> CommonRatio | None:
-    """The ratio that the axes have in common; None where they contradict, or thrusters do, or none tells it.
+    """The common ratio of the axes; None if axes or thrusters contradict each other, or none shows it.
 
     Parameters
     ----------

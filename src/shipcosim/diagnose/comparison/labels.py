@@ -224,7 +224,7 @@ def _likelihoods(
 
 
 def _by_fit(weighed: Sequence[_Weighed], axes: Sequence[Axis]) -> Labels:
-    """The reading that fits best, and whether it does beyond doubt and nothing else speaks against it."""
+    """The reading that fits best, and whether it is certain and nothing contradicts it."""
     first, ranked = weighed[0], sorted(weighed, key=lambda one: -one.fit)
     best = ranked[0]
     logged = first.reading
@@ -308,7 +308,7 @@ def _explained(best: LabelHypothesis, logged: LabelHypothesis, axes: Sequence[Ax
 
 
 def _does_as_told(axis: Axis, commanded: Commanded) -> bool:
-    """Whether the thrusters together surely do on an axis what they are commanded, and none the opposite."""
+    """Whether the thrusters clearly follow their commands on an axis, and none acts the opposite way."""
     if not axis.is_driven(commanded):
         return True
     # Gain of the sum and gains of each thruster.

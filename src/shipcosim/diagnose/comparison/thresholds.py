@@ -98,7 +98,7 @@ readings of drawn craft reach -0.31 (tests/bench/craft, seeds 7000 to 7049), bot
 OPPOSITE = 4.0
 """Standard deviations by which a gain is surely positive, or surely negative. Assumed."""
 LEAST_GAIN = 0.1
-"""Gain below which thrusters do not do what they are commanded. Assumed."""
+"""Gain below which thrusters do not follow their commands. Assumed."""
 LAG_COST = 3.0
 """Cost of a lag against none, and of each further root of length over gravity. [nats] Assumed."""
 LEAST_LAG = 2.0

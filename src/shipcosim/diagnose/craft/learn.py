@@ -124,7 +124,7 @@ def _by_part(logs: Sequence[CraftLog], missed: Sequence[np.ndarray]) -> _HeldOut
 
 
 def _best(found: _HeldOut, tries, normal: Normal, logs) -> list[int] | None:
-    """The set with one more number that surely lowers the error most; None where none does."""
+    """The set with the further number that lowers the error most; None if none lowers it clearly."""
     # Largest gain first; it must exceed its standard error, and the result must be a possible ship.
     gains = [found.gain(0, k) for k in range(1, len(tries))]
     order = sorted(range(len(gains)), key=lambda k: -gains[k][0])

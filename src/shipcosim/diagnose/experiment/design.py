@@ -113,8 +113,7 @@ class Separation:
 
 
 def prescribed(found: Sequence[Separation], sets: Sequence[Any]) -> tuple[ExperimentDesign, ...]:
-    """The manoeuvres to be sailed next, as few as will do: each tells as many pairs apart as any that the ones before
-    it do not, clearly.
+    """The fewest manoeuvres to sail next: each clearly separates the most of the pairs that are left.
 
     Among those of equal use one that is sought in logs comes first. Then one of the shortest is taken: among
     manoeuvres about as short the one with most nats per minute for its closest pair.

@@ -285,7 +285,7 @@ def _values(problem, group, theta) -> dict[str, float]:
 
 
 def _fitted(problem: IdentificationProblem, one: _Try, linear: InParts) -> _Fitted | None:
-    """A cause with a course, linearised about its size where it is there and about none where it is not.
+    """A cause with a course, linearised about its size while it acts and about zero otherwise.
 
     None where the ship's loads are no numbers along the log.
     """

@@ -123,7 +123,7 @@ def explain(
 
 
 def _strained(fit: Fit) -> set[str]:
-    """Numbers that a fit has far outside their tolerances: what they do may be bent there, as a lag's."""
+    """Parameters estimated far outside their tolerances; the linearisation may fail there, as for a lag."""
     off = defaultdict(float)
     known = defaultdict(float)
     # Sum the shifts of all columns that move a number, and the variance of their tolerances.

@@ -121,7 +121,7 @@ def _differs_by_part(fit):
 
 
 def _beyond_tolerances(fit):
-    """Evidence that the known numbers lie farther off what they are known as than their tolerances say. [nats]
+    """Evidence that the known numbers lie beyond their tolerances. [nats]
 
     In units of the tolerances the posterior mean has, in each direction, the variance that the log took from that of
     the prior; the sum of its squares is taken as a scaled chi-square of the same mean and variance.

@@ -297,7 +297,7 @@ def _with_odds(fit):
 
 
 def _beside_unknown(candidates):
-    """Candidates beside an error that no cause explains: what they gain may be its, or what made room for it."""
+    """Candidates beside an unexplained error: their gain may belong to it."""
     return tuple(
         replace(one, probability=round(BESIDE_UNKNOWN * one.probability, 4)) for one in candidates
     )
@@ -358,7 +358,7 @@ def _is_sized(hypothesis, fit):
 
 
 def _exceeds_special(hypothesis, fit, fits):
-    """Whether what a cause has beyond the simpler one that it contains is large enough to matter.
+    """Whether a cause differs enough from the simpler cause that it contains.
 
     A steady current beside a model of another form seems to turn a little.
     """
@@ -378,7 +378,7 @@ def _is_special(one, general):
 
 
 def _in_shape(hypothesis, fit):
-    """Whether what tells a cause's shape lies within its tolerances, taken together."""
+    """Whether the numbers of a cause's shape lie within their tolerances, taken together."""
     # Sum of squares of the shape's numbers in tolerances: chi-square with as many degrees of
     # freedom.
     shape = set(hypothesis.definition.shape)

@@ -15,7 +15,7 @@ AXES = ("X", "Y", "N")
 
 
 class Estimated(NamedTuple):
-    """A value with its standard deviation, 0 where there is none."""
+    """A value with its standard deviation, or 0 without one."""
 
     value: float
     std: float = 0.0
@@ -73,7 +73,7 @@ class ExtensionDraft:
         return self.ship[: self.ship.rfind(".") + 1]
 
     def remark(self, finding: Finding, what: str) -> None:
-        """Say what is not as a finding has it."""
+        """Record a deviation from the finding."""
         self.remarks.append(f"{finding.label}: {what}.")
 
     def thrusters(self, variable: str = "rpm_in") -> list[str]:

@@ -159,7 +159,7 @@ def _add_varying(
 
 
 def _water(draft: ExtensionDraft) -> str | None:
-    """Component that moves the ship's water and takes its speed and direction; None where there is none such."""
+    """Component that gives the current from speed and direction, or None."""
     feeding = {
         connection.target: connection.source for connection in draft.structure.checked().connections
     }

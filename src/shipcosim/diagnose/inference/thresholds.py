@@ -36,7 +36,7 @@ BESIDE_UNKNOWN = 0.5
 """Factor on the probability of a cause beside an error that no cause explains. Assumed: as likely as not it is only the
 nearest of the known ones."""
 SHAPE_CHANCE = 0.01
-"""Probability of a shape as far from the known one, below which it is that of something else. Two logs of one of some
+"""Probability of so large a deviation from the known shape, below which another cause is assumed. Two logs of one of some
 forty developing ships pull at the headings like a wave drift of 1000 N without arm and surge."""
 DEVIATIONS = 3.0
 """Standard deviations that an estimate must be off neutral (assumed)."""
@@ -55,7 +55,7 @@ one gained 24, the next 15; ten of another form gained 25 to 240 where the ship 
 # Gain on simulated healthy logs
 
 NULL_GAIN_WITHOUT_WIND = 40.0
-"""More that a cause has to gain where the log has no wind, which could be it. [nats] Assumed."""
+"""Further gain that a cause needs in a log without wind, which may be the true cause. [nats] Assumed."""
 NULL_GAIN_OF_FORM = 5.0
 """More that a cause has to gain on a ship of another form than the model's, of which no reference tells: the form has
 a few smooth functions, and what they leave looks like causes. [nats] Assumed, as much as `ENOUGH`."""

@@ -1,4 +1,4 @@
-"""What a channel can be instead of what its label says, and how to put it right."""
+"""Possible mislabels of a channel, and their corrections."""
 
 from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass, field, replace

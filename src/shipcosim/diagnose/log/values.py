@@ -140,7 +140,7 @@ def heading_of_quaternion(parts: np.ndarray, frame: str) -> np.ndarray:
 
 
 def _found(log: LogColumns, name: str) -> str:
-    """A column's name as the log has it, also of one that was written with its unit."""
+    """Name of a column in the log, also if it was written with a unit."""
     if name in log.values:
         return name
     plain = name_and_unit(name)[0]

@@ -149,7 +149,7 @@ def _likeliest_direction(as_logged, fault):
 
 
 def with_right_connections(found: Identification) -> Identification:
-    """The ship with connections as their names say, where the log contradicts how the system has them."""
+    """The ship with connections corrected by their names, where the log contradicts the system."""
     if found.ship.wiring is None:
         return found
     # Correct one odd connection at a time, and keep it if the evidence grows by the threshold.

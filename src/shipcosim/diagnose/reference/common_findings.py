@@ -151,7 +151,7 @@ class RatioOfLogs:
 
     @property
     def contradiction(self) -> str:
-        """That the logs contradict each other, in a sentence; empty where they do not."""
+        """Sentence that the logs contradict each other; empty if they do not."""
         if self.common is not None or not self.each:
             return ""
         sizes = ", ".join(

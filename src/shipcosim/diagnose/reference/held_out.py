@@ -156,7 +156,7 @@ def _log_errors(
     causes: Mapping[str, Cause],
     progress: Callable[[str, int, int], None],
 ) -> LogErrors | None:
-    """The errors of one log; None where no stretch of it is whole."""
+    """The errors of one log; None if it has no complete stretch."""
     # Predict by co-simulation. If it fails, at least the
     # errors of the unchanged system, by the array model.
     remark = ""

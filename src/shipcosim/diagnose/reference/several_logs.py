@@ -95,7 +95,7 @@ class SeveralLogs:
 
 
 def values_in(name: str, values: Mapping[str, float]) -> dict[str, float]:
-    """Numbers as one log has them: those of the ship, and those of its own day."""
+    """Numbers for one log: those of the ship, and those of the log's own day."""
     found = {}
     # Numbers with the prefix of another log are left out, the own prefix is removed.
     for path, value in values.items():

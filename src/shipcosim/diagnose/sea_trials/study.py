@@ -47,7 +47,7 @@ STEPS = {
     "fitted on all manoeuvres": 5.0,
     "what would tell causes apart": 5.0,
 }
-"""What `study` tells its progress function, in order, with the time that it typically takes. [s]"""
+"""Steps that `study` reports to its progress function, in order, with their typical times. [s]"""
 
 
 @dataclass(frozen=True)

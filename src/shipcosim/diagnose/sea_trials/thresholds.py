@@ -32,7 +32,7 @@ STRAIGHT_RATE = 0.03
 REST = 10.0
 """Time over which a helmsman's corrections average out, and orders are held. [s]"""
 CLIPPED = 0.98
-"""Order over the largest speed of a shaft, above which it says nothing of the speed that the shaft had. [1]"""
+"""Ordered over largest shaft speed, above which the order does not give the true shaft speed. [1]"""
 RUN = 40.0
 """Way over which the model settles to its own speed. [ship lengths]"""
 FROUDE = 0.2

@@ -223,7 +223,7 @@ def astern_numbers(model: ShipModel) -> tuple[str, ...]:
 
 
 def with_thrust(model: ShipModel, ratio: float, std: float) -> ShipModel:
-    """The ship with all thrusters' thrust a ratio of what it was, known as well as the standard deviation says.
+    """The ship with the thrust of all thrusters scaled; the standard deviation is the new tolerance.
 
     Parameters
     ----------

@@ -90,7 +90,7 @@ def wiring_of(system: System, vessel: str, thrusters: Sequence[str]) -> Wiring |
 
 
 def put_right(wiring: Wiring, name: str) -> Wiring | None:
-    """The wiring with one thruster's as its connectors' names say; None where nothing odd is left."""
+    """The wiring with one thruster corrected by the names of its connectors; None if nothing contradicts them."""
     rest = {other: told for other, told in wiring.odd.items() if other != name}
     loads, drives = (
         {k: v for k, v in part.items() if k != name} for part in (wiring.loads, wiring.drives)

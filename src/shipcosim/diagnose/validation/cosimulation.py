@@ -304,7 +304,7 @@ def _driven(model, name):
 
 
 def _input(system, component, variable):
-    """Input of the system that feeds a variable; None where there is none."""
+    """Input of the system that feeds a variable, or None."""
     feeding = (c.source for c in system.connections if c.target == (component, variable))
     return next((name for owner, name in feeding if owner is None), None)
 

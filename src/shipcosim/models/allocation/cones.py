@@ -215,7 +215,7 @@ def _within(design, half_turns):
 
 
 def _planned(memory, tau, available, h, design, shares):
-    """One plan goes on: they take turns, to save time, and each steps as far as all of them together."""
+    """Advance one plan: they take turns to save time, and each then steps over the time of all turns."""
     far = len(memory.plans) * h
     within = _within(design, memory.cones[0])
     plan = power_step(memory.plans[0], tau, available, far, design=within, shares=shares)

@@ -30,7 +30,7 @@ SPREAD = 0.02
 """Standard deviation of random parameters, over the example's."""
 
 NOT_FOR_THESE = "this native FMU was built where"
-"""What an FMU in C says of parameters that give its state another shape; random ones may."""
+"""Message of an FMU in C on parameters that would change the shape of its state."""
 
 SIZES = {"N": 2e4, "N.m": 1e5, "W": 1e5, "rad": 0.7, "rpm": 60.0, "m": 3.0, "s": 1.0, "Pa": 1e3}
 """Size of random inputs by unit; 0.5 for other units."""

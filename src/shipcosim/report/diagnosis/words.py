@@ -226,7 +226,7 @@ def _form(form: LoadForm) -> str:
 
 
 def _better_predictor(diagnosis: Diagnosis) -> str:
-    """That something else predicts this log better than the extended model, where it does."""
+    """Sentence if something else predicts this log better than the extended model."""
     gain = diagnosis.gain
     if not gain:
         return ""

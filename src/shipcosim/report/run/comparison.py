@@ -344,7 +344,7 @@ def _remarks(pair: Pair) -> list[str]:
 
 
 def _ordered(pair: Pair, found: Sequence[Difference]) -> list[Difference]:
-    """Differences of what people compare runs by, then the others as they come."""
+    """Differences of the most important signals first, then the others in order."""
     roles = pair.roles
     wanted = [roles.signal(roles.ship, axis) for axis in ("x", "y", "psi")]
     wanted += [FROM_REFERENCE, ERRORS["psi"]]

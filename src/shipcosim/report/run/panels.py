@@ -47,7 +47,7 @@ class Panel:
 
 @dataclass(frozen=True)
 class Section:
-    """Panels under one heading, and what stays the same as sentences."""
+    """Panels under one heading, and sentences for signals that stay constant."""
 
     title: str
     panels: tuple[Panel, ...]

@@ -99,7 +99,7 @@ class Draft:
     def assemble(
         self, parameters: ParameterSets = (), swapped: Swapped = None
     ) -> tuple[System | None, Findings]:
-        """Assemble the system as it is now; None or incomplete where there are errors."""
+        """Assemble the present system; None or incomplete if there are errors."""
         findings = Findings()
         self.package.located.clear()
         system = assemble_package(

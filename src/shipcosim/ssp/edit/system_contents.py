@@ -20,7 +20,7 @@ from shipcosim.ssp.xml.document import AnyPath, children
 
 
 class SystemContents:
-    """A system structure as one looks at it, checks it and writes it.
+    """A system structure to look at, check and write.
 
     Parameters
     ----------

@@ -62,7 +62,7 @@ MOST_SIGNALS = 10_000
 
 
 def read_function(element: etree._Element, place: str, findings: Findings) -> Function | None:
-    """Function of its element; None with an error where it has too many signals.
+    """Function from its XML element; None, with an error, if it has too many signals.
 
     Parameters
     ----------

@@ -66,7 +66,7 @@ LISTS = (
 )
 LISTS += ("GraphicalElements", "Annotations")
 ONCE = ("MappingEntry", "MapEntry", "Unit", "Enumeration", "Item")
-"""Elements of which a second one that says the same says nothing."""
+"""Elements that may be repeated with equal content without effect."""
 
 
 def mend(document: Document, tag: str) -> None:

@@ -124,7 +124,7 @@ class _Segment:
 
 
 def wrong_clock(log: dict) -> list[Finding]:
-    """Segments of wrong clock, those of one rate as one finding.
+    """Segments of a wrong clock; segments of one rate are one finding.
 
     Parameters
     ----------
@@ -293,7 +293,7 @@ def _is_said_by_both(segment):
 
 
 def _is_like(segment, sure):
-    """Whether a segment that one side cannot tell of has the rate of another that both tell of."""
+    """Whether a segment that only one relation shows has the rate of one that both relations show."""
     return any(
         abs(segment.value - other.value) < 3.0 * np.hypot(segment.std, other.std)
         and _agree(segment.apart, other.value)

@@ -95,7 +95,7 @@ def position_motion(log: dict) -> Motion | None:
 
 
 def heading_motion(log: dict) -> Motion | None:
-    """Heading against the yaw rate; None where there is too little of them."""
+    """Relation of heading and yaw rate; None if there are too few rows."""
     rows = complete_rows(log, ("heading", "yaw_rate"))
     if len(rows) < 30:
         return None

@@ -85,7 +85,7 @@ def _axes(vector):
 
 
 def _frame(time, winds, slow, filters):
-    """How the direction is counted, where, and the evidence for it; as labelled where nothing says otherwise."""
+    """Convention of the direction, the segment, and the evidence; by default the logged label."""
     likely = {}
     # Log-likelihood of each row as apparent wind or as wind
     # over ground, whichever is likelier in the whole log.

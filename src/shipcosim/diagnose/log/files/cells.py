@@ -105,7 +105,7 @@ def without_fillers(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str
 
 
 def with_unit(cells: np.ndarray, decimal: str) -> tuple[np.ndarray, str] | None:
-    """Numbers of cells that all have the same unit behind them, and this unit; None for others.
+    """Numbers and unit of cells that all end with the same unit; None for others.
 
     Examples
     --------

@@ -107,7 +107,7 @@ def _below_each_other(path, tables, clocks):
 
 
 def _needs_table(name, column, names):
-    """Whether a column needs its table's name: where it says nothing alone, or the table is one of set points."""
+    """Whether a column needs its table's name: its own name is not clear, or the table has set points."""
     told = vocabulary()["words"]
     fillers = set(told["filler"])
     says_little = all(word in fillers or len(word) == 1 for word in words_of(column))

@@ -130,7 +130,7 @@ def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
 
 
 def _names(layout: Layout) -> tuple[list[str], dict[str, str], tuple[str, ...]]:
-    """Names that differ, their units, and those that stand there more than once."""
+    """Unique names, their units, and the names that occur more than once."""
     names = []
     units = {}
     seen = Counter()

@@ -1,4 +1,4 @@
-"""The column of time among those that may be it, and its unit."""
+"""The time column among the possible ones, and its unit."""
 
 from dataclasses import replace
 

@@ -76,7 +76,7 @@ class Guess:
 
 
 def guesses_of(column: str, log: LogColumns, thrusters: Thrusters | None) -> list[Guess]:
-    """What a column may be, by itself; one guess without a role where it is nothing.
+    """Guesses for a column by itself; one guess without a role if nothing fits.
 
     Parameters
     ----------

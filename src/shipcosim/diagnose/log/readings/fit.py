@@ -88,7 +88,7 @@ def fitted(
     labelled: _Key,
     axes: int = 2,
 ) -> dict[_Key, Relation]:
-    """The relation of each pair of what is seen and told; none where no pair tells anything.
+    """Regression of observed on reported change for each pair; empty if no pair has information.
 
     Parameters
     ----------
