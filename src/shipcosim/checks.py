@@ -22,7 +22,7 @@ OF_SHIP = {"particulars", "thrusters"}
 OF_STUDY = {"factor", "quantity", "sample", "extends", "scenario"}
 OF_CAUSE = {"cause", "sentence"}
 OF_SCENARIO = {"system", "stop_time", "step_size", "events", "expect", "set"}
-"""Keys that only a .toml of one kind has."""
+"""Keys that identify a kind of .toml file."""
 OSP_SCENARIOS = (".json", ".yaml", ".yml")
 NEAR = 1 << 16  # bytes: before its events a scenario has a description and defaults
 TABLES = (".csv", ".csv.gz", ".nc", ".parquet")
@@ -128,7 +128,7 @@ def is_scenario(path: Path) -> bool:
 
 
 def _keys_of(path: Path) -> set[str]:
-    """Keys of the outermost table; none of a file that is no text, of which its reader says what is wrong."""
+    """Keys of the outermost table; empty for a file that is not text, which its reader reports."""
     from shipcosim.scenario import toml_of
 
     try:

@@ -106,7 +106,7 @@ def staged(folder: Path, replaced: Iterable[str] = (), *, force: bool = False) -
 
 
 def set_aside(folder: Path, names: Iterable[str], *, force: bool = False) -> None:
-    """Move what there is of earlier results into a numbered folder beside theirs, and say so, unless they are replaced.
+    """Move earlier results into a numbered folder and report it, unless they are replaced.
 
     Parameters
     ----------

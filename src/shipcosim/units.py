@@ -542,7 +542,7 @@ _IN_PINT: dict[str, str] = dict(zip(_NAMES, BASE_UNITS, strict=True))
 
 
 def _pint_unit(spelling: str) -> Unit | None:
-    """Unit of a spelling that pint alone knows, such as "ft" or "°"; None where it does not know it either."""
+    """Unit of a spelling that only pint knows, such as "ft" or "°"; None for unknown ones."""
 
     try:
         registry = _registry()

@@ -24,7 +24,7 @@ def check_learning(
     reference: Any,
     causes: Any,
 ) -> None:
-    """Raise ShipcosimError where arguments do not go together."""
+    """Raise ShipcosimError if arguments contradict each other."""
     if not learn:
         remedy = f"It needs {named('learn')}; the length of a ship with a system is in that system."
         raise error_at(named("length"), "nothing is learned.", remedy)

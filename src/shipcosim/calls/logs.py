@@ -494,7 +494,7 @@ def _written(
     progress: Progress | None,
     left: Sequence[str] = EXTENDED,
 ) -> Saved:
-    """A result, and its files where a folder is given: all of them, or none.
+    """A result and, if a folder is given, its files: all of them or none.
 
     Parameters
     ----------

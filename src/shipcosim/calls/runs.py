@@ -133,7 +133,7 @@ class PreparedRun:
             return self.part(error)
 
     def judged(self, table: xarray.Dataset) -> Run:
-        """The run of a table: what it changed, which expectations lie within it, and whether these hold.
+        """The run of a table: its changes, the expectations within it, and whether they hold.
 
         Parameters
         ----------
@@ -606,12 +606,12 @@ def changes(
 
 
 def times_changed(times: Mapping[str, object], scenario: Scenario) -> list[str]:
-    """Times that this run has in place of its scenario's, each as a text."""
+    """Times of this run that replace those of its scenario, each as a text."""
     return [f"{name.replace('_', ' ')} {getattr(scenario, name):g} s" for name in times]
 
 
 def _text(value: object) -> str:
-    """A start value as one writes it in a file."""
+    """A start value as it is written in a file."""
     if isinstance(value, bool):
         return str(value).lower()
     return str(value.item() if hasattr(value, "item") else value)  # pyright: ignore[reportAttributeAccessIssue]

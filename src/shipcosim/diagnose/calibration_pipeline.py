@@ -100,7 +100,7 @@ class CalibratedShip:
 
     @property
     def untold(self) -> tuple[KnownNumber, ...]:
-        """Numbers of which the logs say next to nothing."""
+        """Numbers on which the logs have almost no information."""
         scale = self.reference.tolerance_scale
         return tuple(one for one in self.reference.numbers if one.std > 0.8 * scale * one.tolerance)
 

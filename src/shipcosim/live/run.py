@@ -201,7 +201,7 @@ class LiveRun:
             self._states = {step: self._states[step] for step in kept}
 
     def _take_messages(self) -> None:
-        """Take what the pages say; wait for it while there is nothing to do."""
+        """Handle messages of the pages; wait for one while there is nothing to do."""
         while True:
             self._check_interrupt()
             idle = not self._waiting and (self._goal <= self._now or bool(self._failure))

@@ -130,7 +130,7 @@ class LiveServer:
         )
 
     async def _converse(self, connection: ServerConnection) -> None:
-        """One page, from its connection to its end."""
+        """Serve one page, from its connection to its end."""
         if self._steering is None:
             self._steering = connection
         self.inbox.put(("joined", connection, ""))

@@ -17,7 +17,7 @@ _ACROSS = ("bow", "lateral", "tunnel")
 
 @dataclass(frozen=True)
 class LoggedThruster:
-    """A thruster as a log has it.
+    """A thruster by the channels of a log.
 
     Attributes
     ----------

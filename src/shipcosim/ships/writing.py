@@ -55,7 +55,7 @@ class Answers:
 
 
 def usual(answers: Answers, key: str) -> str:
-    """Usual value for a ship of which so much is known.
+    """Usual value for a ship with the known numbers.
 
     Parameters
     ----------

@@ -76,7 +76,7 @@ class Output:
                 yield
 
     def conclude(self, found: Conclusion) -> None:
-        """Say what was found; exit code 1 unless it passed."""
+        """Print the result; exit code 1 unless it passed."""
         from shipcosim.cli.console import print_problems, say_outcome
         from shipcosim.cli.terminal import make_console
 

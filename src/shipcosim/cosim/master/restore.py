@@ -22,7 +22,7 @@ ABILITIES = (
     ("canGetAndSetFMUstate", "canSerializeFMUstate"),
     ("canGetAndSetFMUState", "canSerializeFMUState"),
 )
-"""What an FMU has to declare so that its state can be stored, in FMI 2.0 and 3.0."""
+"""Capability flags that an FMU needs so that its state can be stored, in FMI 2.0 and 3.0."""
 
 
 TRIED = 10

@@ -140,7 +140,7 @@ class ComponentProcess:
             self._kill()
 
     def close_input(self) -> None:
-        """Tell the process that it is not needed any more."""
+        """Ask the process to end."""
         with suppress(OSError):
             self._requests.close()
 

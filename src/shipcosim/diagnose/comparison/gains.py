@@ -88,7 +88,7 @@ class AxisGain:
 
     @property
     def has_thrusters_apart(self) -> bool:
-        """Whether each thruster's own gain can be believed: of those told nearly alike one takes what another gives."""
+        """Whether each thruster's gain is reliable: with nearly equal commands gains cannot be separated."""
         return all(v > -SURE_OF_GAIN * self.each_std[name] for name, v in self.each.items())
 
     @property
@@ -108,7 +108,7 @@ class AxisGain:
 
     @property
     def differs_by_way(self) -> bool:
-        """Whether thrust ahead and astern surely have gains of their own, one of them known."""
+        """Whether thrust ahead and astern clearly have different gains, one of which is known."""
         if self.ways is None or self.support_of_ways < self.fit.support + LEAST_SUPPORT:
             return False
         # One way is known surely and both are positive; then the difference must exceed its

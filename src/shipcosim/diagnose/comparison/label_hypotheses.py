@@ -38,7 +38,7 @@ class LabelError:
     turns: bool = False
 
     def undo(self, units: ThrusterSeries) -> ThrusterSeries:
-        """What drives the thrusters, corrected; the direction of one that does not turn stays."""
+        """Inputs of the thrusters, corrected; fixed directions stay."""
         if len(self.thrusters) == 2:
             one, other = self.thrusters
             (first, ahead) = units[one]
@@ -89,7 +89,7 @@ class LabelHypothesis:
 
     @property
     def is_late(self) -> bool:
-        """Whether the thrust surely acts late, by rows that can be told apart."""
+        """Whether the thrust clearly acts late, by enough rows to be resolved."""
         return self.lag >= LEAST_LAG * self.step and self.gained_by_lag > LEAST_SUPPORT
 
     @property

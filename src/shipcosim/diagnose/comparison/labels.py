@@ -80,12 +80,12 @@ class Labels:
 
     @property
     def is_sure(self) -> bool:
-        """Whether it is known how they are wrong."""
+        """Whether the correction of the labels is known."""
         return self.is_wrong and not self.rivals
 
     @property
     def used(self) -> LabelHypothesis:
-        """The best reading where it is sure, else as logged."""
+        """The best reading if it is certain, else the logged one."""
         return self.best if self.is_sure else self.logged
 
 
@@ -129,7 +129,7 @@ class _Weighed:
         return self.drives < min(-SURELY_BRAKES, other.drives)
 
     def is_as(self, other: _Weighed) -> bool:
-        """Whether they do the same except for the number of changes."""
+        """Whether two readings have the same effect with a different number of changes."""
         # Undo the cost of changes: compare what the measures themselves give.
         cost = CHANGE_COST * (len(self.reading.changes) - len(other.reading.changes))
         return bool(np.abs(self.measures + cost - other.measures).max() < ALIKE)
@@ -284,7 +284,7 @@ def _by_agreement(weighed: Sequence[_Weighed]) -> Labels | None:
 
 
 def _is_contradicted(best: LabelHypothesis, logged: LabelHypothesis, axes: Sequence[Axis]) -> bool:
-    """Whether on an axis where a reading differs from the logged one that has surely the wrong sign."""
+    """True if the logged labels clearly give a wrong sign on an axis where this reading differs."""
     for axis in axes:
         if axis.is_driven(logged.commanded) and axis.is_changed(logged.commanded, best.commanded):
             # One gain for the logged commands, of any sign.

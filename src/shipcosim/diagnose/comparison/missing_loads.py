@@ -72,7 +72,7 @@ class MissingLoad:
 
     @property
     def is_large(self) -> bool:
-        """Whether it is so large beside what is needed, the model's loads and the noise, and felt in predictions.
+        """Whether the error is large against the needed load, the model's loads and the noise, and shows in predictions.
 
         A load that nobody predicts may be that of waves, which moves the ship to and fro and is no error of the model.
         """

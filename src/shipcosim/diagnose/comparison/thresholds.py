@@ -86,7 +86,7 @@ LIKELIHOOD_LAGS = (0.0, 0.5, 1.0, 2.0)
 ALIKE = 0.05
 """Readings are the same within this. [nats]"""
 MOST_WEIGHED = 15
-"""Readings beside the logged one of which foresight and likelihood are computed: those that fit best."""
+"""Most readings, the best-fitting ones, for which prediction and likelihood are computed beside the logged one."""
 UNLIKELIER = 5.0
 """Evidence by which the likelihood may be lower where the fit alone decides. [nats] Seeds 236 and 300, right labels."""
 BRAKES = 0.1

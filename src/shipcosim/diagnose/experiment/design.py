@@ -50,7 +50,7 @@ _ROOM = 3.0  # lengths that a ship may get away from where she started
 
 @dataclass(frozen=True)
 class ExperimentDesign:
-    """A manoeuvre that tells causes apart which the log could not."""
+    """A manoeuvre that separates causes that the log could not separate."""
 
     manoeuvre: str
     minutes: float

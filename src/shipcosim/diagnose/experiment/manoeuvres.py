@@ -33,7 +33,7 @@ _STEADY = 2.0  # steps: thrusters follow the plan that smoothly
 
 @dataclass(frozen=True)
 class Push:
-    """A thruster that does as planned while the DP controller leaves it alone.
+    """A thruster with a planned command, which the DP controller does not use.
 
     Attributes
     ----------

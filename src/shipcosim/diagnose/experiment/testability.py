@@ -200,7 +200,7 @@ def visible_sizes(excitation: Excitation) -> tuple[VisibleSize, ...]:
 
 
 def log_facts(problem: IdentificationProblem) -> dict[str, float | None]:
-    """What a log has of motion, thrust astern and wind, by the names of `FACTS`; None for what it does not have.
+    """Motion, thrust astern and wind of a log, by the names of `FACTS`; None for missing ones.
 
     Root mean squares of speed, surge and sway [m/s], of the acceleration in surge [m/s2] and of the rate of turn
     [deg/s]; the largest share of the log in which an azimuth thruster ran astern [1]; the mean wind speed [m/s].

@@ -229,7 +229,7 @@ def _cost(explained: ExplainedLog) -> float:
 
 
 def _bases(explained: ExplainedLog) -> list[Fit]:
-    """What a course is sought beside: nothing, and the best set of steady causes that may be named."""
+    """Sets beside which a course is sought: none, and the best set of steady causes that may be named."""
     nothing = without_causes(explained.fits)
     named = (
         fit for fit in explained.fits if fit.hypotheses and admissible(fit, explained.fits, {})
@@ -482,7 +482,7 @@ def _courses(edges: np.ndarray) -> Iterator[Course]:
 
 
 def _with_further_spells(blocks: _Blocks, one: _Try) -> _Try:
-    """A spell, or a step, with others beside it, each of which must gain what the search for it costs and more."""
+    """A spell or step with further ones; each must gain more than the cost of its search."""
     groups = screening_regressors(one.hypothesis)
     # Sums by block let further spells be tried without filtering again.
     own = blocks.places[one.hypothesis.label][groups.index(one.group)]

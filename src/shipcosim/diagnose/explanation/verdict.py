@@ -223,7 +223,7 @@ def with_craft(log: JudgedLog) -> JudgedLog:
 
 
 def usual_gain(model: ShipModel) -> float:
-    """What a cause gains where the ship's form is another than all that is known: as a reference says, or assumed."""
+    """Gain that an unknown form of the ship can give a cause: from a reference, or assumed."""
     if model.directions or not model.form_scale:
         return model.ordinary_errors.get(ANY_CAUSE, 0.0)
     return NULL_GAIN_OF_FORM
@@ -373,7 +373,7 @@ def _exceeds_special(hypothesis, fit, fits):
 
 
 def _is_special(one, general):
-    """Whether a cause is the simpler one that another contains."""
+    """Whether a cause is a simpler form of another one."""
     return one.cause == general.definition.special and one.component == general.component
 
 

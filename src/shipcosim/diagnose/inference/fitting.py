@@ -59,7 +59,7 @@ class IdentificationProblem:
 
     @property
     def basis(self) -> list[Regressor]:
-        """All known numbers, and what every hypothesis is first sought by."""
+        """Regressors of all known numbers, and of every hypothesis for the first search."""
         return self.known(()) + regressors_of(self.hypotheses)
 
     @property

@@ -118,7 +118,7 @@ MOST_WALK = 3e-5
 """Fastest random walk of the unexplained acceleration: some 400 N on a ship of 750 t in ten minutes. [m/s2.5] Left
 free, it swallowed every cause (prototypes)."""
 GUST_FACTOR = 10.0
-"""Times as fast may it walk where the wind is unknown. Assumed."""
+"""Factor on the random walk where the wind is unknown. Assumed."""
 TUNED_BESIDE = 3.0
 """Gain of a cause at first sight, above which noise is tuned beside it. [nats]"""
 NOISE_MARGIN = 1.5
@@ -126,7 +126,7 @@ NOISE_MARGIN = 1.5
 NOISE_WIDTHS = (2.0, 4.0, 8.0)
 """Widths of the kernels that they are compared with. [rows]"""
 SOUND = 0.98
-"""Share of the rows that is taken to be sound where they are compared. Assumed."""
+"""Assumed share of sound rows in a comparison. Assumed."""
 
 # Predictions
 

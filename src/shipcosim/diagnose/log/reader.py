@@ -180,7 +180,7 @@ def _stated(channel: Channel, name: str, columns: LogColumns) -> str:
 
 
 def _sure(columns: LogColumns, proposal: Proposal) -> dict[str, Channel]:
-    """Channels by names that have one meaning; an error that says what could be written where they do not do."""
+    """Channels by unambiguous names; an error with a proposal if these are not enough."""
     mapping = proposal.channels()
     source = columns.source
     doubled = [

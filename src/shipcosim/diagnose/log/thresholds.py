@@ -106,7 +106,7 @@ USUAL_STEP = (0.5, 8.0)
 UNEXPLAINED_COST = 14.0
 """Cost of something that no combination of two changes explains. [nats] Assumed."""
 FEWEST_WIND_ROWS = 100
-"""Rows with wind that it takes to hear it. Assumed."""
+"""Fewest rows with wind for the wind to count. Assumed."""
 WIND_ROWS = 4.0
 """Standard deviation of the bell over the velocity that the wind is compared with, in rows: wind sensors average."""
 WIND_SCALE = 0.2
@@ -117,7 +117,7 @@ MOST_OF_WIND = 10.0
 """Most that the wind says against a reading: it turns of itself, too, and must not silence what position and heading
 say, so it is less than UNEXPLAINED_COST. [nats] Assumed."""
 THROUGHOUT = 0.75
-"""Share of a log, by what its parts say, in which a reading holds that is one of all of it. Assumed."""
+"""Share of a log, by its parts, in which a reading must hold to count for the whole log. Assumed."""
 UNLABELLED = 0.95
 """Such a share where both labels are compared, by the logarithms of their residuals in each part.
 Drawn boats (tests/bench/mistakes, seeds 3000 to 3024): 1.00 in all 293 with a label that is wrong throughout; where it
@@ -129,7 +129,7 @@ MOST_SURE = 0.998
 LEFT_OPEN = 0.5
 """Probability of something that no reading explains, above which nothing is reported."""
 UNLIKELY_READING = 0.02
-"""Probability below which a reading is not said beside others."""
+"""Probability below which a reading is not listed as an alternative."""
 MOST_ALTERNATIVES = 6
 """Readings that are reported beside another."""
 

@@ -28,7 +28,7 @@ TEN_MILLIONTHS = "1e-7 deg"
 """Spelling of the unit of latitudes and longitudes that autopilots write as whole numbers."""
 LARGEST = {"latitude": 90.0, "longitude": 180.0}
 NOT_AVAILABLE = {"latitude": 91.0, "longitude": 181.0, "heading": 511.0, "speed_over_ground": 102.3}
-"""Numbers by which AIS says that there is no value. ITU-R M.1371-5, table 48. [deg, deg, deg, kn]"""
+"""Numbers by which AIS marks a missing value. ITU-R M.1371-5, table 48. [deg, deg, deg, kn]"""
 _STEPS = (
     SHORTEST_STEP,
     90.0,

@@ -87,7 +87,7 @@ def with_right_clock(found: Identification) -> Identification:
 
 
 def with_right_wind(found: Identification) -> Identification:
-    """The log with a mislabelled wind read as the ship's response says: what it is instead, and where."""
+    """The log with a mislabelled wind corrected by the ship's response: the label, and its segment."""
     for place, fault in enumerate(found.faults):
         if fault.mislabel in WIND_LABELS and len(fault.segments) < 2:
             found = _with_right_wind_label(found, place)
@@ -116,7 +116,7 @@ def _with_right_wind_label(found, place):
 
 
 def _is_told_by_the_ship(problem, logged):
-    """Whether the ship answers a log with a label corrected, as the problem has it, and not one as logged."""
+    """Whether the ship's response supports the corrected label and not the logged one."""
     return (
         likelihood(problem, problem.record)
         > likelihood(problem, record_of(logged, problem.model)) + PART_GAIN

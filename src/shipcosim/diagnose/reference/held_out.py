@@ -84,7 +84,7 @@ def sizes_by_log(
 
 
 def weather_of(fit: JointFit, name: str, hypotheses: Sequence[Hypothesis]) -> list[Finding]:
-    """Those of some causes that are of the day of one log, as all logs together have them."""
+    """Causes that belong to the day of one log, from the fit of all logs."""
     own = {hypothesis.cause for hypothesis in hypotheses if hypothesis.component == name}
     return [
         finding

@@ -27,7 +27,7 @@ def is_of_day(hypothesis: Hypothesis) -> bool:
 
 
 def of_log(hypothesis: Hypothesis, name: str) -> Hypothesis:
-    """A cause of the day as that of one log: its component is the log's name, which its numbers have before theirs."""
+    """A cause of the day for one log: the log's name is its component and the prefix of its numbers."""
     parameters = (
         replace(parameter, paths=tuple(f"{name}{_SEPARATOR}{path}" for path in parameter.paths))
         for parameter in hypothesis.parameters

@@ -350,7 +350,7 @@ def _column(log: xarray.Dataset, role: str, rows: int) -> np.ndarray:
 
 
 def _unit(log, name, model, rows, remarks):
-    """Speed or thrust of a thruster and its direction, and where they are known."""
+    """Speed or thrust of a thruster and its direction, and the rows in which they are known."""
     # The drive of a thruster is its speed in rev/s, or its thrust if this is logged instead.
     speed = _column(log, f"{name}_rpm", rows) / 60.0
     direction = _column(log, f"{name}_azimuth", rows) * np.pi / 180.0
@@ -435,7 +435,7 @@ def averaged(series: np.ndarray) -> np.ndarray:
 
 
 def _filled(series: np.ndarray) -> np.ndarray:
-    """The series with linear interpolation where it has no value."""
+    """The series with missing values interpolated linearly."""
     whole = np.isfinite(series)
     if not whole.any():
         return np.zeros_like(series)

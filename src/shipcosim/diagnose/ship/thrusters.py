@@ -44,7 +44,7 @@ class DpThruster(NamedTuple):
 
     @property
     def pushes_sideways(self) -> bool:
-        """Whether it is one across the ship, as in a tunnel."""
+        """Whether the thruster pushes across the ship, as in a tunnel."""
         return not self.pointed and bool(abs(np.cos(self.axis)) < 0.5)
 
 

@@ -40,7 +40,7 @@ def tolerances_of(system: System, parts: Mapping[str, Any], vessel: str) -> dict
 
 
 def _assumed(values: Any, item: Field, value: float) -> float:
-    """Tolerance of a number of which nobody says how well it is known: its own, or a share of its size."""
+    """Assumed tolerance of a number without a stated one: that of its model, or a share of its size."""
     # Tolerances scale with the value relative to the default; a share is of the value itself.
     about = item.metadata
     if about["tolerance"]:

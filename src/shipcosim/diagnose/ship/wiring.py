@@ -1,4 +1,4 @@
-"""Connections of thrusters that are not as their connectors' names say; whether they are wrong, the log decides."""
+"""Connections of thrusters that contradict the names of their connectors; the log decides whether they are wrong."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -224,7 +224,7 @@ class _Model:
     known: Any
 
     def predictor(self, number, original):
-        """The model with what one of its observers knew."""
+        """The model with the estimates of one of its observers."""
         return Predictor(
             self.record,
             self.model,

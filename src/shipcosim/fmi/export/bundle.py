@@ -20,7 +20,7 @@ WEIGHTS = "weights"
 
 @dataclass
 class Module:
-    """One module that goes into the FMU."""
+    """One Python module that is packed into the FMU."""
 
     name: str
     path: Path

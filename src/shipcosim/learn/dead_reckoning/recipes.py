@@ -202,4 +202,4 @@ KINDS: dict[str, tuple[str, Callable[[Progress], Trained]]] = {
         *UNLEARNED.items(),
     )
 }
-"""Kinds by name: one line for users, and what trains it."""
+"""Kinds by name: one line for users, and the function that trains it."""

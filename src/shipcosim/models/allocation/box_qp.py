@@ -220,7 +220,7 @@ def _solve_many(request, commands, slack, start):
 
 
 def _goes_on(more, done):
-    """Whether there is another round: not where all elements are done."""
+    """Whether there is another round: not if all elements are done."""
     return more & ~done if hasattr(done, "maths") else more and not bool(done.all())
 
 

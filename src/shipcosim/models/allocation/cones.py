@@ -353,7 +353,7 @@ def _sent(memory, state, gaps, design):
 
 
 def _shifted(memory, state, gaps, design):
-    """The problem with the present intervals: of a unit that shifts it is where the plan has it."""
+    """The problem with the present intervals; a unit that changes its interval has that of the plan."""
     zero = 0.0 * memory.waited
     within = _within(design, memory.half_turns)
     units = []

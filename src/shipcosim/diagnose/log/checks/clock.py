@@ -239,7 +239,7 @@ def evidence_of_rate(match: Any, energy: Any) -> tuple[Any, Any, Any]:
 
 
 def _refined(sides, first, last, cost):
-    """The segment with its ends where the evidence puts them."""
+    """The segment with its ends at the largest evidence."""
     time = sides[0].motion.time
     # Coarse then fine search: move one end at a time to the place of most evidence.
     for reach, stride in ((3 * CLOCK_REACH, 6), (CLOCK_REACH // 2, 1)):

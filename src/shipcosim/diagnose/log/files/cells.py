@@ -25,7 +25,7 @@ _FILLERS = (
     -32768.0,
     32767.0,
 )
-"""Numbers that loggers write where they have none."""
+"""Numbers that loggers write for missing values."""
 
 
 _MOST_DAMAGED = 0.01  # share of a column's cells that may be no numbers; more make it a column of texts. Assumed.

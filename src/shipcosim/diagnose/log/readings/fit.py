@@ -186,7 +186,7 @@ def likeliest_fits(
 
 
 def _fit(seen, told, axes, offset):
-    """The factor that leaves least of white rows, those that it does not explain at all counting little.
+    """The factor with the smallest residual of white rows; outliers count little.
 
     `offset`: of the logarithm of the likelihood, by the whitening.
     """

@@ -59,7 +59,7 @@ class Evidence:
     courses: dict[float, dict[tuple[bool, bool], complex]] = field(default_factory=dict)
 
     def relation_of(self, reading: LogInterpretation) -> Relation | None:
-        """Position against velocity, as a reading has it."""
+        """Relation of position and velocity under a reading."""
         return self.position.get((reading.heading_unit, reading.degrees), {}).get(reading.form)
 
 

@@ -84,7 +84,7 @@ def explained(log: dict) -> float:
 
 
 def is_as_labelled(log: dict, stated: dict[str, str]) -> bool:
-    """Whether no reading of a log, except for its clock, is likelier than the one that its labels say.
+    """Whether the logged labels are the likeliest reading, apart from the clock.
 
     Parameters
     ----------
@@ -288,7 +288,7 @@ def _clock(change, readings):
 
 
 def _left_open(rests, rates):
-    """One finding of several readings that explain a log alike: the likeliest, and the others beside it."""
+    """One finding of several readings that explain a log equally well: the likeliest, and the others as alternatives."""
     # The likeliest non-empty set leads; the others are its alternatives.
     (first, share), *others = sorted(rests.items(), key=lambda entry: (not entry[0], -entry[1]))
     words = {rest: _words(rest, rates[rest]) for rest in rests}
