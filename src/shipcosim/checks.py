@@ -286,7 +286,7 @@ def check_osp_scenario(path: Path) -> list[Problem]:
 
 
 def _is_log(path: Path) -> bool:
-    """Whether a table has a column of the navigation, by its name, so that it reads as measured data."""
+    """Whether a table has a column of the navigation, by its name, and so counts as measured data."""
     from shipcosim.diagnose.log.names.proposal import propose
     from shipcosim.diagnose.log.reader import columns_of
     from shipcosim.diagnose.log.roles import NAVIGATION

@@ -330,7 +330,7 @@ def replay(
 def _replayed_systems(
     given: AnySystem, before: AnySystem | None, parameters: Sequence[AnyPath]
 ) -> tuple[dict[str, System], list[Problem]]:
-    """The systems of a replay by what they are: ``before`` and ``after``, or the one alone; remarks on the sets."""
+    """The systems of a replay, ``before`` and ``after`` or a single one, with remarks on the parameter sets."""
     reading = Reading()
     system = reading.system(given, "system")
     if parameters:

@@ -46,7 +46,7 @@ class Course:
         """Share of the work that is done, 0 to 1."""
 
     def reached(self, step: str, done: float | None = None, total: float | None = None) -> None:
-        """Say which step the work is at, and how many parts of it are done; steps that are not planned are no share."""
+        """Report the present step, and how many parts of it are done; unplanned steps have no share."""
         if step not in self._steps:
             return
         names = list(self._steps)

@@ -24,7 +24,7 @@ WHAT = {
 def find(
     kind: str, given: StrPath, option: str = "", near: StrPath | None = None, build: bool = True
 ) -> Path:
-    """Path of what a user means.
+    """Path of the thing that a name or path means.
 
     Parameters
     ----------

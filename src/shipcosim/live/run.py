@@ -306,7 +306,7 @@ class LiveRun:
         return _State(fmus, arrays, [[m.active for m in modifiers_in(e)] for e in exchanges])
 
     def _go_back(self, to: int) -> None:
-        """Go to a state at or before a step, and on to it; forget what was done from it on."""
+        """Go back to a step, by a state at or before it; later changes are discarded."""
         if self._no_way_back or not self._states:
             raise ValueError("there is no state")
         # The latest state at or before the step: FMUs first, then the values that are exchanged.

@@ -96,7 +96,7 @@ class Writer:
     """Writes the blocks of a recording as C."""
 
     apart: tuple[str, ...] = ("guard", "call", "loop", "carried")
-    """Values that are no assignment; a carried one is declared at the head of its loop."""
+    """Values without an assignment of their own; a carried one is declared at the head of its loop."""
 
     def __init__(self, step: Step):
         self.step = step

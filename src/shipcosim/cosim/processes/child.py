@@ -38,7 +38,7 @@ def send(pipe: BinaryIO, message: object) -> None:
 
 
 def receive(pipe: BinaryIO) -> Any:
-    """Read a message from a pipe. Raises EOFError where the other end is closed, Garbled where it is no message."""
+    """Read a message from a pipe. Raises EOFError if the other end is closed, Garbled if the message is damaged."""
     head = pipe.read(len(MARK) + 8)
     # Without the mark the length may be any number, and reading would not end.
     if not head.startswith(MARK[: len(head)]):

@@ -38,7 +38,7 @@ class SlaveError(Exception):
 
 
 class RunEnded(SlaveError):
-    """An FMU asks to end the simulation, which is no failure."""
+    """An FMU asks to end the simulation; this does not count as a failure."""
 
     def __init__(self):
         super().__init__("It asks to end the simulation.")

@@ -138,7 +138,7 @@ def _best(found: _HeldOut, tries, normal: Normal, logs) -> list[int] | None:
 
 
 def _drives(logs: Sequence[CraftLog], normal: Normal, free: Sequence[int]) -> bool:
-    """Whether these numbers are no ship's: the water would drive her, or her mass matrix is not positive."""
+    """Whether the numbers are impossible: the water would drive the ship, or her mass matrix is not positive."""
     # A positive definite mass matrix, and a hull that takes energy rather than gives it.
     values = normal.values(normal.solved(free)[-1])
     model = with_numbers(logs[0].model, normal.numbers, values)

@@ -264,7 +264,7 @@ def _fitted(problem, hypotheses, values, rounds):
 
 
 def _impossible(problem, hypotheses, values, columns, about_it) -> Fit:
-    """The fit of a ship whose loads are no numbers along the log: infinitely unlikely."""
+    """The fit of a ship whose loads are not finite along the log: infinitely unlikely."""
     # Without information from the log the posterior is the prior.
     covariance = np.diag([column.prior**2 for column in columns])
     rest = (columns, about_it.products, about_it.centre, covariance, about_it.centre)

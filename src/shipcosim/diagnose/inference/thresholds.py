@@ -126,7 +126,7 @@ NOISE_MARGIN = 1.5
 NOISE_WIDTHS = (2.0, 4.0, 8.0)
 """Widths of the kernels that they are compared with. [rows]"""
 SOUND = 0.98
-"""Assumed share of sound rows in a comparison. Assumed."""
+"""Share of sound rows in a comparison. Assumed."""
 
 # Predictions
 

@@ -20,7 +20,7 @@ CIRCLES = 540.0
 SWINGS = 3
 """Changes of the helm of a zig-zag that can be used. [1]"""
 LONGEST_SWING = 20.0
-"""Way from one change of the helm to the next, above which it is no zig-zag. [ship lengths]"""
+"""Largest distance between changes of the helm in a zig-zag. [ship lengths]"""
 REVERSED = 2.0
 """Way over which the helm of a zig-zag is put over from side to side. [ship lengths]"""
 SETTLED = 15.0

@@ -225,7 +225,7 @@ def loads_at(u_a: Arithmetic, *, propeller: PropellerParameters) -> Callable[[Ar
 
 
 def bollard_torque(n: Arithmetic, *, propeller: PropellerParameters) -> Arithmetic:
-    """Torque at bollard, which is no speed of advance.
+    """Torque at bollard, without speed of advance.
 
     Parameters
     ----------

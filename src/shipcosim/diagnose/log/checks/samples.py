@@ -1,4 +1,4 @@
-"""Samples that are no measurement: rows that are missing, held or filled in, headings interpolated across north."""
+"""Samples without a measurement: missing, held or filled rows, and headings interpolated across north."""
 
 from dataclasses import dataclass
 
@@ -261,7 +261,7 @@ def _straight(values, role):
 
 
 def quantum(values: np.ndarray) -> float:
-    """Resolution of a channel: the smallest step between its values that is no rounding error; 0 if it is fine."""
+    """Resolution of a channel: the smallest step between its values above rounding errors; 0 if it is fine."""
     # Smallest step between levels. A channel in which most values differ has no visible resolution.
     levels = np.unique(finite(values))
     steps = np.diff(levels)

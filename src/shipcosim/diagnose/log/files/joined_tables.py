@@ -17,7 +17,7 @@ _TABLES = (".csv", ".txt", ".tsv", ".dat", ".csv.gz", ".xlsx", ".parquet")
 
 
 def tables_in(path: Path) -> dict[str, Path]:
-    """Files of tables in a folder, by their names; none of a path that is no folder."""
+    """Files of tables in a folder, by their names; empty for other paths."""
     files = sorted(path.iterdir()) if path.is_dir() else []
     tables = [file for file in files if file.is_file() and file.name.lower().endswith(_TABLES)]
     names = [_without_ending(file.name) for file in tables]

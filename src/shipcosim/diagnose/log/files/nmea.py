@@ -319,7 +319,7 @@ def _times(source: str, read: _Read) -> tuple[np.ndarray, list[str]]:
 
 
 def _with_dates(timed: list[tuple[int, Values]]) -> tuple[np.ndarray, list[str]]:
-    """Times of day as times that go on past midnight, over whole days too where sentences have a date. [s]"""
+    """Continuous times from times of day: past midnight, and over whole days if sentences have a date. [s]"""
     # Clock times go on past midnight; dates then show whole days that were not logged.
     seconds, said = seconds_of_clock(np.array([values["clock"] for _, values in timed]))
     dated = np.array([k for k, (_, values) in enumerate(timed) if "date" in values], int)

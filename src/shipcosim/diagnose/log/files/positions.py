@@ -23,7 +23,7 @@ _TEXT = re.compile(
 
 
 def is_minutes(values: np.ndarray, largest: float) -> bool:
-    """Whether numbers are no degrees, and can be degrees times 100 plus minutes.
+    """Whether numbers cannot be degrees, but can be degrees times 100 plus minutes.
 
     Parameters
     ----------
