@@ -5,6 +5,7 @@ The hook of the site (`site_hooks.py`) puts them where a page says ``<!-- genera
 `TABLES`. Nothing is stored: a page is what the code is when the site is built.
 """
 
+import ast
 import functools
 import importlib
 import re
@@ -404,6 +405,18 @@ def live_file() -> str:
     return live_page(system, scenario)
 
 
+def folders() -> str:
+    """Every folder of the code with the first line of its `__init__.py`."""
+    code = ROOT / "src" / "shipcosim"
+    rows = []
+    for file in sorted(code.rglob("__init__.py")):
+        lines = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8")))
+        folder = file.parent.relative_to(code).as_posix()
+        if folder != "." and lines:
+            rows.append([f"`{folder}`", _escaped(lines.partition("\n")[0])])
+    return table(["folder", "holds"], rows)
+
+
 TABLES: dict[str, Callable[[], str]] = {
     "commands": commands,
     "fmus": fmus,
@@ -411,6 +424,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "causes": causes,
     "python_api": python_api,
     "exit_codes": exit_codes,
+    "folders": folders,
     "live_ship": live_ship,
     **{f"format_{kind}": format_of(kind) for kind in RECORDS},
 }

@@ -2,11 +2,13 @@
 
 `python docs/generators/sentences.py` prints a table: page, words, median and 90th percentile of the length of its
 sentences, the longest one, turns of phrase of `PLAIN` that it has. `--show PAGE` prints its longest sentences and these.
+`--draw 50 --seed 1` prints fifty random sentences of pages, messages and first lines of docstrings, to be judged.
 """
 
+import argparse
 import ast
+import random
 import re
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from statistics import median
@@ -46,6 +48,11 @@ PLAIN = {
     r"\bbut for\b": "except",
     r"\bnameless\b": "unmodelled",
     r"\btelegrams?\b": "message",
+    r"\bdearer\b": "takes more time",
+    r"\bhardly meant\b": "implausible",
+    r"\bwhat is to be said\b": "remarks",
+    r"\bwhat is felt\b": "the measured force",
+    r"\bsails otherwise\b": "sails differently",
 }
 """Turns of phrase of ours that readers had to read twice, and what to write instead."""
 
@@ -93,6 +100,32 @@ def message_sentences() -> list[str]:
         if not is_docstring and text.rstrip().endswith((".", "?"))
         for one in sentences(text)
     ]
+
+
+def pool() -> dict[str, list[tuple[str, str]]]:
+    """Where each sentence stands, and the sentence, by kind: those of docs, of messages, first ones of docstrings."""
+    found: dict[str, list[tuple[str, str]]] = {"docs": [], "message": [], "docstring": []}
+    for page in pages():
+        if "docs" in page.parts:
+            where = page.relative_to(ROOT).as_posix()
+            texts = sentences(page.read_text(encoding="utf-8"))
+            found["docs"] += [(where, one) for one in texts]
+    for where, text, is_docstring in texts_of_code():
+        if is_docstring:
+            found["docstring"].append((where, " ".join(text.partition("\n\n")[0].split())))
+        elif text.rstrip().endswith((".", "?")):
+            found["message"] += [(where, one) for one in sentences(text)]
+    return found
+
+
+def drawn(count: int, seed: int) -> list[tuple[str, str, str]]:
+    """Random sentences: kind, where, sentence. Each kind has an equal share; the same seed gives the same ones."""
+    generator = random.Random(seed)
+    chosen = []
+    for number, (kind, texts) in enumerate(pool().items()):
+        share = count // 3 + (number < count % 3)
+        chosen += [(kind, *one) for one in generator.sample(sorted(set(texts)), share)]
+    return chosen
 
 
 def prose(text: str) -> list[str]:
@@ -168,4 +201,15 @@ def main(shown: str = "") -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[2] if sys.argv[1:2] == ["--show"] else "")
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--show", default="", metavar="PAGE")
+    parser.add_argument("--draw", type=int, default=0, metavar="COUNT")
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    if options.draw:
+        for number, (kind, where, sentence) in enumerate(
+            drawn(options.draw, options.seed), start=1
+        ):
+            print(f"{number:3} {kind} {where}\n    {sentence}")
+    else:
+        main(options.show)

@@ -41,6 +41,8 @@ def elsewhere() -> dict[str, str]:
 
 
 BELOW = {
+    "dp-loop.md": ["dp-loop"],
+    "dp-sensors.md": ["dp-sensors"],
     "thruster-failures.md": ["thruster-failures"],
     "manoeuvres.md": ["manoeuvres"],
     "interoperability.md": ["interoperability"],

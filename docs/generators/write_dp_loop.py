@@ -1,4 +1,4 @@
-"""Writes what docs/dp-loop.md shows: the table of margins, and the picture of loop gains and sensitivities.
+"""Writes docs/generated/dp-loop.md, the table of margins, and the picture of loop gains and sensitivities.
 
 Run `python docs/generators/write_dp_loop.py` after observer, control law or their parameters have changed.
 """
@@ -23,8 +23,13 @@ sys.path[:0] = [str(ROOT / "tests")]
 
 from wave_suppression import wave_suppression  # noqa: E402
 
-PAGE, PICTURE = ROOT / "docs" / "dp-loop.md", ROOT / "docs" / "images" / "dp-loop.png"
-BEGIN, END = "<!-- table of the margins -->\n", "<!-- end of the table -->"
+PAGE = ROOT / "docs" / "generated" / "dp-loop.md"
+PICTURE = ROOT / "docs" / "images" / "dp-loop.png"
+TITLE = """# Margins of the DP loop
+
+By peak period of the waves and axis. `python docs/generators/write_dp_loop.py` makes this table.
+
+"""
 COLUMNS = (
     "peak period [s]",
     "axis",
@@ -107,13 +112,9 @@ def draw(found, picture=PICTURE):
 
 
 def write_dp_loop():
-    """Puts the table into the page and draws the picture."""
+    """Write the table and draw the picture."""
     found, law = loops()
-    text = PAGE.read_text(encoding="utf-8")
-    before, after = text.split(BEGIN)[0], text.split(END)[1]
-    PAGE.write_text(
-        before + BEGIN + HEAD + "".join(rows(found, law)) + END + after, encoding="utf-8"
-    )
+    PAGE.write_text(TITLE + HEAD + "".join(rows(found, law)), encoding="utf-8")
     draw(found)
 
 

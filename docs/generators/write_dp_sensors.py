@@ -1,4 +1,4 @@
-"""Writes what docs/dp-sensors.md shows: the table of the scenarios in scenarios/sensors, and a picture of two.
+"""Writes docs/generated/dp-sensors.md, the table of the scenarios in scenarios/sensors, and a picture of two.
 
 Run `python docs/generators/write_dp_sensors.py` after sensors, voting or controller have changed. Each row is a run of
 a scenario as it stands.
@@ -22,8 +22,14 @@ ROOT = Path(__file__).resolve().parents[2]
 SCENARIOS = ROOT / "scenarios" / "sensors"
 SHOWN = ("all_references_lost", "reference_drifts")
 """Scenarios in the picture."""
-PAGE, PICTURE = ROOT / "docs" / "dp-sensors.md", ROOT / "docs" / "images" / "dp-sensors.png"
-BEGIN, END = "<!-- table of the scenarios -->\n", "<!-- end of the table -->"
+PAGE = ROOT / "docs" / "generated" / "dp-sensors.md"
+PICTURE = ROOT / "docs" / "images" / "dp-sensors.png"
+TITLE = """# What happens in each failure of a sensor
+
+Runs of the scenarios in [scenarios/sensors](../../scenarios/sensors), after the ship has settled. \
+Times count from the first failure. `python docs/generators/write_dp_sensors.py` makes this table.
+
+"""
 REJECTED = [f"position_{i}_rejected" for i in (1, 2, 3)] + [
     "compass_1_rejected",
     "compass_2_rejected",
@@ -56,7 +62,7 @@ def row(scenario, table):
     found = f"{table['time'].values[np.argmax(seen)] - failed:.1f}"
     name = scenario.path.stem
     return (
-        f"| [{name}](../scenarios/sensors/{name}.toml) | {scenario.description} | {found} | {said or '-'} | "
+        f"| [{name}](../../scenarios/sensors/{name}.toml) | {scenario.description} | {found} | {said or '-'} | "
         f"{distance:.2f} | {turn:.2f} | {reckoned:.0f} | {'yes' if held else 'NO'} |"
     )
 
@@ -103,7 +109,6 @@ if __name__ == "__main__":
     )
     head = f"| {' | '.join(columns)} |\n"
     rows = "\n".join(row(*one) for one in runs.values())
-    before, _, rest = PAGE.read_text(encoding="utf-8").partition(BEGIN)
-    text = f"{before}{BEGIN}{head}|---|---|---|---|---|---|---|---|\n{rows}\n{END}{rest.partition(END)[2]}"
+    text = f"{TITLE}{head}|---|---|---|---|---|---|---|---|\n{rows}\n"
     PAGE.write_text(text, encoding="utf-8")
     draw(*(runs[name][1] for name in SHOWN))

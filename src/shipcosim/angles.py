@@ -10,7 +10,7 @@ TURN = 2.0 * pi
 
 
 def wrap(angle: Any) -> Any:
-    """The same angle in [-π, π); one that lies there already comes back as it is.
+    """Wrap an angle into [-π, π); an angle that lies there already comes back unchanged.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def wrap(angle: Any) -> Any:
 
 
 def wrap_series(angle: Any, turn: float = 360.0) -> Any:
-    """The same angles in [-turn/2, turn/2), by NumPy's remainder.
+    """Wrap angles into [-turn/2, turn/2), by NumPy's remainder.
 
     `wrap` leaves an angle within its range as it is; here every angle is rounded by the remainder alike.
 

@@ -1,4 +1,4 @@
-"""What is wrong with a file of any kind that the commands take."""
+"""Checks of files of all kinds that the commands take."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ OF_SHIP = {"particulars", "thrusters"}
 OF_STUDY = {"factor", "quantity", "sample", "extends", "scenario"}
 OF_CAUSE = {"cause", "sentence"}
 OF_SCENARIO = {"system", "stop_time", "step_size", "events", "expect", "set"}
-"""Keys that only a .toml of one kind has."""
+"""Keys that identify a kind of .toml file."""
 OSP_SCENARIOS = (".json", ".yaml", ".yml")
 NEAR = 1 << 16  # bytes: before its events a scenario has a description and defaults
 TABLES = (".csv", ".csv.gz", ".nc", ".parquet")
@@ -79,14 +79,14 @@ def _names_events(path: Path) -> bool:
 
 
 def check_ship_file(path: Path) -> list[Problem]:
-    """What is missing or impossible of a ship, as her file describes her."""
+    """Problems of a ship file: missing and impossible numbers."""
     from shipcosim.ships.check import check_ship
 
     return check_ship(str(path))
 
 
 def estimates_in(file: str) -> list[tuple[str, ...]]:
-    """What is estimated of a ship, as rows of text: number, value, tolerance, source; none for other files."""
+    """Estimated numbers of a ship as rows of text: number, value, tolerance, source; none for other files."""
     path = Path(file)
     if not _is_ship(path):
         return []
@@ -128,7 +128,7 @@ def is_scenario(path: Path) -> bool:
 
 
 def _keys_of(path: Path) -> set[str]:
-    """Keys of the outermost table; none of a file that is no text, of which its reader says what is wrong."""
+    """Keys of the outermost table; empty for a file that is not text, which its reader reports."""
     from shipcosim.scenario import toml_of
 
     try:
@@ -184,7 +184,7 @@ def check_study_file(path: Path) -> list[Problem]:
 
 
 def _host_problems(file: str, path: Path, hosts: Iterable[str]) -> list[Problem] | None:
-    """What tools would make of a system, or of a scenario's with the FMUs that it swaps; None for other files."""
+    """How other tools would interpret a system, or a scenario's system with its exchanged FMUs; None for other files."""
     from shipcosim.scenario import check_files, read_scenario
     from shipcosim.ssp.portability.check import check_for
 
@@ -286,7 +286,7 @@ def check_osp_scenario(path: Path) -> list[Problem]:
 
 
 def _is_log(path: Path) -> bool:
-    """Whether a table has a column of the navigation, by its name, so that it reads as measured data."""
+    """Whether a table has a column of the navigation, by its name, and so counts as measured data."""
     from shipcosim.diagnose.log.names.proposal import propose
     from shipcosim.diagnose.log.reader import columns_of
     from shipcosim.diagnose.log.roles import NAVIGATION

@@ -77,7 +77,7 @@ def is_text(head: bytes) -> bool:
 
 
 def is_comment(line: str) -> bool:
-    """Whether a line is none of the table."""
+    """Whether a line is no part of the table."""
     return line.lstrip().startswith(_MARKS)
 
 
@@ -114,7 +114,7 @@ def header_of(name: str, unit: str) -> str:
 
 
 def name_in(text: str) -> str:
-    """Name of a column of which `header_of` has made a text; other texts stay as they are."""
+    """Name of a column from the text of `header_of`; other texts stay unchanged."""
     if len(text) < 2 or not text.startswith('"') or not text.endswith('"'):
         return text
     try:
@@ -169,7 +169,7 @@ def is_figure(cell: str) -> bool:
 
 
 def seconds_of_spans(cells: Any) -> np.ndarray | None:
-    """Spans of time as pandas, Python and ISO 8601 write them, as seconds; None where a cell is none.
+    """Time spans of pandas, Python and ISO 8601 in seconds; None if a cell is no time span.
 
     Parameters
     ----------

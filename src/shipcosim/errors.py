@@ -217,7 +217,7 @@ def suggestion(name: str, known: Iterable[str]) -> str:
 
 
 def it_has(name: str, known: Iterable[str]) -> str:
-    """Remedy for a name that something does not have: what it has, and the nearest of it.
+    """Remedy for an unknown name: the known names, and the nearest one.
 
     Parameters
     ----------

@@ -214,7 +214,7 @@ def _suffix(path: str | os.PathLike, known: Iterable[str]) -> str:
 
 
 def write_file(path: str | os.PathLike, content: bytes) -> None:
-    """Write a file so that it is there completely or not at all.
+    """Write a file completely or not at all.
 
     Parameters
     ----------
@@ -533,7 +533,7 @@ def _cells(path: Path, text: str) -> tuple[list[list[str]], str]:
 
 
 def _without_comments(text: str) -> str:
-    """The text without lines with # above its header; where numbers follow at once, the last of them are names, units."""
+    """Text without the comment lines above its header; without a header the last comments give names and units."""
     lines = text.splitlines(keepends=True)
     is_above = [not line.strip() or line.startswith("#") for line in lines]
     if not text.startswith("#") or all(is_above):
@@ -604,7 +604,7 @@ def _seconds_in(unit: str, path: Path) -> float:
 
 
 def _plain(values: np.ndarray | tuple[str, ...]) -> tuple[np.ndarray, bool]:
-    """Values of a column, as numbers where they are; and whether they are stamps, which become seconds."""
+    """Values of a column as numbers if possible; and whether they are time stamps, which become seconds."""
     values = np.asarray(values, object) if isinstance(values, tuple) else values
     if values.dtype.kind in "fiub":
         return values.astype(float), False

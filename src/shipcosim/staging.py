@@ -1,4 +1,4 @@
-"""Files of results: all are there afterwards, or none of them has changed; earlier ones are kept beside them.
+"""Files of results: either all are written or none changes; earlier ones are kept.
 
 What an earlier run left under the same names moves into a numbered folder beside the results, which hold the newest,
 unless it is said to be replaced.
@@ -106,7 +106,7 @@ def staged(folder: Path, replaced: Iterable[str] = (), *, force: bool = False) -
 
 
 def set_aside(folder: Path, names: Iterable[str], *, force: bool = False) -> None:
-    """Move what there is of earlier results into a numbered folder beside theirs, and say so, unless they are replaced.
+    """Move earlier results into a numbered folder and report it, unless they are replaced.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def set_aside(folder: Path, names: Iterable[str], *, force: bool = False) -> Non
 
 
 def set_file_aside(path: Path, *, force: bool = False) -> None:
-    """The same with a single file: ``state.bin`` becomes ``state-1.bin``."""
+    """Rename an earlier file: ``state.bin`` becomes ``state-1.bin``."""
     if path.is_file() and not force:
         aside = numbered(path.resolve())
         os.replace(path, aside)

@@ -1,4 +1,4 @@
-"""Temporary folders that do not stay where a process is killed: the next one clears them away.
+"""Temporary folders; the next process removes those of a killed one.
 
 Results move from such a folder into their place. A process that is killed meanwhile leaves the list of the moves, and
 the next one makes those that are missing.
@@ -64,7 +64,7 @@ def replace_file(path: Path, content: bytes) -> None:
 
 
 def exchange(stage: Path, folder: Path, names: Iterable[str], *, keep: bool) -> None:
-    """Put new files in the place of earlier ones: all of them or, where it fails, none.
+    """Replace earlier files by new ones: all of them or, on failure, none.
 
     Parameters
     ----------

@@ -461,7 +461,7 @@ def number_in(text: str, target: Unit | None, *, difference: bool = False) -> fl
 
 
 def value_of(text: str) -> Any:
-    """Value of a text that somebody typed, as TOML has it; what is no TOML is text.
+    """Value of a typed text, read as TOML; other text stays text.
 
     Examples
     --------
@@ -497,7 +497,7 @@ def seconds(given: str | float) -> float:
     >>> seconds("1.5 min"), seconds("90"), seconds(90.0)
     (90.0, 90.0, 90.0)
     """
-    remedy = "Give seconds, or such as '10 min'."
+    remedy = "Give seconds, or a text with a unit, such as '10 min'."
     try:
         number = float(given)
     except ValueError:
@@ -527,7 +527,7 @@ def whole_steps(duration: float, step_size: float) -> int | None:
 
 
 def _same_kind(source: Unit, target: Unit) -> bool:
-    """Whether an amount in one unit can be meant where the other is wanted.
+    """Whether an amount in one unit can stand for an amount in the other.
 
     An angle is no ratio, but files that define rad or deg without the radian mean the angle.
     """
@@ -542,7 +542,7 @@ _IN_PINT: dict[str, str] = dict(zip(_NAMES, BASE_UNITS, strict=True))
 
 
 def _pint_unit(spelling: str) -> Unit | None:
-    """Unit of a spelling that pint alone knows, such as "ft" or "°"; None where it does not know it either."""
+    """Unit of a spelling that only pint knows, such as "ft" or "°"; None for unknown ones."""
 
     try:
         registry = _registry()

@@ -44,13 +44,13 @@ Components = Mapping[str, AnyPath] | None
 
 
 AnyTime = float | str | None
-"""A time as users give it: in s, or such as ``"10 min"``."""
+"""A time as users give it: in s, or a text with a unit, such as ``"10 min"``."""
 
 
 AnyScenario = AnyPath | Scenario
 
 SYSTEM_OF_LOGS = "gunnerus_open"
-"""What logs are held against where no system is given."""
+"""System that logs are compared with if none is given."""
 
 
 def named(argument: str) -> str:
@@ -77,7 +77,7 @@ def find(kind: str, given: Any, argument: str = "") -> Path:
 
 
 def listed(given: AnyPath | Iterable[AnyPath] | None) -> list[AnyPath]:
-    """Paths as a list, also where one alone is given."""
+    """Paths as a list, also for a single path."""
     if given is None:
         return []
     return [given] if isinstance(given, (str, os.PathLike)) else list(given)
@@ -96,7 +96,7 @@ def without_none(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def in_seconds(arguments: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
-    """Arguments with the times of these names as numbers, where they are amounts such as ``"10 min"``. [s]"""
+    """Arguments with times as numbers, where they were amounts such as ``"10 min"``. [s]"""
     found = dict(arguments)
     problems = []
     for name in names:
@@ -192,7 +192,7 @@ def _path_of_system(given: AnyPath, argument: str) -> Path:
 
 
 def is_scenario(given: AnyPath) -> bool:
-    """Whether what is a scenario or a system is a scenario: by its ending, else by what has this name.
+    """True for a scenario, False for a system: by the ending, else by which of them has this name.
 
     Raises
     ------
@@ -396,7 +396,7 @@ def sources_of(logs: Any, channels: AnyPath | None) -> tuple[list[Any], AnyPath 
 def check_inputs(
     logs: Iterable[Any], channels: AnyPath | None, causes: AnyPath | None = None
 ) -> None:
-    """Raise ShipcosimError where a file or folder that was given is not there."""
+    """Raise ShipcosimError if a given file or folder does not exist."""
     problems = []
     remedy = "Give the path of one."
     for log in logs:

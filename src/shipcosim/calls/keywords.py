@@ -1,4 +1,4 @@
-"""Calls that say in one sentence which keyword they do not have."""
+"""Errors for unknown keywords of a call, in one sentence."""
 
 from __future__ import annotations
 

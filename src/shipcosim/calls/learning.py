@@ -24,9 +24,9 @@ def check_learning(
     reference: Any,
     causes: Any,
 ) -> None:
-    """Raise ShipcosimError where arguments do not go together."""
+    """Raise ShipcosimError if arguments contradict each other."""
     if not learn:
-        remedy = f"It goes with {named('learn')}; a ship that has a system has her length there."
+        remedy = f"It needs {named('learn')}; the length of a ship with a system is in that system."
         raise error_at(named("length"), "nothing is learned.", remedy)
     if length is None:
         found = "a log does not tell how long the craft is."

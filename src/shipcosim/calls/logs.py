@@ -92,7 +92,7 @@ def isolability(
     channels: AnyPath | None = None,
     progress: Progress | None = None,
 ) -> tuple[Isolability, ...]:
-    """Which causes a log could tell apart, by its channels and its motion, whatever is the matter in it.
+    """Which causes a log could tell apart, by its channels and its motion, whatever is wrong in it.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ def diagnose(
     log : path, name of an example, Log, Run, xarray.Dataset, or a list of them
         Measured data, see docs/measured-data.md; several logs of one ship are weighed together.
     system : path, name, SystemStructure or System, optional
-        The ship that the log is held against; gunnerus_open if not given.
+        The ship that the log is compared with; gunnerus_open if not given.
     channels : path, optional
         Channel file: which column is what, in which unit.
     causes : path, optional
@@ -330,7 +330,7 @@ def replay(
 def _replayed_systems(
     given: AnySystem, before: AnySystem | None, parameters: Sequence[AnyPath]
 ) -> tuple[dict[str, System], list[Problem]]:
-    """The systems of a replay by what they are: ``before`` and ``after``, or the one alone; remarks on the sets."""
+    """The systems of a replay, ``before`` and ``after`` or a single one, with remarks on the parameter sets."""
     reading = Reading()
     system = reading.system(given, "system")
     if parameters:
@@ -494,7 +494,7 @@ def _written(
     progress: Progress | None,
     left: Sequence[str] = EXTENDED,
 ) -> Saved:
-    """A result, and its files where a folder is given: all of them, or none.
+    """A result and, if a folder is given, its files: all of them or none.
 
     Parameters
     ----------

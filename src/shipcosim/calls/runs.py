@@ -133,7 +133,7 @@ class PreparedRun:
             return self.part(error)
 
     def judged(self, table: xarray.Dataset) -> Run:
-        """The run of a table: what it changed, which expectations lie within it, and whether these hold.
+        """The run of a table: its changes, the expectations within it, and whether they hold.
 
         Parameters
         ----------
@@ -163,7 +163,7 @@ class PreparedRun:
         )
 
     def _recorded(self, table: xarray.Dataset) -> xarray.Dataset:
-        """The signals that the scenario has recorded, and those of its expectations; all where it chooses none."""
+        """Signals that the scenario records, and those of its expectations; all signals if it chooses none."""
         if not self.scenario.record.signals:
             return table
         names = list(map(str, table.data_vars))
@@ -552,7 +552,7 @@ def fed_by(
     """The table that feeds a system's inputs, with what its columns do between their rows; arguments of `simulate`."""
     if table is None:
         if interpolate or max_gap is not None:
-            found = "There is no table that this could be about."
+            found = "There is no table to which this could apply."
             raise error_at(
                 f"{named('interpolate')}, {named('max_gap')}",
                 found,
@@ -589,7 +589,7 @@ def changes(
     fmus: Sequence[AnyPath],
     options: RunOptions,
 ) -> list[str]:
-    """What a run changes of what the files say, each as a text; files by their names, whoever runs it from wherever."""
+    """Changes of a run against its files, each as a text; files by their names, so that the folder does not matter."""
     texts = [f"{name} = {_text(value)}" for name, value in start_values.items()]
     texts += [f"parameter set {Path(one).name}" for one in listed(parameters)]
     texts += [f"{name} runs {Path(fmu).name}" for name, fmu in (components or {}).items()]
@@ -606,12 +606,12 @@ def changes(
 
 
 def times_changed(times: Mapping[str, object], scenario: Scenario) -> list[str]:
-    """Times that this run has in place of its scenario's, each as a text."""
+    """Times of this run that replace those of its scenario, each as a text."""
     return [f"{name.replace('_', ' ')} {getattr(scenario, name):g} s" for name in times]
 
 
 def _text(value: object) -> str:
-    """A start value as one writes it in a file."""
+    """A start value as it is written in a file."""
     if isinstance(value, bool):
         return str(value).lower()
     return str(value.item() if hasattr(value, "item") else value)  # pyright: ignore[reportAttributeAccessIssue]

@@ -161,7 +161,7 @@ def sweep(
 def command_of(
     study: str, out: AnyPath | None, engine: str, start_values: Mapping[str, object] | None
 ) -> str:
-    """The command that makes a study, as one types it.
+    """The command line that makes a study.
 
     Examples
     --------

@@ -156,7 +156,7 @@ def compare(
     strict: bool = False,
     progress: CountProgress | None = None,
 ) -> EngineComparison:
-    """Run on every engine that is installed, and on ours with half the step; by how much does each signal differ?
+    """Run on every installed engine, and on ours with half the step, and compare the signals.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ def compare(
     events : path, optional
         Scenario file of OSP (.json, .yaml): what happens besides.
     tolerance : float
-        Difference from which on a signal differs, relative to its range.
+        Difference above which a signal differs, relative to its range.
     as_read : bool
         Let libcosim and ecos read the file themselves, as their users run it.
     strict : bool

@@ -17,7 +17,7 @@ def vessel_of(
     parameters: Sequence[AnyPath] = (),
     ship: str | None = None,
 ) -> Vessel:
-    """The vessel of a system whose capability is asked for.
+    """The vessel whose capability is computed.
 
     Parameters
     ----------

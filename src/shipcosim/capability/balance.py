@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from shipcosim.ships.attainable import largest_multiple
 
 MOST = 1e4
-"""Largest share that is looked for: a load this much smaller than the thrust counts as none."""
+"""Largest share that is computed: a load so much smaller than the thrust counts as zero."""
 
 
 @dataclass(frozen=True)

@@ -118,7 +118,7 @@ def level_1_share(
 
 
 def simulated_share(ship: Simulated, working: Sequence[Thruster], condition: Condition) -> NDArray:
-    """The same by the simulator's models; the thrusters give up to their limits."""
+    """Share of thrust by the simulator's loads; the thrusters give up to their limits."""
     # The simulator's thrusters lose nothing by neighbours here: no sectors, and all of the thrust.
     asked = [replace(t, **vars(ship.limits[t.name])) for t in working]
     actuators = [_actuator(t, np.ones(len(DIRECTIONS)), ()) for t in asked]

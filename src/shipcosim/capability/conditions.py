@@ -11,7 +11,7 @@ PEAK_OVER_ZERO_CROSSING = 1.4049
 """Tp / Tz of a Pierson-Moskowitz sea."""
 
 DYNAMIC_FACTOR = 1.25
-"""What the mean loads are multiplied with, for what a static balance leaves out."""
+"""Factor on the mean loads for everything that a static balance leaves out."""
 
 BOW_SECTOR = np.pi / 6.0
 """A and C of the notation look at weather from within this angle of the bow. [rad]"""

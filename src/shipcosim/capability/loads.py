@@ -112,7 +112,7 @@ def _turned(angle: NDArray) -> NDArray:
 
 
 def _ahead(angle: NDArray) -> NDArray:
-    """From 1 from ahead to -1 from astern."""
+    """Linear factor of the direction: 1 from ahead, -1 from astern."""
     return 1.0 - 2.0 * _turned(angle) / np.pi
 
 

@@ -91,4 +91,4 @@ CHOICES = {
     "inlet": ("broken", "rounded", "other"),
     "pitch": ("fixed", "controllable"),
 }
-"""What the words of `ThrusterParticulars` may be."""
+"""Allowed words of `ThrusterParticulars`."""

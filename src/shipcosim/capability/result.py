@@ -36,7 +36,7 @@ class Case:
     failed: tuple[str, ...]
 
     def split(self, thrusters: Iterable[Thruster]) -> tuple[list[Thruster], list[Thruster]]:
-        """Split thrusters into those that work and those that do not."""
+        """Split thrusters into working and failed ones."""
         listed = list(thrusters)
         return [t for t in listed if t.name not in self.failed], [
             t for t in listed if t.name in self.failed

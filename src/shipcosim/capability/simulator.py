@@ -1,4 +1,4 @@
-"""The same loads by the simulator's models: wind table, hull in the current, wave drift table."""
+"""Loads of the conditions by the simulator's models: wind table, hull in the current, wave drift table."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ PEAK_ENHANCEMENT = 1.0
 """The conditions are Pierson-Moskowitz seas."""
 
 SEED = 1
-"""Of the frequencies of the waves' components. Others change a load by a few percent."""
+"""Seed of the frequencies of the waves' components. Other seeds change a load by a few percent."""
 
 
 def simulated_parts(

@@ -207,7 +207,7 @@ def _buses(system: System, thrusters: list[str]) -> dict[str, tuple[str, ...]]:
 
 
 def _real(part: Component, name: str) -> float:
-    """A start value as a number; 0 where there is none."""
+    """A start value as a number, or 0 without one."""
     return float(part.start_value(name) or 0.0)
 
 

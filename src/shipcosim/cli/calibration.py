@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def print_calibration(ship: CalibratedShip, folder: Path) -> None:
-    """What was found, on stdout."""
+    """Print the result of a calibration."""
     from shipcosim.report.calibration.words import blocks, outcome
 
     print_found(outcome(ship), blocks(ship), folder / "report.html")

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ProposedFile:
-    """A proposal, what is to be said of the log, and the text of the channel file.
+    """A proposal, remarks on the log, and the text of the channel file.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class ProposedFile:
 def proposed(
     log: str | os.PathLike, system: str | None = None, form: str | os.PathLike | None = None
 ) -> ProposedFile:
-    """What the columns of a log are.
+    """Columns of a log with their roles.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def proposed(
 
 
 def print_channels(proposed: ProposedFile) -> None:
-    """What each column is, on stdout."""
+    """Print the role of each column."""
     from rich.text import Text
 
     from shipcosim.cli.tables import print_table
@@ -130,7 +130,7 @@ def print_isolability(log: Path, system: str | None, channels: Path | None) -> N
         print_table(console, rows, ("cause of typical size", "would show", "cannot be told from"))
     else:
         console.print(
-            Text("This log tells no causes: `shipcosim diagnose` says why.", style="yellow")
+            Text("This log cannot show causes: `shipcosim diagnose` says why.", style="yellow")
         )
 
 

@@ -137,7 +137,7 @@ def print_overview(outcome: Outcome, rows: Iterable[tuple[str, Outcome]], page: 
 
 
 def print_found(outcome: Outcome, blocks: Iterable[Block], page: Path) -> None:
-    """What was found, in the blocks that its card in a notebook has, and where the page is."""
+    """Print a result in the blocks of its notebook card, and the path of its page."""
     console = make_console(soft_wrap=True)
     # Red is what failed or was not understood.
     style = VERDICTS.get(outcome.kind, "bold red")
@@ -163,7 +163,7 @@ def say_outcome(console: Console, outcome: Outcome) -> None:
 
 
 def say_page(console: Console, page: Path) -> None:
-    """Where the page is."""
+    """Print the path of the page."""
     console.print(f"Page: {shown_path(page)}")
 
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def print_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
-    """What was found, on stdout."""
+    """Print the result of a diagnosis."""
     from shipcosim.report.diagnosis.summary import summary
     from shipcosim.report.diagnosis.words import next_steps, outcome
     from shipcosim.report.theme.views import Block

@@ -88,7 +88,7 @@ def _exit_as(status: int, is_done: bool) -> None:
     if not is_done and (code >= 0 or name in _CRASHES):
         how = f"has crashed ({name})" if name else "has ended the process"
         sys.stderr.write(
-            f"error: A program library, as a rule that of an FMU, {how}. There are no results.\n"
+            f"error: A program library, usually that of an FMU, {how}. There are no results.\n"
             "--isolate runs each FMU in a process of its own and keeps the rows so far.\n"
         )
         sys.exit(1)

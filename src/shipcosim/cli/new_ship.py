@@ -1,4 +1,4 @@
-"""A ship of one's own: what is asked, and the files that are made."""
+"""Make a ship of one's own: questions to the user, and files."""
 
 from __future__ import annotations
 
@@ -196,7 +196,7 @@ def _put(project: Path, files: Mapping[str, Path], over: bool) -> list[Path]:
 
 
 def _scenario(ship: Described, has_dp: bool) -> str:
-    """A first scenario of a ship: she holds her place, or goes ahead."""
+    """Write a first scenario of a ship: she holds her position, or sails ahead."""
     if has_dp:
         return HOLDS.format(name=ship.name)
     ahead = [f'"{name}" = {value:g}' for name, value in _half_ahead(ship)]
@@ -222,7 +222,7 @@ def _study(ship: Described) -> str:
 
 
 def _half_ahead(ship: Described) -> list[tuple[str, float]]:
-    """Inputs that make her go ahead, where something says how much her thrusters take."""
+    """Inputs that make her sail ahead, if the limits of her thrusters are known."""
     from shipcosim.ships.file import number
 
     found = []

@@ -97,16 +97,20 @@ Length = Annotated[
     typer.Option("--length", metavar="LENGTH", help='With --learn: her length, "1.2 m".'),
 ]
 SystemsStopTime = Annotated[
-    float | None, time_option("--stop-time", "In s, or as '10 min'. Default: the system's.")
+    float | None,
+    time_option("--stop-time", "In s, or with a unit: '10 min'. Default: the system's."),
 ]
 SystemsStepSize = Annotated[
-    float | None, time_option("--step-size", "In s, or as '50 ms'. Default: the system's.")
+    float | None,
+    time_option("--step-size", "In s, or with a unit: '50 ms'. Default: the system's."),
 ]
 ScenariosStopTime = Annotated[
-    float | None, time_option("--stop-time", "In s, or as '10 min'. Default: the scenario's.")
+    float | None,
+    time_option("--stop-time", "In s, or with a unit: '10 min'. Default: the scenario's."),
 ]
 ScenariosStepSize = Annotated[
-    float | None, time_option("--step-size", "In s, or as '50 ms'. Default: the scenario's.")
+    float | None,
+    time_option("--step-size", "In s, or with a unit: '50 ms'. Default: the scenario's."),
 ]
 Out = Annotated[
     Path | None,
@@ -131,7 +135,8 @@ Record = Annotated[
     ),
 ]
 Every = Annotated[
-    float | None, time_option("--every", "Keep a row each so often; in s, or such as '500 ms'.")
+    float | None,
+    time_option("--every", "Time between the rows that are kept; in s, or with a unit: '500 ms'."),
 ]
 Realtime = Annotated[
     float | None,
@@ -153,7 +158,7 @@ Force = Annotated[
 ]
 Until = Annotated[
     float | None,
-    time_option("--until", "End here, before the stop time; in s, or such as '10 min'."),
+    time_option("--until", "End here, before the stop time; in s, or with a unit: '10 min'."),
 ]
 Store = Annotated[
     Path | None,
@@ -175,7 +180,7 @@ Timeout = Annotated[
     float | None,
     time_option(
         "--timeout",
-        "Longest wait for a component of --isolate; in s, or such as '2 min'. Default: 60.",
+        "Longest wait for a component of --isolate; in s, or with a unit: '2 min'. Default: 60.",
     ),
 ]
 AsJson = Annotated[
@@ -190,8 +195,6 @@ Quiet = Annotated[
 ]
 Strict = Annotated[
     bool,
-    typer.Option(
-        "--strict", help="Refuse what breaks a standard, even where it can mean one thing only."
-    ),
+    typer.Option("--strict", help="Refuse what breaks a standard, even if its meaning is clear."),
 ]
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]

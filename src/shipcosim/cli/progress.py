@@ -43,10 +43,10 @@ class Course:
         self._whole = sum(steps.values())
         self._start = self._at = clock()
         self.share = 0.0
-        """What is done of the whole, 0 to 1."""
+        """Share of the work that is done, 0 to 1."""
 
     def reached(self, step: str, done: float | None = None, total: float | None = None) -> None:
-        """Say which step the work is at, and how many parts of it are done; steps that are not planned are no share."""
+        """Report the present step, and how many parts of it are done; unplanned steps have no share."""
         if step not in self._steps:
             return
         names = list(self._steps)

@@ -25,7 +25,7 @@ from shipcosim.results.run import VERDICT
 from shipcosim.staging import set_aside
 
 SLOW = 10.0
-"""Seconds of a run from which on it is worth to say that there is a faster way."""
+"""Seconds of a run above which it is worth to say that there is a faster way."""
 FASTER = "Compiled models run faster: pip install 'shipcosim[native]'."
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ def run_folder(
 
 
 def print_run(result: Run, out: Path) -> None:
-    """How a run went, and where its page is; what there is of one that failed goes to stderr."""
+    """Print the outcome of a run and the path of its page; errors of a failed run go to stderr."""
     page = out / result.as_json()["page"]
     print_summary(result, page, to_stderr=bool(result.errors))
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def print_study(found: SeaTrialStudy, folder: Path) -> None:
-    """What was found, on stdout."""
+    """Print the result of sea trials."""
     from shipcosim.report.sea_trials.words import blocks, outcome, trials
 
     say(trials(found))

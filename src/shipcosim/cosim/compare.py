@@ -76,7 +76,7 @@ class Comparison:
     remarks : dict of str to list of str
         What explains the differences of an engine, in words; empty where there are none to explain.
     tolerance : float
-        Relative difference from which on a signal differs.
+        Relative difference above which a signal differs.
     failed : tuple of str
         Engines that started and did not get to the end.
     """
@@ -112,7 +112,7 @@ def compare(
     options : RunOptions, optional
         As for `shipcosim.cosim.simulate`, without the engine; progress covers all runs.
     tolerance : float
-        Difference from which on a signal differs, relative to its range.
+        Difference above which a signal differs, relative to its range.
     readers : mapping of str to callable, optional
         Tools that read the file themselves, in place of the engines; see
         `shipcosim.cosim.engines.foreign_process.readers`.

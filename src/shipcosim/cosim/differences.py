@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import xarray
 
 TOLERANCE = 1e-9
-"""Of a signal's range."""
+"""Largest difference that counts as none, over a signal's range. [1]"""
 FULL_TURN = {"rad": 2.0 * np.pi, "deg": 360.0}
 
 
@@ -115,7 +115,7 @@ def _cause(name, ours, theirs, step_size):
     distance = _distance(name, ours, theirs)
     largest = np.max(np.abs(distance))
     if not np.isfinite(largest):
-        return f"{name} is no number somewhere."
+        return f"{name} is not a number in some rows."
     # The relations need a signal that moves. Each counts if it leaves less than 1 % of the largest
     # difference.
     if len(x) > 2 and np.ptp(x) > 0.0:

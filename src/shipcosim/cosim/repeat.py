@@ -113,5 +113,7 @@ def _differences(facts, system, inputs):
     if fed != (None if inputs is None else digest(inputs)):
         yield Problem(
             "repeat",
-            "inputs: The table is not the one that fed the run." if fed else "inputs: None fed it.",
+            "inputs: The table is not the one that fed the run."
+            if fed
+            else "inputs: The run had no table.",
         )

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 MOST_PROBLEMS = 20
-"""That are listed of a record with many bad segments."""
+"""Most bad segments of a record that a message lists."""
 
 
 def replay(

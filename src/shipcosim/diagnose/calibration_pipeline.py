@@ -1,4 +1,4 @@
-"""From logs of a ship that is well to her own parameter set, and the reference that other logs are held against."""
+"""From logs of a ship that is well to her own parameter set, and the reference that other logs are compared with."""
 
 import os
 from collections.abc import Mapping, Sequence
@@ -45,12 +45,12 @@ from shipcosim.ssp import AnyPath, System
 READING = "are the logs right?"
 
 _ANOTHER_CRAFT = (
-    "The craft is not the file's by far, so her numbers are learned from the accelerations that the logs show. Whether "
-    "she was well these logs cannot say."
+    "The craft differs far from her file, so her numbers are learned from the accelerations that the logs show. These "
+    "logs cannot say whether she was in good condition."
 )
 _ALL_LEARNED = (
-    "All numbers of the craft were assumed from her length or learned from these logs. They make no reference: whether "
-    "she was well, and later has a fault, such a rough craft cannot show."
+    "All numbers of the craft were assumed from her length or learned from these logs. They make no reference: such a "
+    "rough craft cannot show whether she has a fault, now or later."
 )
 _KINDS_OF_THE_LOG = ("slow", "with the heading", "periodic", "in a channel")
 
@@ -100,13 +100,13 @@ class CalibratedShip:
 
     @property
     def untold(self) -> tuple[KnownNumber, ...]:
-        """Numbers of which the logs say next to nothing."""
+        """Numbers on which the logs have almost no information."""
         scale = self.reference.tolerance_scale
         return tuple(one for one in self.reference.numbers if one.std > 0.8 * scale * one.tolerance)
 
 
 def steps_of(logs: Sequence[LogSource]) -> dict[str, float]:
-    """What `calibrate` tells its progress function, in order, with the time that it typically takes. [s]"""
+    """Steps that `calibrate` reports to its progress function, in order, with their typical times. [s]"""
     many = len(logs)
     return {
         READING: 2.5 * many,
@@ -218,7 +218,7 @@ def _calibrated_craft(
         right = ""
     else:
         craft = learned_from(compared, ship)
-        what = "Numbers learned from the others predict a log, or a part of it, no better than the system for sure."
+        what = "Numbers learned from the others do not clearly predict a log, or a part of it, better than the system."
         right = "Give more logs, with turns and with thrust ahead and astern."
     if craft is None:
         raise error_at(", ".join(found), what, right)
@@ -297,7 +297,7 @@ def problems_of(
 
 
 def _reference_logs(found: Mapping[str, Identification]) -> list[ReferenceLog]:
-    """What a reference says of the logs that it was made from."""
+    """Entry of a reference on the logs that it was made from."""
     logs = []
     for name, one in found.items():
         time = one.log["time"].values
@@ -310,7 +310,7 @@ def _reference_logs(found: Mapping[str, Identification]) -> list[ReferenceLog]:
 def _written(
     result: CalibratedShip, given: System, out: AnyPath | None, is_assumed: bool = False
 ) -> CalibratedShip:
-    """The same, once its files are in a folder; nothing is written unless asked, or the logs are refused.
+    """Write the files of a calibration; nothing is written unless asked, or if the logs are refused.
 
     A craft of whom all was guessed is no reference: her form is too rough for causes to be named beside it.
     """
@@ -361,7 +361,7 @@ def _reasons_not_to_trust(
 
 
 def _judged(reference, found, suspects):
-    """Why these logs make no reference, and what to know of one that they do make."""
+    """Reasons why these logs make no reference, and remarks on the reference that they make."""
     refusals = []
     remarks = []
     # Unbounded moves of the numbers, to compare with the bounded estimates.
@@ -376,7 +376,7 @@ def _judged(reference, found, suspects):
             )
         else:
             remarks.append(
-                f"{text}. If it is there, later logs will be held against a ship that has it."
+                f"{text}. If the ship has this fault, later logs will be compared with a faulty ship."
             )
     # Numbers at their bounds refuse the reference; those at the edge of their tolerances get a
     # remark.

@@ -1,4 +1,4 @@
-"""A log as read, with the ship that it is held against, and with the faults that its own channels show."""
+"""A log as read, with the ship that it is compared with, and with the faults that its own channels show."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ from shipcosim.diagnose.ship.model import ShipModel
 
 @dataclass(frozen=True)
 class ReadLog:
-    """A log as read, and what it is held against.
+    """A log as read, and what it is compared with.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class ReadLog:
 
 @dataclass(frozen=True)
 class CheckedLog(ReadLog):
-    """A log of which is known what is wrong with it by its own channels alone.
+    """A log with the faults that its own channels show.
 
     Attributes
     ----------

@@ -98,11 +98,11 @@ class LogComparison:
 
     @property
     def started_craft(self) -> LearnedCraft | None:
-        """What the ship is started with beyond doubt."""
+        """The learned craft with which the fit starts; None if there is none."""
         return self.craft if self.is_started_with else None
 
     def findings(self, causes: Mapping[str, Cause]) -> tuple[Finding, ...]:
-        """Thrust over inertia, where the forces felt tell it: as the log teaches the craft where that is sure."""
+        """Thrust over inertia by the measured forces; if the log teaches the craft clearly, by the learned craft."""
         ratio = self.ratio
         if self.craft is None or ratio is None or not ratio.differs(PLAIN):
             return ()
@@ -118,7 +118,7 @@ class LogComparison:
 
 @dataclass(frozen=True)
 class ComparedLog(CheckedLog):
-    """A checked log held against the simulation; what is grossly wrong is corrected, in the log and in the ship.
+    """A checked log compared with the simulation; what is grossly wrong is corrected, in the log and in the ship.
 
     Attributes
     ----------
@@ -129,7 +129,7 @@ class ComparedLog(CheckedLog):
 
 
 def compared(log: CheckedLog, is_assumed: bool = False) -> ComparedLog:
-    """A checked log held against the simulation: what is grossly wrong is corrected before anything else.
+    """A checked log compared with the simulation: what is grossly wrong is corrected before anything else.
 
     Sides and signs of thrusters that the motion contradicts are faults of the log; a common ratio of thrust to inertia
     that is far off is in the ship from here on. Where all numbers of the ship are guesses, she is learned instead.
@@ -222,7 +222,7 @@ def _learned_alone(log: ComparedLog) -> ComparedLog:
 def surely_taught(
     logs: Sequence[tuple[xarray.Dataset, LogComparison]], ship: ShipModel
 ) -> tuple[LearnedCraft | None, str]:
-    """The craft that logs teach, if she surely predicts better than one that keeps her velocity; and what to say.
+    """The craft learned from logs, if she clearly predicts better than a constant velocity; and remarks.
 
     Logs in which the motion does not show what the thrusters did teach none.
 
@@ -287,7 +287,7 @@ def learned_from(
 def _taught_by(
     logs: Sequence[tuple[xarray.Dataset, LogComparison]], ship: ShipModel
 ) -> LearnedCraft | None:
-    """The craft that logs teach, however well she predicts; None where one of them is too short."""
+    """The craft learned from logs, for any quality of prediction; None if a log is too short."""
     # Common horizons for all logs: the median of what suits each.
     each = [comparison.errors["horizon_s"] for _, comparison in logs]
     horizons = [float(horizon) for horizon in np.median(each, axis=0)]
@@ -302,7 +302,7 @@ def _taught_by(
 
 
 def _unknown_thrusters(repaired: xarray.Dataset, ship: ShipModel) -> tuple[str, ...]:
-    """What to say of thrusters that a log lacks."""
+    """Remarks on thrusters that a log lacks."""
     found = []
     for name in ship.thrusters:
         lacking = [

@@ -182,7 +182,7 @@ class VisibleSize:
 
 @dataclass(frozen=True)
 class Discrepancy:
-    """Something in which simulation and log differ, before any cause is sought.
+    """A difference between simulation and log, before any cause is sought.
 
     Attributes
     ----------

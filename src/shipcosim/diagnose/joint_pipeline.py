@@ -72,7 +72,7 @@ from shipcosim.ssp import AnyPath, System
 
 
 def steps_of(logs: Sequence[LogSource]) -> dict[str, float]:
-    """What `diagnose_jointly` tells its progress function, in order, with the time that it typically takes. [s]"""
+    """Steps that `diagnose_jointly` reports to its progress function, in order, with their typical times. [s]"""
     names = log_names(logs)
     return {
         READING: 2.5 * len(names),
@@ -185,7 +185,7 @@ def find_common_causes(
     ----------
     logs : sequence of path or xarray.Dataset
     system : System
-        The ship that the logs are held against.
+        The ship that the logs are compared with.
     channels : path, optional
         Channel file, the same for all.
     causes : path, optional
@@ -248,7 +248,7 @@ def _identification(one: Diagnosis) -> Identification:
 
 
 def _unusable(one: Diagnosis) -> str:
-    """Why a log says nothing of the ship; empty where it does."""
+    """Reason why a log gives no evidence on the ship; empty if it does."""
     if any(finding.alternatives for finding in one.findings):
         return "Its channels may be misread, and it does not tell which."
     return " ".join(_identification(one).comparison.obstacles)
@@ -257,7 +257,7 @@ def _unusable(one: Diagnosis) -> str:
 def _together(
     found: JointDiagnosis, usable: dict[str, Identification], ship: ShipModel, say: Progress
 ) -> JointDiagnosis:
-    """What the usable logs say together."""
+    """Joint result of the usable logs."""
     # Labels that other logs show are corrected in logs that do not tell; these are compared anew.
     relabelled = _relabelled(found.findings, usable)
     read = {
@@ -310,7 +310,7 @@ def _relabelled(
 
 
 def _as_read(one: Identification, ship: ShipModel) -> ReadLog:
-    """A log as it was read, to be diagnosed anew."""
+    """A log as it was read, to be diagnosed again."""
     return ReadLog(one.log, ship, one.causes)
 
 
@@ -397,7 +397,7 @@ def _with_relabelled(one: Finding, relabelled: Mapping[str, Sequence[Finding]]) 
 
 
 def _telling(logs: SeveralLogs, hypothesis: Hypothesis) -> tuple[str, ...]:
-    """Logs that have something to say of a cause."""
+    """Logs that can show a cause."""
     return tuple(name for name in logs.problems if logs.within(name, hypothesis) is not None)
 
 
@@ -421,13 +421,13 @@ def _longest(basis: JointBasis) -> tuple[str, IdentificationProblem]:
 
 
 def remarks_on(found: JointDiagnosis) -> list[str]:
-    """What to know of logs that differ from the others, or say nothing of the ship."""
+    """Remarks on logs that differ from the others or are not usable."""
     basis = found.together
     remarks = [f"{name} says nothing of the ship. {why}" for name, why in found.left_out.items()]
     for name, faults in found.relabelled.items():
         what = "; ".join(fault.sentence for fault in faults)
         remarks.append(
-            f"{name} is read as the other logs show ({what}): by itself it does not tell."
+            f"{name} is read as the other logs show ({what}): by itself it does not show it."
         )
     if basis is None:
         return remarks
@@ -436,7 +436,7 @@ def remarks_on(found: JointDiagnosis) -> list[str]:
     for name in basis.ratios.apart if basis.has_ratio else ():
         own = basis.ratios.each[name]
         remarks.append(
-            f"{name} by itself says {own.ratio:.2f} ± {own.std:.2f} of thrust over inertia, away from all others. "
+            f"{name} by itself says {own.ratio:.2f} ± {own.std:.2f} of thrust over inertia, far from all others. "
             "The common ratio is that much less certain."
         )
     return remarks

@@ -93,7 +93,7 @@ def diagnose(
     log : path or xarray.Dataset
         Measured data, see docs/measured-data.md.
     system : path, SystemStructure or System
-        The ship that the log is held against.
+        The ship that the log is compared with.
     channels : path, optional
         Channel file: which column is what, in which unit.
     causes : path, optional
@@ -179,7 +179,7 @@ def find_causes(
     log : path or xarray.Dataset
         Measured data, see docs/measured-data.md.
     system : System
-        The ship that the log is held against, as `read_system` gives it.
+        The ship that the log is compared with, as `read_system` gives it.
     channels : path, optional
         Channel file.
     causes : path, optional
@@ -236,7 +236,7 @@ def read_measurements(
 
 
 def ship_by(system: System, reference: Reference | None) -> ShipModel:
-    """The ship of a system, as a reference knows her where there is one."""
+    """The ship of a system, with the numbers of a reference if there is one."""
     ship = ship_model_of(system)
     return ship if reference is None else with_reference(ship, reference)
 

@@ -50,7 +50,7 @@ class LogSummary:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What there is to say of a log, or of several: the content of diagnosis.json, and all that the page shows.
+    """Result for a log or several: the content of diagnosis.json, and all that the page shows.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ class Diagnosis:
     changes : tuple of NumberChange
         Every number in which it differs.
     system : System or None
-        That the log was held against.
+        That the log was compared with.
     remarks : tuple of str
         What did not work.
     discrepancies : tuple of Discrepancy
@@ -142,7 +142,7 @@ class Diagnosis:
 
     @property
     def name(self) -> str:
-        """Of the log's file."""
+        """Name of the log's file."""
         return self.log.name if self.log else "a log"
 
     @property

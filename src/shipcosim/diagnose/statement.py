@@ -162,7 +162,7 @@ def verified(found: Diagnosis, predicted: PredictedLog) -> Diagnosis:
 def with_form(
     found: Diagnosis, predicted: PredictedLog, given: ExtendedSystem, folder: AnyPath
 ) -> tuple[Diagnosis, ExtendedSystem]:
-    """A diagnosis of another form with the system that has its numbers, where that predicts the log better.
+    """A diagnosis with the verdict `form`, and the system with these numbers if it predicts the log better.
 
     Parameters
     ----------

@@ -94,7 +94,7 @@ class Variable:
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """Minimum and maximum, infinite where there is none."""
+        """Minimum and maximum; infinite without a limit."""
         low = -math.inf if self.minimum is None else self.minimum
         return low, math.inf if self.maximum is None else self.maximum
 

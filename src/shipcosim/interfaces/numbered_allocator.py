@@ -20,7 +20,7 @@ class FullPowers(numbered_units(_fields)):
 
     @property
     def largest(self):
-        """Of all units, in their order. [W]"""
+        """Full power of all units, in their order. [W]"""
         return self.of_units("full_power")
 
 

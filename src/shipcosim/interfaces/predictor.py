@@ -20,7 +20,7 @@ NO_GOAL = 1e9  # m, where no reference model goes: nobody says where she goes to
 
 
 class Prediction(NamedTuple):
-    """What a predictor says, each with one value a horizon.
+    """Outputs of a predictor, each with one value for each horizon.
 
     Parameters
     ----------
@@ -239,7 +239,7 @@ class MotionPredictor(Fmu):
                 setattr(self, output, where(is_sound, value, getattr(self, output)))
 
     def _show_nothing(self, known, t, error):
-        """Keep the prediction before, and begin anew: wind and current may be no number either."""
+        """Keep the prediction before, and begin again: wind and current may be no number either."""
         if not self.has_diverged:
             self.log(
                 f"the prediction at t = {t:.9g} s diverges ({error}): none is shown", "warning"

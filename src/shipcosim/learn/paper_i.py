@@ -29,12 +29,12 @@ HELD_OUT = 0.1
 DIGITS = 1e-15
 """Cutoff of a pseudo-inverse to the digits of its numbers. [1]"""
 NOTES = (
-    "Not printed in the paper, and chosen here: inputs divided by their largest size in the exercise; weights of the"
-    " hidden layer uniform in -1 to 1, its biases in 0 to 1, as in the code of the method's authors; how long full"
-    " thrust is held between the ramps.",
-    "With five signals, units 5 and 6 get one command. Of allocator 1 that is the same network as with six, since each"
-    " output has weights of its own, and those of units 5 and 6 have the same targets.",
-    "Held out are 10 % of the rows, drawn at random as in the paper: their neighbours at 20 Hz are trained on. The"
+    "The paper does not print these points, so they are chosen here. Inputs are divided by their largest size in the"
+    " exercise. Weights of the hidden layer are uniform in -1 to 1, its biases in 0 to 1, as in the code of the"
+    " method's authors. The time of full thrust between the ramps is chosen too.",
+    "With five signals, units 5 and 6 get one command. For allocator 1 this is the same network as with six signals:"
+    " each output has its own weights, and those of units 5 and 6 have the same targets.",
+    "Of the rows 10 % are held out, drawn at random as in the paper. Their neighbours at 20 Hz are trained on. The"
     " exercise never shows two thrusters at work together, except for the two main propellers.",
 )
 

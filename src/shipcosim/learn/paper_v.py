@@ -37,11 +37,11 @@ WIDTH = 64
 LAYERS = 2
 NAMES = ("k0 L0", "k1 L1", "k2 L2", "k3 L3", "k4 L4", "k5 L5")
 NOTES = (
-    "Not printed in the paper, and chosen here: Adam with a learning rate of 0.001; torch's initial weights; a"
-    " mini-batch of 1024 samples is 8 sequences of 128, each of which begins with an empty memory; a sample time of 1"
-    " s, since eq. 8 takes the rates of Table I as they are; L0 and L1 in standardised forces, L2 and L3 in N and deg;"
-    " means over a mini-batch; the decoder sees the code before it is rescaled; the weights of the best epoch; at most"
-    " 15 epochs.",
+    "The paper does not print these points, so they are chosen here. Adam has a learning rate of 0.001 and torch's"
+    " initial weights. A mini-batch of 1024 samples is 8 sequences of 128, and each begins with an empty memory. The"
+    " sample time is 1 s, since equation 8 takes the rates of Table I as they are. L0 and L1 are in standardised"
+    " forces, L2 and L3 in N and deg. Losses are means over a mini-batch. The decoder sees the code before it is"
+    " rescaled. The weights are those of the best of at most 15 epochs.",
     "The configuration matrix is the full one, with x sin(angle); the paper prints it without.",
 )
 

@@ -10,7 +10,7 @@ from math import ceil
 import numpy as np
 
 SHARE = 0.9
-"""Of the cases that a region is to have inside. [1]"""
+"""Share of the cases that a region should contain. [1]"""
 
 
 def conformal(scores: np.ndarray, level: float = SHARE, more: int = 0) -> float:

@@ -135,7 +135,7 @@ def sailed(
     processes: int,
     progress: Callable[[int, int], Any] | None,
 ) -> Iterator[Record]:
-    """What several co-simulations give, in their order.
+    """Results of several co-simulations, in their order.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from shipcosim.library.places import CACHE, PACKAGE, StrPath, cache, project_of,
 from shipcosim.temporary import temporary_folder
 
 IN_EVERY_FMU = ("interfaces", "models", "angles.py", "fmi", "units.py")
-"""Of this package: what travels in FMUs, and what builds them."""
+"""Parts of this package that travel in FMUs or build them."""
 
 
 def fmus(near: StrPath | None = None, build: bool = True) -> list[Path]:
@@ -123,7 +123,7 @@ def _build_into_cache(root: Path, folder: Path) -> None:
 
 @functools.cache
 def _digest(root: Path) -> str:
-    """Of everything that goes into the FMUs that are shipped."""
+    """Digest of everything that goes into the shipped FMUs."""
     from importlib.metadata import version
 
     digest = hashlib.sha256(version("pythonfmu").encode())

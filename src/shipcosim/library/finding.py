@@ -24,7 +24,7 @@ WHAT = {
 def find(
     kind: str, given: StrPath, option: str = "", near: StrPath | None = None, build: bool = True
 ) -> Path:
-    """Path of what a user means.
+    """Path of the thing that a name or path means.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def find(
 
 
 def find_any(given: str) -> str:
-    """Path of a thing of any kind, as for `find`; of what has the same name a scenario goes before a system.
+    """Path of a thing of any kind, as for `find`; a scenario comes before a system of the same name.
 
     Raises
     ------

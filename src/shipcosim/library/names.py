@@ -49,7 +49,7 @@ def names(kind: str, near: StrPath | None = None) -> dict[str, Path]:
 
 
 def named(kind: str, name: str, near: StrPath | None = None) -> Path | None:
-    """Path of what has a name, or None; arguments as for `names`."""
+    """Path of the thing with a name, or None; arguments as for `names`."""
     return names(kind, near).get(name)
 
 
@@ -59,7 +59,7 @@ def entries(kind: str, near: StrPath | None = None) -> list[Entry]:
 
 
 def line_of(kind: str, path: Path) -> str:
-    """What a thing is, from its own file; says so where that cannot be read."""
+    """Description of a thing from its own file, or a note that the file cannot be read."""
     try:
         return {
             "scenario": _description_in_toml,

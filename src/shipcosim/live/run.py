@@ -1,4 +1,4 @@
-"""A run without end that goes on as far as its page asks, and takes changes between two steps."""
+"""A run without end: it steps as far as its page asks, and takes changes between two steps."""
 
 from __future__ import annotations
 
@@ -201,7 +201,7 @@ class LiveRun:
             self._states = {step: self._states[step] for step in kept}
 
     def _take_messages(self) -> None:
-        """Take what the pages say; wait for it while there is nothing to do."""
+        """Handle messages of the pages; wait for one while there is nothing to do."""
         while True:
             self._check_interrupt()
             idle = not self._waiting and (self._goal <= self._now or bool(self._failure))
@@ -230,7 +230,7 @@ class LiveRun:
                 self._pages.send(json.dumps({"left": True}))
 
     def _obey(self, page: Any, text: str) -> None:
-        """Do what a page asks for; refuse what our page never would."""
+        """Do what a page asks for; refuse requests that our page never sends."""
         try:
             asked = json.loads(text)
             if asked["do"] == "advance":
@@ -306,7 +306,7 @@ class LiveRun:
         return _State(fmus, arrays, [[m.active for m in modifiers_in(e)] for e in exchanges])
 
     def _go_back(self, to: int) -> None:
-        """Go to a state at or before a step, and on to it; forget what was done from it on."""
+        """Go back to a step, by a state at or before it; later changes are discarded."""
         if self._no_way_back or not self._states:
             raise ValueError("there is no state")
         # The latest state at or before the step: FMUs first, then the values that are exchanged.

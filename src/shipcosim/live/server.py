@@ -114,7 +114,7 @@ class LiveServer:
         return Response(HTTPStatus.OK, "OK", Headers(content), self._page)
 
     def _is_ours(self, request: Request, is_socket: bool) -> bool:
-        """True for a request with the token, under our name, which no page of another site has made."""
+        """True for a request with our token and host name that no other site's page has made."""
         hosts = request.headers.get_all("Host")
         origins = request.headers.get_all("Origin")
         sites = request.headers.get_all("Sec-Fetch-Site")
@@ -130,7 +130,7 @@ class LiveServer:
         )
 
     async def _converse(self, connection: ServerConnection) -> None:
-        """One page, from its connection to its end."""
+        """Serve one page, from its connection to its end."""
         if self._steering is None:
             self._steering = connection
         self.inbox.put(("joined", connection, ""))

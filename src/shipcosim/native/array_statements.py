@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 FEWEST = 4
-"""Equal statements from which on a loop is shorter than the statements."""
+"""Equal statements above which a loop is shorter than the statements."""
 
 
 class Term(NamedTuple):

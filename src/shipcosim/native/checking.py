@@ -17,7 +17,7 @@ STEPS = 20
 """Steps that are compared."""
 
 LARGEST = 1e-9
-"""Difference of a number, over its size or 1, from which on compiled code is refused; rounding is 1000 times less."""
+"""Difference of a number, over its size or 1, above which compiled code is refused; rounding is 1000 times less."""
 
 
 def refuse_other_results(compiled: Any, time: float, step_size: float) -> None:

@@ -70,7 +70,7 @@ def libraries(sources: Iterable[str]) -> list[ctypes.CDLL]:
 
 
 _LOADED: dict[str, ctypes.CDLL] = {}
-"""Libraries that this process has loaded, which keeps them anyway."""
+"""Libraries that this process has loaded; it never unloads them."""
 
 
 def keep_digest(made: Path, path: Path) -> None:

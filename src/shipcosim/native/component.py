@@ -175,7 +175,7 @@ def compiled_steps(
 
 
 _ONE_AT_A_TIME = threading.Lock()
-"""So that runs in several threads record and compile what they share once."""
+"""Lock, so that runs in several threads record and compile shared code only once."""
 
 
 class _Recorded(NamedTuple):

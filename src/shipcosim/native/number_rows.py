@@ -177,7 +177,7 @@ _TAKEN: dict[int, tuple[Any, list, tuple]] = {}
 MOST_TAKEN = 500
 """Objects that are remembered: of components in a process, as a rule."""
 LONG = 16
-"""Parts of a tuple from which on it is worth remembering."""
+"""Smallest length of a tuple that is cached."""
 
 
 def _is_table(value):

@@ -96,7 +96,7 @@ class Writer:
     """Writes the blocks of a recording as C."""
 
     apart: tuple[str, ...] = ("guard", "call", "loop", "carried")
-    """Values that are no assignment; a carried one is declared at the head of its loop."""
+    """Values without an assignment of their own; a carried one is declared at the head of its loop."""
 
     def __init__(self, step: Step):
         self.step = step
@@ -405,7 +405,7 @@ def literal(value: Any) -> str:
 
 
 def _stored(step: Step) -> set[int]:
-    """Numbers of the values that are results as they are, such as what moves from one place to another."""
+    """Indices of values that are results unchanged, such as values that only change their place."""
     return {
         number.number
         for block in _all_blocks(step.root, step.recording)

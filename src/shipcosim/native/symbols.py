@@ -481,7 +481,7 @@ class SymbolArray(np.ndarray):
 
     @property
     def maths(self) -> Any:
-        """See `Symbol.maths`; None where it holds numbers alone."""
+        """See `Symbol.maths`; None for numbers without symbols."""
         return None if first_symbol(self) is None else Maths
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **named: Any) -> Any:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 VARIABLE_KEYS = ("name", "causality", "type", "unit", "start", "description")
-"""What the texts of a variable are."""
+"""Texts of a variable."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -44,7 +44,7 @@ class CheckedFiles(Result):
 
     @property
     def failures(self) -> tuple[Problem, ...]:
-        """Those of all problems that are errors."""
+        """Problems that are errors."""
         return tuple(problem for problem in self.problems if problem.severity == "error")
 
     @property

@@ -41,7 +41,7 @@ class Log(LikeTable):
 
     @cached_property
     def remarks(self) -> tuple[str, ...]:
-        """How its columns were read and which were not, what cannot be known from it, what is ordinary and handled."""
+        """Remarks: how the columns were read, which were not, what the log lacks, and what was handled."""
         from shipcosim.diagnose.log.remarks import remarks
 
         return (*map(str, self.table.attrs.get("column_remarks", ())), *remarks(self.table))

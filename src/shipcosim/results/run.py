@@ -172,7 +172,7 @@ class Run(LikeTable, Result):
 
     @property
     def name(self) -> str:
-        """Of the scenario, or of the system where there is no scenario file."""
+        """Name of the scenario, or of the system where there is no scenario file."""
         return self.scenario.name or self.system.name
 
     @cached_property

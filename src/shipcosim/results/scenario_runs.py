@@ -36,7 +36,7 @@ class ScenarioRuns(Result):
 
     @property
     def rows(self) -> list[ScenarioRow]:
-        """A row a scenario, as the page has it."""
+        """A row for each scenario, as on the page."""
         return [
             ScenarioRow(name, run.scenario.description, f"{name}/{run.checks[0].page}", run.digest)
             for name, run in self.runs.items()
@@ -59,7 +59,7 @@ class ScenarioRuns(Result):
 
     @property
     def checks(self) -> tuple[Check, ...]:
-        """Those of all runs, each with its scenario."""
+        """Problems of all runs, each with its scenario."""
         return tuple(
             replace(check, group=name, page=f"{name}/{check.page}")
             for name, run in self.runs.items()

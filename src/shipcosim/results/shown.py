@@ -170,7 +170,7 @@ class Result(ABC):
 
     @property
     def checks(self) -> tuple[Check, ...]:
-        """What was checked, one by one; one of these failed where `passed` is false."""
+        """Checks, one by one; if `passed` is false, one of them failed."""
         card = self._card()
         return (Check(card.title, passed_or_failed(self.passed), card.outcome.sentence),)
 
@@ -244,7 +244,7 @@ class LikeTable:
 
 
 def finite(value: Any) -> Any:
-    """The same with numbers that JSON does not have, infinity and NaN, as texts."""
+    """Turn numbers that JSON does not have, infinity and NaN, into texts."""
     if isinstance(value, dict):
         return {name: finite(part) for name, part in value.items()}
     if isinstance(value, (list, tuple)):

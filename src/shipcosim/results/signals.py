@@ -44,7 +44,7 @@ def chosen(names: Iterable[str], wanted: Sequence[str]) -> list[str]:
 
 
 def _matching(known: Sequence[str], wanted: str) -> list[str]:
-    """Signals of one name; the nearest meaning goes first."""
+    """Signals that a name means; the nearest meaning comes first."""
     if wanted in known:
         return [wanted]
     of_component = [name for name in known if name.startswith(f"{wanted}.")]
@@ -53,7 +53,7 @@ def _matching(known: Sequence[str], wanted: str) -> list[str]:
 
 
 def _remedy(known: Sequence[str], wanted: str) -> str:
-    """The component's signals where that is right, else the components, or the signals where there are none."""
+    """Remedy: signals of the component if it exists, else the components, else all signals."""
     component = wanted.rpartition(".")[0]
     of_component = [name for name in known if component and name.startswith(f"{component}.")]
     components = {name.rpartition(".")[0] for name in known} - {""}

@@ -53,7 +53,7 @@ class StudyResult(Result, Swept):
 
     @property
     def passed(self) -> bool:
-        """Whether every run that was done got to its end."""
+        """Whether every run reached its end."""
         return not self.about["runs"]["failed"]
 
     @property

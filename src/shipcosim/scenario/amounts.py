@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from shipcosim.ssp import System
 
 UnitOf = Callable[[str], Unit | None]
-"""Unit of a signal, None where it has none."""
+"""Unit of a signal, or None."""
 
 
 def units_of(system: System) -> UnitOf:

@@ -24,7 +24,7 @@ SHIP = ("x", "y", "psi", "mass")  # variables by which a component is a ship
 
 @dataclass(frozen=True)
 class Range:
-    """What the values of a kind of variable lie in.
+    """Plausible range of a kind of variable.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ _ACROSS = ("bow", "lateral", "tunnel")
 
 @dataclass(frozen=True)
 class LoggedThruster:
-    """A thruster as a log has it.
+    """A thruster by the channels of a log.
 
     Attributes
     ----------
@@ -83,7 +83,7 @@ def assumed_ship_text(length: float, thrusters: Iterable[LoggedThruster]) -> str
 
 
 def _thruster(one: LoggedThruster, length: float, thrust: float) -> str:
-    """Entry of a thruster whose words say where it is; aft on the centreline where they do not."""
+    """Entry of a thruster with the place that its name says; aft on the centreline without one."""
     words = re.findall("[a-z]+", one.name.lower())
     side = next((sign for word, sign in _SIDES.items() if word in words), 0.0)
     is_forward = any(word in words for word in _FORWARD)

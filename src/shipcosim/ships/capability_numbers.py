@@ -9,7 +9,7 @@ from shipcosim.ships.numbers import ESTIMATED
 
 
 def capability_entries(ship: Described) -> dict[str, dict[str, Quantity]]:
-    """What `capability.toml` and `capability-NAME.toml` need not say of a described ship.
+    """Numbers of a described ship that `capability.toml` and `capability-NAME.toml` may leave out.
 
     Parameters
     ----------

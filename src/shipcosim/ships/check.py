@@ -188,7 +188,9 @@ def _matrix(ship: Described) -> Iterator[Problem]:
             f"the centre of gravity lies {value['centre_of_gravity_x']:g} m forward of midships."
         )
         yield Problem(
-            where, found, f"Of {length:g} m of length it lies within a tenth or so of them."
+            where,
+            found,
+            f"With a length of {length:g} m it lies within about a tenth of the length.",
         )
     # Positive damping would drive the ship.
     for name in DRIVING:

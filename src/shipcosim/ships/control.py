@@ -25,7 +25,7 @@ COMPONENTS = {
 }
 """Component: the FMU that it is."""
 WORTH = 1e-3
-"""Thrust over the ship's weight, below which it holds nothing. [1]"""
+"""Thrust over the ship's weight, below which DP holds nothing. [1]"""
 LEAST = 0.013
 """Least thrust of an azimuth that runs, over its largest: 800 N of 60 kN, as tried for the tuned loop. [1]"""
 

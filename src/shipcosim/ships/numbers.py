@@ -11,7 +11,7 @@ from shipcosim.ships.given import PLAIN, Given, given_in_unit
 from shipcosim.ships.kinds import metadata_of
 
 ESTIMATED = "estimated: "
-"""What the origin of a number begins with that a formula gave."""
+"""First words of the origin of a number that a formula gave."""
 
 
 @dataclass
@@ -42,7 +42,7 @@ class Numbers:
     entries: dict[str, Quantity] = field(default_factory=dict)
 
     def give(self, name: str, given: Given | None) -> bool:
-        """Take a number from the file; return whether there is one."""
+        """Take a number from the file; return True if it has one."""
         if given is None:
             return False
         # Origin: the number's own, else that of the file.

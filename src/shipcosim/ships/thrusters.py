@@ -81,7 +81,7 @@ class ShipThruster:
 
     @property
     def azimuth_rate(self) -> float:
-        """Quickest turning; 0 where it keeps its direction. [rad/s]"""
+        """Largest turning rate; 0 for a fixed direction. [rad/s]"""
         return float(self.entries["azimuth_rate"].value) if self.kind == "azimuth" else 0.0
 
 

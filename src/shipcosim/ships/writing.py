@@ -55,7 +55,7 @@ class Answers:
 
 
 def usual(answers: Answers, key: str) -> str:
-    """Usual value for a ship of which so much is known.
+    """Usual value for a ship with the known numbers.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def usual(answers: Answers, key: str) -> str:
 
 
 def _form(answers: Answers) -> HullDimensions:
-    """Hull of usual proportions, as far as nothing is given."""
+    """Hull of usual proportions for the numbers that are not given."""
     L = number_in(answers.length, "m")
     B = number_in(answers.breadth, "m") if answers.breadth else 1.55 * L**0.54
     T = number_in(answers.draught, "m") if answers.draught else B / 3.0

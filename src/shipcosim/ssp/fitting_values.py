@@ -12,7 +12,7 @@ from shipcosim.units import conversion, spelled_unit
 
 
 def fitting_values(path: AnyPath, system: System) -> tuple[dict[str, Value], list[Problem]]:
-    """Start values of a parameter set, as far as a system has what they are for.
+    """Start values of a parameter set for the parameters that a system has.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ AHEAD = 2
 MOST_RUNS = 1000
 """Of a chunk."""
 ENDS = 2
-"""How often a run that runs alone may end its worker before that counts as its error."""
+"""Worker crashes of a single run before the run counts as failed."""
 ENDED = "Its worker process ended, more than once: the run crashes it, or needs more memory than there is."
 
 

@@ -215,7 +215,7 @@ def _of_fork(study: Study, scenario: Scenario) -> Iterator[Problem]:
 def _of_replaced(
     study: Study, found: Sequence[Sequence[Level]], samples: Samples | None
 ) -> Iterator[Problem]:
-    """Problems of factors of which every value is replaced by what comes after them, so that they change nothing."""
+    """Problems of factors without effect: later ones replace every value of them."""
     # From the last factor to the first: what is set in all runs by something later.
     sampled = () if samples is None else samples.columns
     replaced_by = {

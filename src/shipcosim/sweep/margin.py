@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 PARTS: tuple[Any, ...] = (DpShip, ObserverParameters, ControlParameters)
 UNITS = {"phase": "rad", "gain": "1", "delay": "s"}
 NONE = {"phase": 0.0, "gain": 1.0, "delay": 0.0}
-"""Of a loop that is not stable."""
+"""Margins of a loop that is not stable."""
 
 
 @dataclass(frozen=True)

@@ -202,7 +202,7 @@ def _end_of(expect: Expectation, planned: float) -> float:
 
 
 def _remarks(quantity: Quantity, scenario: Scenario, end: float, planned: float) -> Iterable[str]:
-    """What of the scenario's expectations the study does not judge."""
+    """Expectations of the scenario that the study does not judge."""
     if not quantity.scenario_expectations:
         return
     late = sum(_end_of(one, planned) > end for one in scenario.expect)

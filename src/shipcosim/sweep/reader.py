@@ -16,7 +16,7 @@ from shipcosim.ssp import AnyPath
 from shipcosim.sweep.study_model import Study
 
 LISTS = {"factor": "name", "quantity": "name", "summary": "name", "view": "title"}
-"""Lists of which a later study replaces what has the same name."""
+"""Lists in which a later study replaces entries of the same name."""
 
 
 @dataclass
@@ -148,7 +148,7 @@ def _is_list(content: dict[str, Any], name: str) -> bool:
 
 
 def _over(base: Source, own: Source) -> Source:
-    """Merge a study over the one that it extends."""
+    """Merge a study with the one that it extends."""
     files = [*own.files, *base.files]
     shift = len(own.files)
     # What the other study says, with the scenario that lies beside it by its path.

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 EVERY = ".*"
 """Ends the name of all parameters of a component with a tolerance."""
 EDGE = 2.0**-53
-"""Least probability that a sample has, so that a distribution without bounds gives numbers."""
+"""Smallest probability of a sample, so that an unbounded distribution gives finite numbers."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ class Samples:
 
 
 def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
-    """Samples of a study; None if it has none. Problems go to `levels`.
+    """Samples of a study, or None. Problems go to `levels`.
 
     Raises
     ------

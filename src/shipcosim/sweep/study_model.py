@@ -360,7 +360,7 @@ class View(Part):
 
     @model_validator(mode="after")
     def _keys_of_its_kind(self) -> View:
-        """Raise ValueError where a key is missing, or would be left out without a word."""
+        """Raise ValueError if a key is missing, or would be ignored."""
         needed, others = _KEYS_OF_VIEWS[self.kind]
         if missing := [key for key in needed if not getattr(self, key)]:
             raise ValueError(f"a view of kind '{self.kind}' needs {' and '.join(missing)}.")

@@ -132,7 +132,7 @@ def _further(
 
 
 def not_reached(plan: Plan) -> list[str]:
-    """What is not judged because runs end before it, each as a sentence."""
+    """Remarks on expectations that are not judged because runs end earlier."""
     remarks = [remark for measure in plan.measures for remark in measure.remarks]
     # Measures need no more than the longest run has: where all are as long there is nothing to say.
     if any(level.stop_time is not None for levels in plan.levels for level in levels):

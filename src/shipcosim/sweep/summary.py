@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 CONFIDENCE = 0.95
 _NORMAL = 1.959963984540054  # quantile of the normal distribution at (1 + CONFIDENCE) / 2
 SHARE = 0.9
-"""Of the runs of a case that have to hold, where a summary does not say."""
+"""Share of the runs of a case that have to hold, if a summary names none."""
 
 RANGE = "_range"
 """Ending of the column that says the bounds of a value where not every case was run."""

@@ -1,7 +1,7 @@
 """What the consequence analysis says of R/V Gunnerus beforehand, against her simulated in each loss.
 
 `python -m tests.bench.allocation.test_consequences [allocator]` prints every case, and for each wind what
-docs/thruster-failures.md says of it.
+docs/reports/allocation.md says of it.
 """
 
 import sys

@@ -125,7 +125,7 @@ def not_shipped():
             ["until:", "0.52 s is no whole number of steps of 0.05 s", "0.5 s would be."],
         ),
         (["--until", "7"], ["until:", "from 0 s to 7 s", "not after the stop time, 1 s"]),
-        (["--until", "nan"], ["'--until'", "Give seconds, or such as"]),
+        (["--until", "nan"], ["'--until'", "Give seconds, or a text with a unit"]),
         (["--stop", "5"], ["No such option: --stop"]),
         (["--from", "absent.state"], ["absent.state:", "No such file"]),
         (["--from", SHORT], [f"{SHORT}:", "is no snapshot of a run", "--store"]),
@@ -172,7 +172,7 @@ def test_options_of_a_run(call, gunnerus, arguments, said):
             ["stop_time = 1 s is no multiple of the step size 0.3 s. The nearest would be 0.9 s."],
         ),
         ([*OPEN[:-1], "1e-12"], ["1e+12 steps", "larger steps"]),
-        ([*OPEN, "--start-time", "nan"], ["'--start-time'", "Give seconds, or such as"]),
+        ([*OPEN, "--start-time", "nan"], ["'--start-time'", "Give seconds, or a text with a unit"]),
         (
             [*OPEN, "--start-time", "5"],
             ["the run would go from 5 s to 1 s.", "Its end must lie after 5 s"],

@@ -56,7 +56,7 @@ def test_the_summary_says_the_same_as_the_page(found, tmp_path, capsys):
     (tmp_path / "report.html").write_text(render(found, {}), encoding="utf-8")
     print_study(found, tmp_path)
     said = capsys.readouterr().out
-    sentence = re.search(r"[A-Z][a-z ]+ drag explains best[^.]*\.", said)[0]
+    sentence = re.search(r"[A-Z][a-z ]+ drag fits best[^.]*\.", said)[0]
     assert sentence in (tmp_path / "report.html").read_text(encoding="utf-8")
     assert said.count("\n- ") == len(next_steps(found)) and "to both sides" in said
 

@@ -1,1 +1,1 @@
-"""One file a command: its arguments, and what it does in order."""
+"""Commands, one file each: the arguments, and the calls in order."""

@@ -28,7 +28,7 @@ def check(
         typer.Option(
             "--for",
             metavar="TOOL",
-            help="libcosim or ecos: what it would ignore or die of; repeatable.",
+            help="libcosim or ecos: what it would ignore, or crash on; repeatable.",
         ),
     ] = None,
     strict: Strict = False,

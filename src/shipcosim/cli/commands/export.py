@@ -35,7 +35,8 @@ def fmu(
     step_size: Annotated[
         float | None,
         time_option(
-            "--step-size", "Of the exchange inside; in s, or as '50 ms'. Default: the system's."
+            "--step-size",
+            "Step of the exchange inside; in s, or with a unit: '50 ms'. Default: the system's.",
         ),
     ] = None,
     parameters: Parameters = None,

@@ -1,6 +1,7 @@
 """The commands `shipcosim list` and `docs`: what there is, to run and to read."""
 
 import re
+import webbrowser
 from typing import Annotated
 
 import typer
@@ -38,22 +39,34 @@ def docs(
         str | None,
         typer.Argument(metavar="[PAGE]", help="Name of a page; without, the pages, a line each."),
     ] = None,
+    terminal: Annotated[
+        bool,
+        typer.Option("--terminal", help="Show the page here, even where the site is built."),
+    ] = False,
 ) -> None:
-    """Read the documentation in the terminal.
+    """Open the documentation: in the browser if the site is built, else in the terminal.
+
+    `make docs` builds the site, in a clone. It has no public address yet. What the site makes from the code, such as
+    the list of commands, is not on the pages in the terminal.
 
     Example: shipcosim docs diagnosis
     """
-    from shipcosim.cli.start.listing import pages, table_of_pages
+    from shipcosim.cli.start.listing import pages, site_page, table_of_pages
 
     found = pages()
+    if page is not None and page not in found:
+        raise ShipcosimError([Problem(page, "There is no such page.", suggestion(page, found))])
+    console = make_console()
+    site = site_page(found[page] if page else None)
+    # A pipe gets the text. So does a terminal on a machine without a browser.
+    if site and console.is_terminal and not terminal and webbrowser.open(site.as_uri()):
+        say(f"Page: {site}")
+        return
     if page is None:
         say(table_of_pages(found))
         return
-    if page not in found:
-        raise ShipcosimError([Problem(page, "There is no such page.", suggestion(page, found))])
     # Marks for the site are no text.
     text = re.sub(r"<!--.*?-->\n*", "", found[page].read_text(encoding="utf-8"))
-    console = make_console()
     if not console.is_terminal:
         say(text)
         return

@@ -25,10 +25,11 @@ def ship(
     displacement: Annotated[str | None, typer.Option("--displacement", help='"2650 t".')] = None,
     speed: Annotated[str | None, typer.Option("--speed", help='Service speed, "12 kn".')] = None,
     power: Annotated[
-        str | None, typer.Option("--power", help='Of all main propellers, "2400 kW".')
+        str | None, typer.Option("--power", help='Power of all main propellers, "2400 kW".')
     ] = None,
     kind: Annotated[
-        str | None, typer.Option("--kind", help="Of Blendermann's table, for the wind.")
+        str | None,
+        typer.Option("--kind", help="Kind of ship in Blendermann's table, for the wind."),
     ] = None,
     propulsion: Annotated[
         str | None, typer.Option("--propulsion", help="azimuths, screws or rudder.")
@@ -40,7 +41,7 @@ def ship(
         ),
     ] = None,
     yes: Annotated[
-        bool, typer.Option("--yes", help="Ask nothing: what is left out is what is usual.")
+        bool, typer.Option("--yes", help="Ask nothing; take usual values for what is left out.")
     ] = False,
     force: Annotated[
         bool, typer.Option("--force", help="Write over files that are there.")

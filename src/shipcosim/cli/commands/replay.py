@@ -42,7 +42,7 @@ def replay(
         float | None,
         time_option(
             "--horizon",
-            "Length of each prediction; in s, or such as '2 min'. Default: fits craft and log.",
+            "Length of each prediction; in s, or with a unit: '2 min'. Default: fits craft and log.",
         ),
     ] = None,
     out: Annotated[

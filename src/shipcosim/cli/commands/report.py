@@ -53,7 +53,7 @@ def _table(given: Path) -> Path:
 
 
 def _names(first: Path, second: Path) -> tuple[str, str]:
-    """What tells the two apart in few letters: names of their folders or files, else A and B."""
+    """Short names of two runs: those of their folders or files, else A and B."""
     ways = []
     for path in (first.resolve(), second.resolve()):
         parts = list(path.parts[1:]) if path.is_dir() else [*path.parts[1:-1], path.stem]

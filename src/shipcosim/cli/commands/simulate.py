@@ -57,13 +57,14 @@ MaxGap = Annotated[
     float | None,
     time_option(
         "--max-gap",
-        "Longest time without a row; in s, or such as '1 min'. Default: 5 x an even spacing.",
+        "Longest time without a row; in s, or with a unit: '1 min'. Default: 5 x an even spacing.",
     ),
 ]
 StartTime = Annotated[
     float | None,
     time_option(
-        "--start-time", "On the clock of the table; in s, or such as '1 h'. Default: the system's."
+        "--start-time",
+        "On the clock of the table; in s, or with a unit: '1 h'. Default: the system's.",
     ),
 ]
 

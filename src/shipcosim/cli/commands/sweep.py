@@ -24,7 +24,9 @@ Serve = Annotated[
 ]
 Port = Annotated[
     int | None,
-    typer.Option("--port", metavar="N", min=1, max=65535, help="Of --serve. Default: a free one."),
+    typer.Option(
+        "--port", metavar="N", min=1, max=65535, help="Port of --serve. Default: a free one."
+    ),
 ]
 Scheduler = Annotated[
     str | None,
@@ -80,7 +82,7 @@ def sweep(
     runs.csv, summary.csv, study.json, verdict.json and report.html in results/STUDY.
 
     It goes on where it was interrupted: runs that are done are on disk. A run that fails is a row with its error. A
-    study that has changed starts anew; earlier results are kept in results/STUDY-1, -2, ... unless --force is given,
+    study that has changed starts again; earlier results are kept in results/STUDY-1, -2, ... unless --force is given,
     which does all runs again.
 
     Exit code 1 says that some runs failed.

@@ -36,7 +36,7 @@ SUMMARY_OF_STEP = "GITHUB_STEP_SUMMARY"
 
 @dataclass(frozen=True)
 class Conclusion:
-    """What a command found.
+    """Result of a command.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class Conclusion:
 
 @dataclass(frozen=True)
 class Output:
-    """Forms in which a command says what it found, as its options ask for them."""
+    """Forms of a command's output, as its options ask for."""
 
     as_json: bool = False
     quiet: bool = False
@@ -76,7 +76,7 @@ class Output:
                 yield
 
     def conclude(self, found: Conclusion) -> None:
-        """Say what was found; exit code 1 unless it passed."""
+        """Print the result; exit code 1 unless it passed."""
         from shipcosim.cli.console import print_problems, say_outcome
         from shipcosim.cli.terminal import make_console
 

@@ -1,4 +1,4 @@
-"""What was checked as JUnit's XML and as a table of Markdown."""
+"""Checks as JUnit XML and as a Markdown table."""
 
 from __future__ import annotations
 

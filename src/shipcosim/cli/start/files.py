@@ -142,9 +142,7 @@ def system_files(name: str, origin: str) -> Files:
     folder = library.find("system", origin, "--from")
     if not (folder / STRUCTURE).is_file():
         remedy = f"Unpack it into ssp/{name}; an .ssp is a ZIP archive."
-        raise error_at(
-            origin, f"This is no folder with a {STRUCTURE}, so it is not copied.", remedy
-        )
+        raise error_at(origin, f"This folder has no {STRUCTURE}, so it is not copied.", remedy)
     with reading(folder / STRUCTURE):
         text = (folder / STRUCTURE).read_text(encoding="utf-8")
     named = re.search(r'<(?:\w+:)?System\b[^>]*?\sname="([^"]*)"', text)

@@ -81,6 +81,14 @@ def pages() -> dict[str, Path]:
     }
 
 
+def site_page(page: Path | None) -> Path | None:
+    """File of the built site for a page, else for its front page; None if `make docs` has not built it."""
+    root = library.shipped()
+    name = page.relative_to(root / "docs").with_suffix(".html") if page else "index.html"
+    file = root / "build" / "site" / name
+    return file if file.is_file() else None
+
+
 def table_of_pages(found: Mapping[str, Path]) -> str:
     """The names of pages with their titles."""
     titles = {

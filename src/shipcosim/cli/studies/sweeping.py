@@ -162,13 +162,15 @@ def _say_indices(console: Console, swept: Swept) -> None:
 
 
 def _say_trials(console: Console, swept: Swept) -> None:
-    """Trials of a search that no other beats, and the one as shipped."""
+    """Pareto-optimal trials of a search, and the trial with the shipped gains."""
     trials = swept.tables["trials"]
     tune = swept.plan.study.tune
     assert tune is not None
     names = [one.quantity for one in tune.objective]
     front = trials.loc[trials["pareto"]].sort_values(by=names[0])
-    said = f"of {len(trials)} trials no other beats {len(front)}; trial 0 is as shipped."
+    said = (
+        f"{len(front)} of {len(trials)} trials are Pareto-optimal; trial 0 has the shipped gains."
+    )
     console.print(
         f"{', '.join(f'{one.quantity} {one.direction}d' for one in tune.objective)}: {said}",
     )

@@ -34,8 +34,8 @@ TYPES = {
     "Integer": ("integer", c_int, int),
     "Boolean": ("bool", c_bool, bool),
 }
-"""Names and types that it has for values."""
-REMARK = "ecos does not say when an FMU fails, it goes on: hold the result against that of another engine."
+"""Names and types of values in ecos."""
+REMARK = "ecos does not say when an FMU fails, it goes on: compare the result with that of another engine."
 START = "start"  # name of the parameter set; ecos applies none without a name
 
 

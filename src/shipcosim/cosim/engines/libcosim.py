@@ -41,7 +41,7 @@ SERIES = {
     "Real": ("REAL", "real", c_double, np.float64),
     "Integer": ("INTEGER", "integer", c_int, np.int32),
 }
-"""What its observer of time series can hold, in the names and types that it goes by there."""
+"""Variable types that its observer of time series can record."""
 
 
 def run(system: System, scenario: Scenario, options: RunOptions) -> xarray.Dataset:

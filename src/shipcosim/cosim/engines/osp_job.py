@@ -57,7 +57,7 @@ def event_of(job: Job, change: SignalChange) -> dict[str, object]:
 
 
 def events_json(job: Job) -> str:
-    """Scenario of OSP, in JSON, with the changes that a job makes to what is passed on between components."""
+    """Scenario of OSP, in JSON, with the changes that a job makes to connections."""
     events = [event_of(job, change) for change in job.changes]
     after = 2.0 * job.times[-1]  # all changes are taken back at this time
     return json.dumps({"description": job.scenario.description, "events": events, "end": after})

@@ -27,13 +27,14 @@ from shipcosim.ssp.xml.archive import write_archive
 from shipcosim.ssp.xml.values import text_of
 
 VERSION = "0.1.0"
-"""Of the library's configuration."""
+"""Version of the library's configuration."""
 
 PLATFORMS = ("linux64", "win64", "darwin64")
 """Folders in an FMU of FMI 2.0, one a platform."""
 
 LIBRARIES = Path(__file__).parent / "vendor" / "container_fmu.zip"
-"""Of FMPy 0.3.32, a folder a platform; it lies here since FMPy 0.3.25 lacks it, see LICENSES.txt beside it."""
+"""Libraries of FMPy 0.3.32, a folder for each platform; it lies here since FMPy 0.3.25 lacks it, see LICENSES.txt
+beside it."""
 
 
 def write_container(
@@ -109,7 +110,7 @@ def _component_problems(component, step_size):
     fmu = component.fmu
     if fmu.fmi_version not in ("2.0", "3.0") or "CoSimulation" not in fmu.interfaces:
         found = f"{fmu.path.name} is no co-simulation FMU of FMI 2.0 or 3.0."
-        yield Problem(component.name, found, "The container FMU steps no other ones.")
+        yield Problem(component.name, found, "The container FMU steps no other FMUs.")
     elif component.implementation == "ModelExchange":
         yield Problem(
             component.name,

@@ -42,7 +42,7 @@ class ContainerVariable:
 
 
 def library_type(fmu: FmuDescription, name: str) -> str | None:
-    """The library's name for a variable's type; None where it has none."""
+    """The library's name for a variable's type, or None."""
     variable = fmu.variables[name]
     if variable.whole is not None or variable.dimensions or variable.kind in ("Binary", "Clock"):
         return None

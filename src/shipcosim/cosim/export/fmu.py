@@ -24,8 +24,8 @@ LIMIT = 60.0
 """How long the container, in a process of its own, may take for an answer: its library ends the process where an FMU in
 it cannot be instantiated. [s]"""
 TOLERANCE = 1e-9
-"""Of the largest value of the signals of a component in one unit: what is left of two forces is as exact as they are.
-Times are rounded differently in the last digit inside the container."""
+"""Largest difference, over the largest value of the signals of a component in one unit: what is left of two forces is
+as exact as they are. Times are rounded differently in the last digit inside the container."""
 
 
 def export_fmu(

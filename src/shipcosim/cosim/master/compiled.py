@@ -95,7 +95,7 @@ def exchange_tables(
     external: Sequence[int] | np.ndarray,
     inputs: Sequence[int] | np.ndarray,
 ) -> dict[str, Any]:
-    """What does not change of an exchange, by the names of the structure in `native/loop.c`.
+    """Constant parts of an exchange, by the names of the structure in `native/loop.c`.
 
     Parameters
     ----------
@@ -253,7 +253,7 @@ class CompiledMaster(Master):
 def why_in_python(
     sequential: bool, string_connections: Sequence[object], kinds: Container[str]
 ) -> str:
-    """Why nothing of a run is compiled, by its order and what it exchanges; empty if something can be."""
+    """Reason why no component of a run can be compiled; empty if some can."""
     if not is_installed():
         return "there is no compiler, install it: pip install 'shipcosim[native]'"
     if sequential:

@@ -22,7 +22,7 @@ INTERPOLATIONS = ("held", "linear")
 ANGLES = {"deg": 360.0, "rad": 2.0 * np.pi}
 """Units of angles and what a full turn is in them."""
 LONGEST_GAP = 5.0
-"""Of a table whose rows are evenly spaced: times the usual distance."""
+"""Longest gap of a table with evenly spaced rows, in times the usual distance. [1]"""
 CLOSE = 1e-6  # s; times of a log in seconds since 1970 are no finer
 
 

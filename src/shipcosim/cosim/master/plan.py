@@ -102,7 +102,7 @@ class Plan:
         return self.system.components[component].variables[name]
 
     def kind(self, variable: Variable) -> str | None:
-        """Kind of the arrays that hold a variable's values, or None where none does."""
+        """Kind of the arrays that hold a variable's values, or None."""
         return self.kinds.get(variable.kind)
 
     def kind_of(self, end: End) -> str:

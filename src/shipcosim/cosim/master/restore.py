@@ -22,7 +22,7 @@ ABILITIES = (
     ("canGetAndSetFMUstate", "canSerializeFMUstate"),
     ("canGetAndSetFMUState", "canSerializeFMUState"),
 )
-"""What an FMU has to declare so that its state can be stored, in FMI 2.0 and 3.0."""
+"""Capability flags that an FMU needs so that its state can be stored, in FMI 2.0 and 3.0."""
 
 
 TRIED = 10
@@ -236,7 +236,7 @@ def restore_snapshot(
 
 
 def _fill(values, names, known):
-    """Set values by name where they are known; others stay."""
+    """Set the values of known names; keep the others."""
     values[:] = [known.get(name, value) for name, value in zip(names, values, strict=True)]
 
 

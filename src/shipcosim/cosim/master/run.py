@@ -245,7 +245,7 @@ class Simulation:
         return master
 
     def _engine_of(self, options):
-        """The engine that runs this; of "auto" the compiled one where compiling pays."""
+        """The engine of this run; "auto" means the compiled one if compiling saves time."""
         if options.engine != "auto":
             return options.engine
         # By what is asked alone, not by what lies in the cache: the same run gives the same bits.

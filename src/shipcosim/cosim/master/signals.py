@@ -225,7 +225,7 @@ class Exchange:
             self._passed_on = self._state()
 
     def _state(self):
-        """Everything that the inputs follow from, to notice that nothing changed."""
+        """All sources of the inputs, to detect that none has changed."""
         modifiers = self.output_modifiers.version, self.input_modifiers.version
         return self.sources.tobytes(), self.transferred.tobytes(), modifiers
 

@@ -26,7 +26,7 @@ DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux: a component that hangs does no
 
 
 class Garbled(Exception):
-    """What came through a pipe is no message: an FMU has written into it."""
+    """Raised for a damaged message from a pipe: an FMU has written into it."""
 
 
 def send(pipe: BinaryIO, message: object) -> None:
@@ -38,7 +38,7 @@ def send(pipe: BinaryIO, message: object) -> None:
 
 
 def receive(pipe: BinaryIO) -> Any:
-    """Read a message from a pipe. Raises EOFError where the other end is closed, Garbled where it is no message."""
+    """Read a message from a pipe. Raises EOFError if the other end is closed, Garbled if the message is damaged."""
     head = pipe.read(len(MARK) + 8)
     # Without the mark the length may be any number, and reading would not end.
     if not head.startswith(MARK[: len(head)]):
@@ -90,7 +90,7 @@ def serve() -> None:
 
 
 def end_with_parent(parent: int | None = None) -> None:
-    """Have this process end where the one that started it ends, also where that is killed.
+    """Make this process end with its parent process, also if that is killed.
 
     Parameters
     ----------

@@ -18,14 +18,14 @@ START = (
     "import sys; sys.path[:] = {path!r}; from shipcosim.cosim.processes.child import serve; serve()"
 )
 START_TIMEOUT = 60.0
-"""For a process to start. [s]"""
+"""Time limit for a process to start. [s]"""
 EXIT_TIMEOUT = 5.0
-"""For a process that has nothing more to do. [s]"""
+"""Time limit for a process to end. [s]"""
 MOST_LINES = 1000
 LAST_LINES = 3
 """Lines that a component prints and that are shown at most, and of them those that an error repeats."""
 MOST_BYTES = 4096
-"""Of a line that a component prints."""
+"""Longest line of a component that is shown. [bytes]"""
 
 
 class ComponentProcess:
@@ -140,7 +140,7 @@ class ComponentProcess:
             self._kill()
 
     def close_input(self) -> None:
-        """Tell the process that it is not needed any more."""
+        """Ask the process to end."""
         with suppress(OSError):
             self._requests.close()
 

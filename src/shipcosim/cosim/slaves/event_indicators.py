@@ -44,7 +44,7 @@ class EventIndicators:
         return bool(np.any((signs != 0.0) & (signs != self._signs)))
 
     def has_come_to_zero(self) -> bool:
-        """Whether a positive one has become zero: an event too, as FMI counts zero as negative."""
+        """Whether a positive indicator has become zero: that is an event too, because FMI counts zero as negative."""
         return bool(np.any((self._of_now() == 0.0) & (self._signs > 0.0)))
 
     def _of_now(self):

@@ -38,7 +38,7 @@ class Instances:
     def instance_of(self, component: Component) -> LibrarySlave:
         """An instance of a component's FMU, with nothing set.
 
-        From the second time on it is the same one, reset; an FMU that cannot be reset is instantiated anew.
+        From the second time on it is the same one, reset; an FMU that cannot be reset is instantiated again.
 
         Raises
         ------

@@ -23,7 +23,7 @@ from shipcosim.cosim.slaves.slave import (
 )
 
 MOST_MESSAGES = 1000
-"""That an instance logs and are kept."""
+"""Most messages of an instance that are kept."""
 
 
 class LibrarySlave(Slave):

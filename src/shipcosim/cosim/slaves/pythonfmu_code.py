@@ -74,7 +74,7 @@ def _modules_of(fmu: Path, _changed: int) -> dict[str, frozenset]:
 
 
 def _module(file: str) -> str:
-    """Name of the module that a file of an FMU belongs to; empty for files that are no code."""
+    """Name of the module that a file of an FMU belongs to; empty for files without code."""
     place = PurePosixPath(file)
     is_code = place.parts[0] == "resources" and place.suffix in CODE
     return place.parts[1].partition(".")[0] if is_code else ""

@@ -30,7 +30,7 @@ BUFFER_TYPES = {"Integer": np.int32, "Boolean": np.int32, "Long": np.int64, "Rea
 STATUS = ["ok", "warning", "discard", "error", "fatal", "pending"]
 OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
 FAILED = DISCARD
-"""Status from which on a call has not done its work."""
+"""Lowest status of a call that has not done its work."""
 
 
 class SlaveError(Exception):
@@ -38,7 +38,7 @@ class SlaveError(Exception):
 
 
 class RunEnded(SlaveError):
-    """An FMU asks to end the simulation, which is no failure."""
+    """An FMU asks to end the simulation; this does not count as a failure."""
 
     def __init__(self):
         super().__init__("It asks to end the simulation.")

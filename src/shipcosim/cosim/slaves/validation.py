@@ -12,7 +12,7 @@ from shipcosim.ssp.fmu.reader import describe_fmu
 from shipcosim.ssp.xml.document import Findings
 
 LONGEST = 10.0
-"""For the system's loader to list what a binary needs. [s]"""
+"""Time limit for the system's loader to list the libraries of a binary. [s]"""
 
 
 def validation_problems(path: Path) -> list[Problem]:
@@ -31,12 +31,12 @@ def validation_problems(path: Path) -> list[Problem]:
         "list index out of range": "An index of ModelStructure or of a derivative leads to no variable."
     }
     found = (unreadable.get(text, text) for text in found)
-    remedy = "FMI does not allow it; export the FMU anew."
+    remedy = "FMI does not allow it; export the FMU again."
     return [Problem(str(path), text, remedy) for text in dict.fromkeys(found) if text]
 
 
 def library_problems(path: Path) -> list[Problem]:
-    """What is wrong with an FMU's libraries for this platform, and which others they need that are not here, as errors.
+    """Errors of an FMU's libraries for this platform, and libraries that they need and that are missing.
 
     The others only on Linux with glibc: its loader lists them without running any code of the binary.
 

@@ -29,7 +29,7 @@ MOST_STEPS = 4096
 
 
 class NotForPages(ShipcosimError):
-    """A page cannot run a system: a component has no native code, or what is exchanged is no number."""
+    """A page cannot run a system: a component has no native code, or an exchanged value is not a number."""
 
 
 class Wiring:

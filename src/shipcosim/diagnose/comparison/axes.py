@@ -103,7 +103,7 @@ class Axis:
         return self.felt_by.kernel.smooth(loads[self.number])[self.rows]
 
     def total(self, commanded: Commanded) -> np.ndarray:
-        """What all thrusters are commanded, (n,) array."""
+        """Commanded force of all thrusters, (n,) array."""
         return sum(
             (self.smoothed(load) for load in commanded.thrusters.values()), np.zeros(self.felt.size)
         )
@@ -125,7 +125,7 @@ class Axis:
         return bool(apart > 0.1 * self.size)
 
     def is_driven(self, commanded: Commanded) -> bool:
-        """Whether the thrusters are commanded to do something on this axis, beside what is felt."""
+        """Whether the commanded force on this axis is large enough against the measured force."""
         total = self.total(commanded)
         return bool(total.std() > LEAST_COMMANDED * max(self.felt.std(), 1e-9))
 
@@ -143,11 +143,11 @@ class Axis:
         return self._fit(columns, True)
 
     def compared(self, columns: np.ndarray) -> AxisFit:
-        """The same with gains of any sign."""
+        """Fit of the measured force by commanded loads, with gains of any sign."""
         return self._fit(columns, False)
 
     def most_gain(self, total: np.ndarray) -> tuple[float, float]:
-        """Largest gain that a commanded load may have, with its standard deviation: what is felt explains it in turn.
+        """Largest gain that a commanded load may have, with its standard deviation: the measured force explains it in turn.
 
         Where thrust and damping balance, what is left over is small, and any error of either makes the gain look small.
         Explained the other way round, the same errors make it look large: the truth is between.
@@ -159,7 +159,7 @@ class Axis:
         Returns
         -------
         tuple of float, float
-            Infinite where nothing of what is felt goes with it.
+            Infinite where the measured force does not correlate with it.
         """
         # Reverse regression: commanded load on measured force and all other loads, whose signs
         # turn.
@@ -185,7 +185,7 @@ class Axis:
         return root_mean_square(self.felt) + 1e-30
 
     def both_ways(self, ahead: np.ndarray, astern: np.ndarray) -> AxisFit:
-        """The same by what thrusters do ahead and astern, neither way much weaker than the other.
+        """Fit of the measured force by loads ahead and astern, neither much weaker than the other.
 
         Parameters
         ----------
@@ -238,7 +238,7 @@ class Axis:
 
 
 def prior_of(rest: np.ndarray, positive: np.ndarray, size: float) -> np.ndarray:
-    """What forces that no model knows may be, as standard deviations of the coefficients of their columns.
+    """Standard deviations of the coefficients of unmodelled forces.
 
     Parameters
     ----------
@@ -322,7 +322,7 @@ def rest_of(motion: Motion, commanded: Commanded) -> list[tuple[np.ndarray, np.n
 
 
 def _beside(speeds: np.ndarray, psi: np.ndarray) -> list[Mapping[str, list[np.ndarray]]]:
-    """By axis: what else damps it, what couples it to the others, and what is steady."""
+    """Further loads by axis: damping, coupling to other axes, and a steady load."""
     u, v, r = speeds
     # A steady force lies in the earth's frame where the ship turned enough to tell it from one in
     # her own.

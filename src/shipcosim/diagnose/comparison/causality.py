@@ -80,7 +80,7 @@ def blocks(series: np.ndarray, count: int) -> np.ndarray:
 
 
 def with_past(usable: np.ndarray, count: int) -> np.ndarray:
-    """Usable blocks before which so many others are usable too."""
+    """Usable blocks that follow a given number of usable blocks."""
     # Cumulative count of bad blocks: equal at both ends where the past is complete.
     bad = running_sums(~usable)
     rows = np.arange(count, usable.size)
@@ -88,7 +88,7 @@ def with_past(usable: np.ndarray, count: int) -> np.ndarray:
 
 
 def _past(axis: int, speeds: np.ndarray, heading: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """What the motion before says of a velocity, scaled columns."""
+    """Past motion as scaled columns, to predict a velocity."""
     u, v, r = speeds
     own = speeds[axis]
     # Past velocities, more lags of the axis itself.

@@ -88,7 +88,7 @@ def moving_mass(motion: Motion, model: ShipModel) -> np.ndarray:
 
 
 def late(commanded: Commanded, rows: float) -> Commanded:
-    """The same with thrusters that act that many rows later."""
+    """Commanded forces of thrusters that act some rows later."""
     # Interpolate between rows, as the delay need not be a whole number of them.
     at = np.arange(commanded.hull.shape[1])
     moved = {

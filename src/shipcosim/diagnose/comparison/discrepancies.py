@@ -151,7 +151,7 @@ def _explained_by_gain(one: AxisGain) -> float:
 
 
 def _weak(one: AxisGain) -> Iterator[Discrepancy]:
-    """A gain on one axis, or those of its thrusters where they differ."""
+    """Gain on one axis, or the gains of its thrusters if they differ."""
     if max(one.support_of_each, one.fit.support) < LEAST_SUPPORT:
         return
     # Different gains ahead and astern say more than a mean of the two.
@@ -179,7 +179,7 @@ def _weak(one: AxisGain) -> Iterator[Discrepancy]:
 
 
 def _damping(one: AxisGain) -> Iterator[Discrepancy]:
-    """What the water resists, where the log tells it."""
+    """Discrepancy of the resistance, if the log shows it."""
     axis = one.axis
     fit = one.fit
     # Damping can only be compared where thrust has a positive gain and the model a load of the
@@ -221,9 +221,9 @@ def _of_lag(labels: Labels) -> float:
 
 
 def _rest(one: AxisGain) -> Iterator[Discrepancy]:
-    """What nothing of all this explains."""
+    """Discrepancy that no other finding explains."""
     left = one.fit.squares / float((one.axis.felt**2).mean())
     if left > REMAINS:
         name = FORCES[one.axis.name]
-        text = f"{name}: {100.0 * left:.0f} % of what is felt remains unexplained"
+        text = f"{name}: {100.0 * left:.0f} % of the measured force remains unexplained"
         yield Discrepancy(text, None, one.axis.name, left, 0.0, "1", 0.0)

@@ -22,7 +22,7 @@ from shipcosim.diagnose.numerics import root_mean_square
 
 
 def is_beyond(ratio: float, std: float, least: float, deviations: float) -> bool:
-    """Whether a ratio is surely more than a factor away from 1, by so many standard deviations."""
+    """Whether a ratio differs from 1 by more than a factor, with a margin in standard deviations."""
     return bool(abs(np.log(ratio)) - deviations * std / ratio > np.log(least))
 
 
@@ -69,12 +69,12 @@ class AxisGain:
 
     @property
     def is_off(self) -> bool:
-        """Whether the model as it is is far from what is felt."""
+        """Whether the unchanged model is far from the measured force."""
         return self.error > OFF
 
     @property
     def is_told(self) -> bool:
-        """Whether thrusters and water explain most of what is felt."""
+        """Whether thrusters and water explain most of the measured force."""
         return self.share_of_each > TOLD
 
     @property
@@ -88,7 +88,7 @@ class AxisGain:
 
     @property
     def has_thrusters_apart(self) -> bool:
-        """Whether each thruster's own gain can be believed: of those told nearly alike one takes what another gives."""
+        """Whether each thruster's gain is reliable: with nearly equal commands gains cannot be separated."""
         return all(v > -SURE_OF_GAIN * self.each_std[name] for name, v in self.each.items())
 
     @property
@@ -108,7 +108,7 @@ class AxisGain:
 
     @property
     def differs_by_way(self) -> bool:
-        """Whether thrust ahead and astern surely have gains of their own, one of them known."""
+        """Whether thrust ahead and astern clearly have different gains, one of which is known."""
         if self.ways is None or self.support_of_ways < self.fit.support + LEAST_SUPPORT:
             return False
         # One way is known surely and both are positive; then the difference must exceed its
@@ -210,7 +210,7 @@ class CommonRatio:
 
 
 def common_ratio(gains: Sequence[AxisGain]) -> CommonRatio | None:
-    """The ratio that the axes have in common; None where they contradict, or thrusters do, or none tells it.
+    """The common ratio of the axes; None if axes or thrusters contradict each other, or none shows it.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ class LabelError:
     turns: bool = False
 
     def undo(self, units: ThrusterSeries) -> ThrusterSeries:
-        """What drives the thrusters, corrected; the direction of one that does not turn stays."""
+        """Inputs of the thrusters, corrected; fixed directions stay."""
         if len(self.thrusters) == 2:
             one, other = self.thrusters
             (first, ahead) = units[one]
@@ -52,7 +52,7 @@ class LabelError:
 
 @dataclass(frozen=True)
 class LabelHypothesis:
-    """One way to read the thrusters' channels, and how well what is commanded then agrees with what is felt.
+    """One way to read the thrusters' channels, and how well the commanded force then agrees with the measured force.
 
     Attributes
     ----------
@@ -89,7 +89,7 @@ class LabelHypothesis:
 
     @property
     def is_late(self) -> bool:
-        """Whether the thrust surely acts late, by rows that can be told apart."""
+        """Whether the thrust clearly acts late, by enough rows to be resolved."""
         return self.lag >= LEAST_LAG * self.step and self.gained_by_lag > LEAST_SUPPORT
 
     @property
@@ -177,7 +177,7 @@ def ahead_of(units: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> dict[str, np
 
 
 def driven(units: ThrusterSeries, record: Record, felt: Felt, model: ShipModel) -> Commanded:
-    """The loads of a model along what a log shows, with thrusters that are driven otherwise.
+    """Loads of a model along a log, with thrusters driven under another label.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Sides and signs of thrusters: which labels of their channels make what is commanded agree with what is felt.
+"""Sides and signs of thrusters: which labels of their channels make the commanded force agree with the measured force.
 
 Three measures tell. The *fit* holds commanded against measured force, smoothed, each axis by itself. The *foresight* asks
 whether commands come before what they do. The *likelihood* takes all axes at once, with errors that are autocorrelated
@@ -80,18 +80,18 @@ class Labels:
 
     @property
     def is_sure(self) -> bool:
-        """Whether it is known how they are wrong."""
+        """Whether the correction of the labels is known."""
         return self.is_wrong and not self.rivals
 
     @property
     def used(self) -> LabelHypothesis:
-        """The best reading where it is sure, else as logged."""
+        """The best reading if it is certain, else the logged one."""
         return self.best if self.is_sure else self.logged
 
 
 @dataclass(frozen=True)
 class _Weighed:
-    """A reading with what each measure says for it, less what its changes cost. [nats]
+    """A reading with its evidence by each measure, less the cost of its changes. [nats]
 
     `drives`: the correlation of what the thrusters are commanded with how the craft moves, the lesser of surge and yaw.
     """
@@ -104,11 +104,11 @@ class _Weighed:
 
     @property
     def measures(self) -> np.ndarray:
-        """What the three measures say, (3,) array."""
+        """Evidence by the three measures, (3,) array."""
         return np.array([self.fit, self.foresight, self.likelihood])
 
     def over(self, other: _Weighed) -> np.ndarray:
-        """By how much it is better, (3,) array, the least first."""
+        """Gain by the three measures, (3,) array, the smallest first."""
         # Differences by measure in ascending order.
         return np.sort(self.measures - other.measures)
 
@@ -129,7 +129,7 @@ class _Weighed:
         return self.drives < min(-SURELY_BRAKES, other.drives)
 
     def is_as(self, other: _Weighed) -> bool:
-        """Whether they do the same except for the number of changes."""
+        """Whether two readings have the same effect with a different number of changes."""
         # Undo the cost of changes: compare what the measures themselves give.
         cost = CHANGE_COST * (len(self.reading.changes) - len(other.reading.changes))
         return bool(np.abs(self.measures + cost - other.measures).max() < ALIKE)
@@ -216,7 +216,7 @@ def _drives(commanded: Commanded, felt: Felt) -> float:
 def _likelihoods(
     log: Blocks, commanded: Commanded, one: LabelHypothesis, unit: float
 ) -> Iterator[float]:
-    """Of a reading with several lags, less what those cost."""
+    """Log-likelihood of a reading for each lag of the thrusters, less the cost of the lag. [nats]"""
     for lag in LIKELIHOOD_LAGS:
         # A longer delay is less likely beforehand.
         moved = late(commanded, lag * unit / one.step) if lag else commanded
@@ -224,7 +224,7 @@ def _likelihoods(
 
 
 def _by_fit(weighed: Sequence[_Weighed], axes: Sequence[Axis]) -> Labels:
-    """The reading that fits best, and whether it does beyond doubt and nothing else speaks against it."""
+    """The reading that fits best, and whether it is certain and nothing contradicts it."""
     first, ranked = weighed[0], sorted(weighed, key=lambda one: -one.fit)
     best = ranked[0]
     logged = first.reading
@@ -264,7 +264,7 @@ def _by_fit(weighed: Sequence[_Weighed], axes: Sequence[Axis]) -> Labels:
 
 
 def _by_agreement(weighed: Sequence[_Weighed]) -> Labels | None:
-    """A reading that two measures prefer beyond doubt to the logged one, and to all others, if there is one."""
+    """The reading that two measures clearly prefer to all others, the logged one included; None if there is none."""
     first = weighed[0]
     for one in weighed[1:]:
         # Interpretations with the same effect are no competitors.
@@ -284,7 +284,7 @@ def _by_agreement(weighed: Sequence[_Weighed]) -> Labels | None:
 
 
 def _is_contradicted(best: LabelHypothesis, logged: LabelHypothesis, axes: Sequence[Axis]) -> bool:
-    """Whether on an axis where a reading differs from the logged one that has surely the wrong sign."""
+    """True if the logged labels clearly give a wrong sign on an axis where this reading differs."""
     for axis in axes:
         if axis.is_driven(logged.commanded) and axis.is_changed(logged.commanded, best.commanded):
             # One gain for the logged commands, of any sign.
@@ -308,7 +308,7 @@ def _explained(best: LabelHypothesis, logged: LabelHypothesis, axes: Sequence[Ax
 
 
 def _does_as_told(axis: Axis, commanded: Commanded) -> bool:
-    """Whether the thrusters together surely do on an axis what they are commanded, and none the opposite."""
+    """Whether the thrusters clearly follow their commands on an axis, and none acts the opposite way."""
     if not axis.is_driven(commanded):
         return True
     # Gain of the sum and gains of each thruster.
@@ -320,7 +320,7 @@ def _does_as_told(axis: Axis, commanded: Commanded) -> bool:
 
 
 def _each(axis: Axis, commanded: Commanded) -> np.ndarray:
-    """What each thruster that acts on an axis is commanded, (k, n) array."""
+    """Commanded force of each thruster that acts on an axis, (k, n) array."""
     return np.stack(
         [axis.smoothed(load) for load in commanded.thrusters.values() if np.any(load[axis.number])]
     )

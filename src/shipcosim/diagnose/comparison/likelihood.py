@@ -81,7 +81,7 @@ class Blocks:
 
 
 def smoothed(felt: Felt) -> Felt:
-    """The same with a smoothed motion, so that noise of the velocities does not go with the loads that they make."""
+    """Measured force with loads from smoothed motion, so that they do not correlate with velocity noise."""
     return replace(felt, motion=felt.smooth_motion)
 
 
@@ -125,7 +125,7 @@ def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
 
 
 def _sizes(commanded: Commanded, length: float) -> dict[int, float]:
-    """What the thrusters do at most, root mean square, on axes where that is no small part of their force."""
+    """Root mean square of the largest commanded load, on axes where it is a considerable part of the force."""
     # Loads without cancelling: thrusters that oppose each other drive the axis all the same.
     most = sum(
         (np.abs(load) for load in commanded.thrusters.values()), np.zeros_like(commanded.hull)

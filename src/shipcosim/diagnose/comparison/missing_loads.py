@@ -1,4 +1,4 @@
-"""What the motion needs against what the model gives on each axis, whatever the cause: no large error goes unsaid."""
+"""Needed against modelled force on each axis, whatever the cause: every large error is reported."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ _UNITS = {"surge": "N", "sway": "N", "yaw": "N.m"}
 
 @dataclass(frozen=True)
 class MissingLoad:
-    """What the model lacks on one axis along a log.
+    """Missing load on one axis along a log.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class MissingLoad:
 
     @property
     def is_large(self) -> bool:
-        """Whether it is so large beside what is needed, the model's loads and the noise, and felt in predictions.
+        """Whether the error is large against the needed load, the model's loads and the noise, and shows in predictions.
 
         A load that nobody predicts may be that of waves, which moves the ship to and fro and is no error of the model.
         """
@@ -90,7 +90,7 @@ class MissingLoad:
 
     @property
     def discrepancy(self) -> Discrepancy:
-        """The same in words."""
+        """The missing load as a discrepancy in words."""
         unit = _UNITS[self.axis]
         text = f"{FORCES[self.axis]}: {self._sense()}"
         return Discrepancy(text, None, self.axis, float(self.missing), float(self.std), unit, 1.0)
@@ -130,7 +130,7 @@ def missing_loads(
     model: ShipModel,
     predicted: Mapping[str, float],
 ) -> list[MissingLoad]:
-    """What the model lacks on each axis, the largest beside what is needed first.
+    """Missing load on each axis, the largest share of the needed load first.
 
     Parameters
     ----------
@@ -181,7 +181,7 @@ def _missing(axis: Axis, commanded: Commanded, noise: float, predicted: float) -
 
 
 def _noise(felt: Felt, model: ShipModel) -> np.ndarray:
-    """What white noise of the velocities makes of the needed load, (3,) array: by their third differences."""
+    """Part of the needed load that comes from white noise of the velocities, (3,) array: by their third differences."""
     # White noise from third differences, by the median: their variance is 20 times that of the
     # noise.
     kernel = felt.kernel

@@ -30,7 +30,7 @@ STEADY_SHARE = 0.3
 TURNED_ROUND = 1.5
 """Turn in a log from which a steady force is taken as fixed in the earth's frame. [rad]"""
 LEAST_COMMANDED = 0.05
-"""Deviation of what is commanded on an axis over what is felt, below which the thrusters do not drive it."""
+"""Deviation of the commanded force on an axis over the measured force, below which the thrusters do not drive it."""
 WEAKER_WAY = 0.2
 """Least gain astern over that ahead, and ahead over that astern, while the sides and signs of thrusters are judged.
 Assumed: no propeller is dead one way."""
@@ -44,7 +44,7 @@ MOST_CHANGES = 2
 SURELY_WRONG = 5.0
 """By how much another reading, after its cost, must beat the logged one to be beyond doubt. [nats] 150 to 1."""
 PLAINLY_WRONG = 30.0
-"""The same, so that commands read otherwise need only foretell the motion no worse. [nats] A drawn healthy craft in a
+"""Evidence for another reading from which it need only predict the motion as well. [nats] A drawn healthy craft in a
 zig-zag reached 21 (tests/bench/craft, seed 108), wrong labels on a simulated boat 44."""
 RIVAL = 3.0
 """Readings closer than this cannot be told apart. [nats]"""
@@ -65,13 +65,13 @@ COMMANDS_BEFORE = 6
 GAIN_WIDTH = 0.7
 """Natural logarithm by which the gain of all thrusters may be off 1, standard deviation. Assumed: a factor of 2."""
 GAIN_OF_AXES = 0.3
-"""The same, that of an axis off that of all. Assumed."""
+"""Natural logarithm by which the gain of an axis may differ from that of all, standard deviation. Assumed."""
 LEAST_GAIN_STD = 0.05
 """Standard deviation of a gain to which it is never known better, whatever the rows say. Assumed."""
 THRUSTER_WIDTH = 0.2
-"""What a thruster's gain may be off that of all. Assumed."""
+"""Standard deviation of a thruster's gain about that of all. Assumed."""
 WAY_WIDTH = 0.4
-"""What the gain of all thrusters ahead may be off that astern. Assumed."""
+"""Standard deviation of the gain ahead about that astern, of all thrusters. Assumed."""
 LEAST_OF_ALL = 0.1
 """Share of their force that thrusters must have on an axis, before it is compared. Assumed."""
 LEAST_LEVER = 0.3
@@ -86,21 +86,21 @@ LIKELIHOOD_LAGS = (0.0, 0.5, 1.0, 2.0)
 ALIKE = 0.05
 """Readings are the same within this. [nats]"""
 MOST_WEIGHED = 15
-"""Readings beside the logged one of which foresight and likelihood are computed: those that fit best."""
+"""Most readings, the best-fitting ones, for which prediction and likelihood are computed beside the logged one."""
 UNLIKELIER = 5.0
-"""The same for the likelihood where the fit alone decides. [nats] Seeds 236 and 300, right labels."""
+"""Evidence by which the likelihood may be lower where the fit alone decides. [nats] Seeds 236 and 300, right labels."""
 BRAKES = 0.1
 """Correlation of commanded loads with the motion below which, by the labels, the thrusters brake the craft. As labelled
 all of eleven logs of a boat with exchanged sides lie below 0, nine of them below -0.1."""
 SURELY_BRAKES = 0.5
-"""The same, from which on a reading cannot be right. A heading that is kept is braked a little: right readings of drawn
-craft reach -0.31 (tests/bench/craft, seeds 7000 to 7049), both thrusters of a boat reversed -0.9."""
+"""Negative correlation beyond which a reading cannot be right. A heading that is kept is braked a little: right
+readings of drawn craft reach -0.31 (tests/bench/craft, seeds 7000 to 7049), both thrusters of a boat reversed -0.9."""
 OPPOSITE = 4.0
 """Standard deviations by which a gain is surely positive, or surely negative. Assumed."""
 LEAST_GAIN = 0.1
-"""Gain below which thrusters do not do what they are commanded. Assumed."""
+"""Gain below which thrusters do not follow their commands. Assumed."""
 LAG_COST = 3.0
-"""What a lag costs beside none, and one more for each root of the ship's length over gravity. [nats] Assumed."""
+"""Cost of a lag against none, and of each further root of length over gravity. [nats] Assumed."""
 LEAST_LAG = 2.0
 """Least lag that is reported. [rows]"""
 LAGS = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 5.0)
@@ -123,12 +123,12 @@ GROSS = 1.5
 """Factor of a common ratio of thrust to inertia from which it is corrected before anything else. No healthy ship of the
 tolerances comes near, nor a lost third of one thruster."""
 SURE_OF_RATIO = 2.0
-"""The same for a common ratio, whose standard deviation has the difference of axes in it already. Assumed."""
+"""Standard deviations by which a common ratio must exceed a limit; they include the difference of axes. Assumed."""
 PLAIN = 1.3
 """Factor from which it is reported, where no cause in the catalogue explains the log. Loads of another form differ by as
 much: zig-zags of a tanker's model, whose hull bears far more than her rudder, gave 1.2 to 1.4 of published numbers."""
 LEAST_DAMPING = 0.05
-"""Damping over the model's below which it is not said: a hull that is unstable on her course has none to compare."""
+"""Damping over the model's below which it is not reported: a hull that is unstable on her course has none to compare."""
 LEAST_WAY = 0.15
 """Root mean square of thrust astern over that ahead, or the other way round, from which both are compared. Assumed."""
 MENTIONED = 1.25
@@ -140,11 +140,11 @@ LARGE = 0.7
 """Root mean square of what the model lacks over that of what the motion needs, above which an error is large: half of
 the mean square is unexplained. Beyond 1 a model without any load would be nearer. Assumed."""
 ABOVE_NOISE = 3.0
-"""The same over what noise of the velocities alone gives. Assumed."""
+"""Root mean square of the missing load over that of velocity noise, for an error to be large. Assumed."""
 STEADY = 0.7
-"""Mean of what the model lacks over its root mean square, above which it is said to be steady."""
+"""Mean of the missing force over its root mean square, above which it is called steady."""
 GOES_WITH = 0.3
-"""Correlation from which what the model gives goes with what the motion needs. Assumed."""
+"""Correlation above which the modelled force follows the needed force. Assumed."""
 
 # Predictions
 

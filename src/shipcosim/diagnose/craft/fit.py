@@ -99,7 +99,7 @@ def fitted(
     free: Sequence[int],
     near: np.ndarray | None = None,
 ) -> Normal:
-    """Normal equations about the coordinates that fit all rows, found from the file's or from some near them on."""
+    """Normal equations about the coordinates that fit all rows, searched from those of the file or from near ones."""
     # Gauss-Newton from the file's numbers, with limited steps of numbers that enter as logarithms.
     about = np.array([one.start for one in numbers]) if near is None else near
     is_bent = [one.is_logarithmic for one in numbers]

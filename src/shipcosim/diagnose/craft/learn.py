@@ -38,7 +38,7 @@ class _HeldOut:
 
 
 def _jackknife(without: np.ndarray) -> np.ndarray:
-    """Standard deviation of values by what they are without each part, along the first axis."""
+    """Standard deviation by the jackknife: from the values without each part, along the first axis."""
     parts = len(without)
     return np.sqrt((parts - 1) / parts * ((without - without.mean(0)) ** 2).sum(0))
 
@@ -53,7 +53,7 @@ def _logs(squares: np.ndarray, counts: np.ndarray) -> np.ndarray:
 
 
 def learn(logs: Sequence[CraftLog]) -> LearnedCraft | None:
-    """What logs teach of a craft; None where no ship has the numbers that suit them best.
+    """Learn a craft from logs; None if no ship can have the best-fitting numbers.
 
     Numbers that the file has are free from the start. One by one those are added that lower the error most on parts
     that were held out, then those given back to the file without which the error is no larger.
@@ -124,7 +124,7 @@ def _by_part(logs: Sequence[CraftLog], missed: Sequence[np.ndarray]) -> _HeldOut
 
 
 def _best(found: _HeldOut, tries, normal: Normal, logs) -> list[int] | None:
-    """The set with one more number that surely lowers the error most; None where none does."""
+    """The set with the further number that lowers the error most; None if none lowers it clearly."""
     # Largest gain first; it must exceed its standard error, and the result must be a possible ship.
     gains = [found.gain(0, k) for k in range(1, len(tries))]
     order = sorted(range(len(gains)), key=lambda k: -gains[k][0])
@@ -138,7 +138,7 @@ def _best(found: _HeldOut, tries, normal: Normal, logs) -> list[int] | None:
 
 
 def _drives(logs: Sequence[CraftLog], normal: Normal, free: Sequence[int]) -> bool:
-    """Whether these numbers are no ship's: the water would drive her, or her mass matrix is not positive."""
+    """Whether the numbers are impossible: the water would drive the ship, or her mass matrix is not positive."""
     # A positive definite mass matrix, and a hull that takes energy rather than gives it.
     values = normal.values(normal.solved(free)[-1])
     model = with_numbers(logs[0].model, normal.numbers, values)
@@ -178,7 +178,7 @@ def _without_idle(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> 
 
 
 def _stated(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> LearnedCraft:
-    """What was learned, with what each number and all of them gain on parts that were held out."""
+    """The learned numbers, with the gain of each and of all on held-out parts."""
     numbers = [normal.numbers[i] for i in free]
     # The learned set, the set without each number, and the file's ship.
     tries = [free, *([i for i in free if i != one] for one in free), []]

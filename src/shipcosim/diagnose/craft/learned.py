@@ -147,7 +147,7 @@ class LearnedCraft:
     each_without: tuple[LearnedCraft, ...] = ()
 
     def on(self, model: ShipModel) -> ShipModel:
-        """The ship with these numbers, known as well as their standard deviations say."""
+        """The ship with these numbers; their standard deviations are the new tolerances."""
         # The uncertainty of learning adds to the tolerances that the numbers have already.
         known = {
             path: float(np.hypot(model.tolerances.get(path, 0.0), std))
@@ -221,7 +221,7 @@ def ratio_alone(model: ShipModel, ratio: float, std: float) -> LearnedCraft | No
 
 
 def ratio_findings(ratio: float, std: float, causes: Mapping[str, Cause]) -> tuple[Finding, ...]:
-    """Thrust over inertia as a finding, by the cause that says so; none without one in the catalogue."""
+    """Thrust over inertia as a finding; none if the catalogue lacks the cause."""
     cause = next((one for one in causes.values() if one.sought_in == "comparison"), None)
     if cause is None:
         return ()

@@ -100,7 +100,7 @@ class CraftLog:
         return self._off(readings(predicted(start, rows, self.record, model, self.counts), model))
 
     def missed_if_steady(self) -> np.ndarray:
-        """The same errors, (1, 3, h, s), of a craft that keeps the velocity and the rate of turn of the start."""
+        """Prediction errors, (1, 3, h, s) array, of a craft that keeps the velocity and the rate of turn of the start."""
         start = at_rows(self.seen, self.rows)
         time = self.record.step * np.array(self.counts)[:, None, None]
         # The way along an arc: the velocity at half of its turn, shorter by the chord over the arc.
@@ -123,7 +123,7 @@ class CraftLog:
         return np.moveaxis(off, 2, 0)
 
     def typical(self) -> dict[str, np.ndarray]:
-        """Root mean squares of the velocities and of what is commanded, and of the wind where it is logged."""
+        """Root mean squares of the velocities and of the commanded force, and of the wind where it is logged."""
         usable = self.felt.usable
         motion = self.felt.velocity[:, usable]
         told = commanded_by(self.record, self.felt, self.model)

@@ -67,12 +67,12 @@ class CraftNumber:
 
     @property
     def start(self) -> float:
-        """Coordinate of the file's value, about which a value is expected within some 1."""
+        """Coordinate of the file's value; a learned value is expected within about 1 of it."""
         return 0.0 if self.is_logarithmic else self.given / self.step
 
     @property
     def step(self) -> float:
-        """What one of the coordinate is, where it is no logarithm."""
+        """Size of one unit of the coordinate, if it is not a logarithm."""
         return (self.sign or 1) * self.spread
 
     def value(self, coordinate: Any) -> Any:
@@ -101,7 +101,7 @@ def with_numbers(model: ShipModel, numbers: Sequence[CraftNumber], values: Any) 
 
 
 def numbers_of(model: ShipModel, typical: dict[str, np.ndarray]) -> list[CraftNumber]:
-    """What may be learned of a craft, those that her file has first.
+    """Numbers that can be learned of a craft, those of her file first.
 
     Parameters
     ----------

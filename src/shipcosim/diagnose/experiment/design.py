@@ -50,7 +50,7 @@ _ROOM = 3.0  # lengths that a ship may get away from where she started
 
 @dataclass(frozen=True)
 class ExperimentDesign:
-    """A manoeuvre that tells causes apart which the log could not."""
+    """A manoeuvre that separates causes that the log could not separate."""
 
     manoeuvre: str
     minutes: float
@@ -80,7 +80,7 @@ class TellingFeature(NamedTuple):
 
 @dataclass(frozen=True)
 class Separation:
-    """What a manoeuvre would tell of sets of causes.
+    """Evidence on sets of causes that a manoeuvre would give.
 
     Attributes
     ----------
@@ -104,17 +104,16 @@ class Separation:
 
     @property
     def least(self) -> float:
-        """Of the closest pair. [nats]"""
+        """Evidence between the closest pair. [nats]"""
         return min(self.nats.values())
 
     def clear(self, wanted: Collection[tuple[int, int]]) -> dict[tuple[int, int], float]:
-        """Those of some pairs that it tells apart clearly, with their nats."""
+        """Pairs that it separates clearly, with their nats."""
         return {pair: nats for pair, nats in self.nats.items() if pair in wanted and nats >= CLEAR}
 
 
 def prescribed(found: Sequence[Separation], sets: Sequence[Any]) -> tuple[ExperimentDesign, ...]:
-    """The manoeuvres to be sailed next, as few as will do: each tells as many pairs apart as any that the ones before
-    it do not, clearly.
+    """The fewest manoeuvres to sail next: each clearly separates the most of the pairs that are left.
 
     Among those of equal use one that is sought in logs comes first. Then one of the shortest is taken: among
     manoeuvres about as short the one with most nats per minute for its closest pair.
@@ -192,7 +191,7 @@ def design_experiment(
 
 
 def differing(one: Any, other: Any) -> tuple[str, str]:
-    """What two sets of causes, with their `hypotheses`, do not share."""
+    """Causes that two sets, with their `hypotheses`, do not share."""
     a, b = ([hypothesis.label for hypothesis in fit.hypotheses] for fit in (one, other))
     only_a, only_b = (
         " + ".join(x for x in mine if x not in yours) for mine, yours in ((a, b), (b, a))

@@ -1,4 +1,4 @@
-"""Which causes a log with these channels and this motion could tell apart, whatever is the matter.
+"""Which causes a log with these channels and this motion could tell apart, whatever is wrong.
 
 Each cause in turn is the truth, at its typical size; the known numbers may be off within their tolerances. Another cause
 explains a part of what it does to the log. What remains is the log-evidence by which the two differ. As in structured
@@ -17,7 +17,7 @@ from shipcosim.diagnose.inference.thresholds import APART
 
 @dataclass(frozen=True)
 class Isolability:
-    """What a log could tell of a cause.
+    """Evidence on a cause that a log could give.
 
     Attributes
     ----------
@@ -91,7 +91,7 @@ def _without(information, known, priors):
 
 
 def _unexplained(information, place, others):
-    """What other columns leave of the information on one, at whatever size."""
+    """Information on one column that is left beside the others, for any size."""
     among = information[np.ix_(others, others)]
     across = information[others, place]
     explained = across @ np.linalg.lstsq(among, across, rcond=1e-9)[0]

@@ -33,7 +33,7 @@ _STEADY = 2.0  # steps: thrusters follow the plan that smoothly
 
 @dataclass(frozen=True)
 class Push:
-    """A thruster that does as planned while the DP controller leaves it alone.
+    """A thruster with a planned command, which the DP controller does not use.
 
     Attributes
     ----------
@@ -418,6 +418,6 @@ def true_wind(record: Record, motion: Motion, model: ShipModel) -> tuple[float, 
 
 
 def sized(noise: Noise, factor: float) -> Noise:
-    """The noise of rows that are that many times as far apart, averages of as many."""
+    """Noise of averaged rows: each is the mean of a given number of rows."""
     less = np.sqrt(factor)
     return replace(noise, white=np.asarray(noise.white) / less, wave=np.asarray(noise.wave) / less)

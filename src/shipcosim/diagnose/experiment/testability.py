@@ -1,4 +1,4 @@
-"""What a log could not have shown, whatever is the matter: causes for which it has too little excitation."""
+"""What a log could not have shown, whatever is wrong: causes for which it has too little excitation."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -28,7 +28,7 @@ from shipcosim.diagnose.ship.model import ShipModel
 
 @dataclass(frozen=True)
 class Excitation:
-    """What a log tells of each cause, had it its typical size.
+    """Information of a log on each cause of typical size.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ class Excitation:
 
 
 def excitation_of(log: JudgedLog) -> Excitation:
-    """What a log tells of each cause that can be sought in it."""
+    """Information of a log on each cause that can be sought in it."""
     problem = log.problem
     # Known numbers and first columns of all causes, about the ship without one.
     known = without_causes(log.fits).columns
@@ -119,7 +119,7 @@ def hidden_by_form(log: JudgedLog, excitation: Excitation) -> tuple[str, ...]:
 
 
 def _as_known(column: Regressor, model: ShipModel) -> Regressor:
-    """A column of a number that is known within its tolerance, whatever the form says."""
+    """Column of a number known within its tolerance; the form does not matter."""
     path = next(iter(column.changes))
     if path not in model.form_sizes or column.prior != 1.0:
         return column
@@ -200,7 +200,7 @@ def visible_sizes(excitation: Excitation) -> tuple[VisibleSize, ...]:
 
 
 def log_facts(problem: IdentificationProblem) -> dict[str, float | None]:
-    """What a log has of motion, thrust astern and wind, by the names of `FACTS`; None for what it does not have.
+    """Motion, thrust astern and wind of a log, by the names of `FACTS`; None for missing ones.
 
     Root mean squares of speed, surge and sway [m/s], of the acceleration in surge [m/s2] and of the rate of turn
     [deg/s]; the largest share of the log in which an azimuth thruster ran astern [1]; the mean wind speed [m/s].

@@ -12,12 +12,12 @@ RAMP = "ramp"
 SPELL = "spell"
 SWITCHING = "switching"
 KINDS = (STEP, RAMP, SPELL)
-"""Those that are sought first; a spell with others beside it is switching."""
+"""Courses that are tried first; several spells are switching."""
 
 
 @dataclass(frozen=True)
 class Course:
-    """How the size of a cause goes over time: 0 before its start.
+    """Size of a cause over time: 0 before its start.
 
     Attributes
     ----------

@@ -97,17 +97,17 @@ class _Fitted(NamedTuple):
 
     @property
     def columns(self) -> list[Regressor]:
-        """Those of the cause."""
+        """Columns of the cause."""
         return self.fit.columns[len(self.of.base.columns) :]
 
     @property
     def theta(self) -> np.ndarray:
-        """Of the cause's columns."""
+        """Estimates of the cause's columns."""
         return self.fit.theta[len(self.of.base.columns) :]
 
     @property
     def covariance(self) -> np.ndarray:
-        """Of the cause's columns."""
+        """Covariance of the cause's columns."""
         count = len(self.of.base.columns)
         return self.fit.covariance[count:, count:]
 
@@ -223,13 +223,13 @@ def _otherwise(given: ExplainedLog, plain: Identification) -> Iterator[Explained
 
 
 def _cost(explained: ExplainedLog) -> float:
-    """What the form of a log's ship costs, where it is another than the model's. [nats]"""
+    """Cost of a form that differs from the model's. [nats]"""
     model = explained.identification.problem.model
     return FORM_COST if model.form_scale and not model.directions else 0.0
 
 
 def _bases(explained: ExplainedLog) -> list[Fit]:
-    """What a course is sought beside: nothing, and the best set of steady causes that may be named."""
+    """Sets beside which a course is sought: none, and the best set of steady causes that may be named."""
     nothing = without_causes(explained.fits)
     named = (
         fit for fit in explained.fits if fit.hypotheses and admissible(fit, explained.fits, {})
@@ -280,12 +280,12 @@ def _tries(problem: IdentificationProblem, base: Fit, linear: InParts) -> list[_
 
 
 def _values(problem, group, theta) -> dict[str, float]:
-    """What numbers of the ship are with the columns of a group at some θ."""
+    """Numbers of the ship with the columns of a group at some θ."""
     return moved(group, theta, problem.model.get)
 
 
 def _fitted(problem: IdentificationProblem, one: _Try, linear: InParts) -> _Fitted | None:
-    """A cause with a course, linearised about its size where it is there and about none where it is not.
+    """A cause with a course, linearised about its size while it acts and about zero otherwise.
 
     None where the ship's loads are no numbers along the log.
     """
@@ -407,7 +407,7 @@ class _Blocks:
         return inverse, total[known, 0] + total[known, known] @ self.base.centre
 
     def gains(self, own: slice, shares: np.ndarray) -> np.ndarray:
-        """Gain of a cause's columns with courses, (c,) array; `shares` of its size in each block, (c, b). [nats]"""
+        """Gain of a cause for each course, (c,) array; `shares` is its size in each block, (c, b). [nats]"""
         # Products of the cause's columns times the course: linear in the share with others,
         # quadratic with themselves.
         known = slice(1, len(self.base.columns) + 1)
@@ -482,7 +482,7 @@ def _courses(edges: np.ndarray) -> Iterator[Course]:
 
 
 def _with_further_spells(blocks: _Blocks, one: _Try) -> _Try:
-    """A spell, or a step, with others beside it, each of which must gain what the search for it costs and more."""
+    """A spell or step with further ones; each must gain more than the cost of its search."""
     groups = screening_regressors(one.hypothesis)
     # Sums by block let further spells be tried without filtering again.
     own = blocks.places[one.hypothesis.label][groups.index(one.group)]

@@ -132,7 +132,7 @@ def of_scale(
     hypotheses: Sequence[Hypothesis] = (),
     values: Mapping[str, float] | None = None,
 ) -> IdentificationProblem:
-    """The problem of a ship whose form may differ by some scale, its noise tuned anew beside some causes."""
+    """The problem of a ship whose form may differ by some scale, its noise tuned again beside some causes."""
     # The allowed error of the form changes what noise is left: tune it again.
     formed = prepared(replace(problem, model=replace(problem.model, form_scale=scale)), rounds=1)
     fit = fitted(formed, hypotheses, values) if hypotheses else beside_likeliest(formed)

@@ -1,4 +1,4 @@
-"""A compared log as an identification problem, as which its causes are sought."""
+"""A compared log as an identification problem, in which causes are sought."""
 
 from dataclasses import dataclass, replace
 

@@ -123,7 +123,7 @@ def explain(
 
 
 def _strained(fit: Fit) -> set[str]:
-    """Numbers that a fit has far outside their tolerances: what they do may be bent there, as a lag's."""
+    """Parameters estimated far outside their tolerances; the linearisation may fail there, as for a lag."""
     off = defaultdict(float)
     known = defaultdict(float)
     # Sum the shifts of all columns that move a number, and the variance of their tolerances.
@@ -169,7 +169,7 @@ def _simplify(
 
 
 def _values(hypotheses, fit):
-    """What a fit says of the numbers of some hypotheses."""
+    """Estimates of the numbers of some hypotheses by a fit."""
     parameters = [
         (parameter, hypothesis) for hypothesis in hypotheses for parameter in hypothesis.parameters
     ]
@@ -197,7 +197,7 @@ def _simpler(problem, hypotheses):
 
 
 def _value(parameter, hypothesis, fit):
-    """What a fit says of a number: its own value, or the mean of those of the more general cause."""
+    """Estimate of a number by a fit: its own, or the mean of those of the more general cause."""
     if parameter.path in fit.values:
         return fit.values[parameter.path]
     # A general cause has several copies of the parameter, as start and end; their mean is the start

@@ -15,7 +15,7 @@ from shipcosim.diagnose.ship.model import ShipModel
 MOVED = 2.0
 """Standard deviations, before and after the log, by which a number of the form has moved. [1]"""
 STRAINED = 4.0
-"""Tolerances by which a number that is known within one is off, from which on it is an answer. [1] Healthy ships of the
+"""Deviation of a known number, in tolerances, above which it is reported. [1] Healthy ships of the
 model's form reached 3.4."""
 LAGS = 30
 """Lags of the autocorrelation of the innovations. [rows]"""

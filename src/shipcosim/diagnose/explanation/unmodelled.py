@@ -24,7 +24,7 @@ from shipcosim.diagnose.ship.measured_motion import readings
 FORCES = ("slow", "with the heading", "periodic")
 """Kinds of unmodelled errors that push the ship."""
 _SHAPES = 3
-"""In which a channel can be off."""
+"""Ways in which a channel can be wrong."""
 
 
 def is_healthy(problem: IdentificationProblem, fit: Fit) -> bool:
@@ -121,7 +121,7 @@ def _differs_by_part(fit):
 
 
 def _beyond_tolerances(fit):
-    """Evidence that the known numbers lie farther off what they are known as than their tolerances say. [nats]
+    """Evidence that the known numbers lie beyond their tolerances. [nats]
 
     In units of the tolerances the posterior mean has, in each direction, the variance that the log took from that of
     the prior; the sum of its squares is taken as a scaled chi-square of the same mean and variance.
@@ -181,7 +181,7 @@ def _each_axis(shapes):
 
 
 def _channels(problem, shown, rows):
-    """What a channel shows too much in some rows: (k, 6, p), as many columns for each channel in turn.
+    """Columns of errors of a channel in some rows: (k, 6, p), as many for each channel in turn.
 
     `shown` is what the instruments show at all rows, (n, 6).
     """

@@ -42,7 +42,7 @@ _AS_THEY_ARE = (
 
 @dataclass(frozen=True)
 class Judgement:
-    """What the evidence says of the sets of causes.
+    """Evidence on the sets of causes.
 
     Attributes
     ----------
@@ -223,7 +223,7 @@ def with_craft(log: JudgedLog) -> JudgedLog:
 
 
 def usual_gain(model: ShipModel) -> float:
-    """What a cause gains where the ship's form is another than all that is known: as a reference says, or assumed."""
+    """Gain that an unknown form of the ship can give a cause: from a reference, or assumed."""
     if model.directions or not model.form_scale:
         return model.ordinary_errors.get(ANY_CAUSE, 0.0)
     return NULL_GAIN_OF_FORM
@@ -297,7 +297,7 @@ def _with_odds(fit):
 
 
 def _beside_unknown(candidates):
-    """Candidates beside an error that no cause explains: what they gain may be its, or what made room for it."""
+    """Candidates beside an unexplained error: their gain may belong to it."""
     return tuple(
         replace(one, probability=round(BESIDE_UNKNOWN * one.probability, 4)) for one in candidates
     )
@@ -358,7 +358,7 @@ def _is_sized(hypothesis, fit):
 
 
 def _exceeds_special(hypothesis, fit, fits):
-    """Whether what a cause has beyond the simpler one that it contains is large enough to matter.
+    """Whether a cause differs enough from the simpler cause that it contains.
 
     A steady current beside a model of another form seems to turn a little.
     """
@@ -373,12 +373,12 @@ def _exceeds_special(hypothesis, fit, fits):
 
 
 def _is_special(one, general):
-    """Whether a cause is the simpler one that another contains."""
+    """Whether a cause is a simpler form of another one."""
     return one.cause == general.definition.special and one.component == general.component
 
 
 def _in_shape(hypothesis, fit):
-    """Whether what tells a cause's shape lies within its tolerances, taken together."""
+    """Whether the numbers of a cause's shape lie within their tolerances, taken together."""
     # Sum of squares of the shape's numbers in tolerances: chi-square with as many degrees of
     # freedom.
     shape = set(hypothesis.definition.shape)
@@ -391,7 +391,7 @@ def _in_shape(hypothesis, fit):
 
 
 def _size(hypothesis, fit):
-    """Of a cause in a fit, in units of its typical size."""
+    """Size of a cause in a fit, over its typical size. [1]"""
     return np.hypot.reduce(
         [(fit.values[k.path] - k.neutral) / k.typical for k in hypothesis.parameters]
     )

@@ -99,7 +99,7 @@ def _number(value: Any) -> float:
 def connect_neighbours(
     draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, units: Iterable[str]
 ) -> None:
-    """Tell each thruster where its neighbour is, and how that runs: the one that is wired to it, else the nearest.
+    """Give each thruster the place of its neighbour, and its speed and angle: the connected neighbour, else the nearest.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ AXES = ("X", "Y", "N")
 
 
 class Estimated(NamedTuple):
-    """A value with its standard deviation, 0 where there is none."""
+    """A value with its standard deviation, or 0 without one."""
 
     value: float
     std: float = 0.0
@@ -69,11 +69,11 @@ class ExtensionDraft:
 
     @property
     def around(self) -> str:
-        """What the full names of components beside the ship begin with."""
+        """Prefix of the full names of components beside the ship."""
         return self.ship[: self.ship.rfind(".") + 1]
 
     def remark(self, finding: Finding, what: str) -> None:
-        """Say what is not as a finding has it."""
+        """Record a deviation from the finding."""
         self.remarks.append(f"{finding.label}: {what}.")
 
     def thrusters(self, variable: str = "rpm_in") -> list[str]:
@@ -145,7 +145,7 @@ class ExtensionDraft:
         return found or library.find("fmu", name)
 
     def load(self, component: str) -> bool:
-        """Connect a component's loads to a free input of the ship; whether there is one."""
+        """Connect a component's loads to a free input of the ship; return True if there is one."""
         used = {target for _, target in self.structure.connections} | {
             source for source, _ in self.structure.connections
         }

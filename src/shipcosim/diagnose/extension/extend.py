@@ -269,7 +269,7 @@ def _insert(
 def _vector(
     estimates: Mapping[str, ParameterEstimate], north: str, east: str
 ) -> tuple[Estimated, Estimated]:
-    """North and east of a velocity; one that is not given is none. [m/s]"""
+    """North and east of a velocity; a missing one is 0. [m/s]"""
     pair = [
         converted(estimates[name], "m/s") if name in estimates else Estimated(0.0, 0.0)
         for name in (north, east)

@@ -16,7 +16,7 @@ from shipcosim.ssp import AnyPath, System, SystemStructure, read_system
 
 @dataclass(frozen=True)
 class NumberChange:
-    """A number of a system that the extended one has otherwise; before is None where there was none."""
+    """A number that the extension changes; `before` is None for a new number."""
 
     name: str
     before: float | None
@@ -31,7 +31,7 @@ class ExtendedSystem:
     Attributes
     ----------
     given : System
-        That the log was held against.
+        That the log was compared with.
     source : path or SystemStructure
         What is extended.
     extension : Extension or None
@@ -96,7 +96,7 @@ def extended_by(
     folder: AnyPath,
     craft: LearnedCraft | None = None,
 ) -> ExtendedSystem:
-    """The same by findings of several logs.
+    """Extend a system by the findings of several logs.
 
     Parameters
     ----------

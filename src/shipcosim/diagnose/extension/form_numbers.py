@@ -1,4 +1,4 @@
-"""The numbers of another form that the system has parameters for: as a log would have them, and written as its set."""
+"""Estimates of another form for the system's parameters, and the parameter set with them."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,7 +15,7 @@ from shipcosim.ssp import AnyPath, System, SystemStructure, parameter, read
 
 
 def form_numbers(fit: Fit, system: System) -> dict[str, ParameterEstimate]:
-    """Numbers of a ship as a log would have them, of those that her system has parameters for.
+    """Estimates of a ship's numbers from a log, for the parameters of her system.
 
     The form has more numbers than FMUs have parameters: smooth functions over place and angle. A set that left them out
     would be half of an answer, so the others are estimated as if these were the model's.

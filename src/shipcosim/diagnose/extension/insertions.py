@@ -159,7 +159,7 @@ def _add_varying(
 
 
 def _water(draft: ExtensionDraft) -> str | None:
-    """Component that moves the ship's water and takes its speed and direction; None where there is none such."""
+    """Component that gives the current from speed and direction, or None."""
     feeding = {
         connection.target: connection.source for connection in draft.structure.checked().connections
     }
@@ -180,7 +180,7 @@ def _environment(draft: ExtensionDraft) -> str:
 def _steady(
     draft: ExtensionDraft, finding: Finding, source: str | None, north: Estimated, east: Estimated
 ) -> None:
-    """Give the water one velocity, where the system takes it."""
+    """Set a constant velocity of the water, at the place where the system has it."""
     if source is None:
         for axis, given in (("north", north), ("east", east)):
             _start(draft, finding, draft.ship, f"current_{axis}", given, "m/s")

@@ -220,7 +220,7 @@ def hypotheses_of(
 
 
 def _on(cause: Cause, component: str | None, model: ShipModel) -> Hypothesis | None:
-    """A cause at one place of a ship; None where she lacks one of its numbers, or it is a share of one that is 0."""
+    """A cause at one place of a ship; None if she lacks one of its numbers, or it is a share of 0."""
     parameters = []
     for name, parameter in cause.parameters.items():
         paths = [path for pattern in parameter.of for path in _paths(pattern, component, model)]

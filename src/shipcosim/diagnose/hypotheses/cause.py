@@ -107,7 +107,7 @@ class ExtensionRule(_Strict):
     assumed : dict of str to str
         Parameters of the FMU that keep the ship model's value where the cause has no such number, and why.
     onset : tuple of two str, optional
-        Parameters of the FMU for the time from which on it acts and for how long it grows.
+        Parameters of the FMU for the time from which it acts and for how long it grows.
     neighbour_inputs : dict of str to str
         By input of a thruster: the output of its neighbour that feeds it.
     neighbour_place : tuple of two str, optional

@@ -10,7 +10,7 @@ from shipcosim.models.core.kinematics import to_body
 
 
 def most_white(record: Record) -> np.ndarray:
-    """Largest white noise of each channel by how far position and velocity, heading and yaw rate, are apart.
+    """Largest white noise of each channel, from the difference of position and velocity, heading and yaw rate.
 
     Where the two are apart, either may be it: each gets the whole of the difference. A channel whose partner was not
     measured has no limit.

@@ -59,7 +59,7 @@ class IdentificationProblem:
 
     @property
     def basis(self) -> list[Regressor]:
-        """All known numbers, and what every hypothesis is first sought by."""
+        """Regressors of all known numbers, and of every hypothesis for the first search."""
         return self.known(()) + regressors_of(self.hypotheses)
 
     @property
@@ -138,7 +138,7 @@ class Fit:
 
     @property
     def linear(self) -> InParts:
-        """The linear problem that was fitted; it is made anew, as all of many fits would fill the memory."""
+        """The linear problem that was fitted; it is made again, as all of many fits would fill the memory."""
         return linearised_by_parts(self.about, self.record, self.model, self.columns, kept=False)
 
     @property
@@ -223,7 +223,7 @@ def fitted(
 
 
 def _fitted(problem, hypotheses, values, rounds):
-    """A fit, made anew."""
+    """A fit, made again."""
     # Start from finite values within their bounds.
     finite = {
         path: v if np.isfinite(v) else problem.model.get(path) for path, v in (values or {}).items()
@@ -264,7 +264,7 @@ def _fitted(problem, hypotheses, values, rounds):
 
 
 def _impossible(problem, hypotheses, values, columns, about_it) -> Fit:
-    """The fit of a ship whose loads are no numbers along the log: infinitely unlikely."""
+    """The fit of a ship whose loads are not finite along the log: infinitely unlikely."""
     # Without information from the log the posterior is the prior.
     covariance = np.diag([column.prior**2 for column in columns])
     rest = (columns, about_it.products, about_it.centre, covariance, about_it.centre)

@@ -19,7 +19,7 @@ _SLOW = range(9, 12)  # states of slow errors
 _PLACE = range(12, 15)  # of what waves add to position and heading
 _SPEED = range(15, 18)  # and to the velocity
 WAVE_DAMPING = 0.1
-"""Of the oscillator whose answer to white noise first-order wave motion resembles (Fossen 2011, section 8.2.6)."""
+"""Damping ratio of the oscillator that stands for first-order wave motion (Fossen 2011, section 8.2.6)."""
 
 
 @dataclass(frozen=True)
@@ -298,7 +298,7 @@ def oscillation(
 
 
 def _steady(noise: Noise, h: float) -> np.ndarray:
-    """What of a transition is the same at all rows: slow errors fade, waves swing; (..., 18, 18)."""
+    """Part of a transition that is the same at all rows: slow errors fade, waves swing; (..., 18, 18)."""
     a, b, c, d = oscillation(noise, h)[0]
     # First-order Gauss-Markov processes for slow errors, exp(-h / T), and the oscillator of the
     # waves.
@@ -351,7 +351,7 @@ def _uncertain(noise: Noise) -> np.ndarray:
 
 
 def _lost() -> np.ndarray:
-    """What is added where the inputs over a step are unknown."""
+    """Process noise that is added over steps with unknown inputs."""
     return np.diag([25.0, 25.0, 0.1, 0.25, 0.25, 1e-3, *[0.0] * 12])
 
 

@@ -30,7 +30,7 @@ SLOW_TIME = np.array([240.0, 240.0, 60.0])
 
 @dataclass(frozen=True)
 class Regressor:
-    """What one θ changes of the ship, and how large θ may be.
+    """Numbers of the ship that one θ changes, and the size that θ may have.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class Regressor:
     beside: bool = False
 
     def gives_way(self, taken: Collection[str]) -> bool:
-        """Whether a cause that changes these numbers is evidence for what this one would say of them."""
+        """True if a cause on these numbers replaces this regressor."""
         return not self.beside and not self.changes.keys().isdisjoint(taken)
 
 

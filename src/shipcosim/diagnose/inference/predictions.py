@@ -207,7 +207,7 @@ def predicted(
     earth: bool | np.ndarray = True,
     fades: float | np.ndarray = 0.0,
 ) -> Motion:
-    """Where the ship is taken to be, from some rows on, by what drove her.
+    """Predicted positions from some rows on, by the logged inputs.
 
     Parameters
     ----------
@@ -281,7 +281,7 @@ def _at(inputs, rows):
 
 
 def missing(found: Motion, seen: Motion, rows: np.ndarray) -> dict[str, np.ndarray]:
-    """By how much predictions are off.
+    """Errors of predictions.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ DIRECTIONS = 12
 
 
 def regressors_of(hypotheses: Iterable[Hypothesis]) -> list[Regressor]:
-    """All regressors by which several hypotheses are first sought."""
+    """All regressors for the first search over several hypotheses."""
     return [column for one in hypotheses for group in screening_regressors(one) for column in group]
 
 

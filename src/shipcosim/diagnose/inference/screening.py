@@ -121,7 +121,7 @@ def _together(
 
 
 def _one_way(first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Ends of a vector that turns; one of next to nothing is laid along the other, as its own direction is chance."""
+    """Ends of a turning vector; a negligible end gets the direction of the other, since its own is noise."""
     sizes = np.linalg.norm(first), np.linalg.norm(last)
     if sizes[0] < _SLOW * sizes[1]:
         first = last * max(sizes[0] / sizes[1], _STILL)

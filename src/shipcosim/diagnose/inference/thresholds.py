@@ -25,18 +25,18 @@ UNMODELLED = 8.0
 """An unmodelled error that gains more than this beside the best set means an unknown cause. [nats] Paid for the search
 over its periods; from part to part of the log, and beyond tolerances, always."""
 UNMODELLED_SHARE = 0.02
-"""The same as a share of what the causes gain, where that is more: the model of a large cause is never exact to the
-last per cent (developing logs)."""
+"""Gain of an unmodelled error over that of the causes, where that is more than `UNMODELLED`: the model of a large cause
+is never exact to the last per cent (developing logs)."""
 BESIDE_A_LARGE_CAUSE = 0.01
-"""The same of errors from part to part of the log and beyond tolerances: a cause of a hundred times what remains is
-named. On another simulator's logs, causes of 2068 nats were not, because of a remainder of 20."""
+"""Such a share for errors that differ between parts of the log or exceed tolerances: a cause of a hundred times what
+remains is named. On another simulator's logs, causes of 2068 nats were not, because of a remainder of 20."""
 MOST_CAUSES = 2
 """Causes at once that are named. Where a third is needed, an unknown one is likelier than three at once."""
 BESIDE_UNKNOWN = 0.5
 """Factor on the probability of a cause beside an error that no cause explains. Assumed: as likely as not it is only the
 nearest of the known ones."""
 SHAPE_CHANCE = 0.01
-"""Probability of a shape as far from the known one, below which it is that of something else. Two logs of one of some
+"""Probability of so large a deviation from the known shape, below which another cause is assumed. Two logs of one of some
 forty developing ships pull at the headings like a wave drift of 1000 N without arm and surge."""
 DEVIATIONS = 3.0
 """Standard deviations that an estimate must be off neutral (assumed)."""
@@ -55,7 +55,7 @@ one gained 24, the next 15; ten of another form gained 25 to 240 where the ship 
 # Gain on simulated healthy logs
 
 NULL_GAIN_WITHOUT_WIND = 40.0
-"""More that a cause has to gain where the log has no wind, which could be it. [nats] Assumed."""
+"""Further gain that a cause needs in a log without wind, which may be the true cause. [nats] Assumed."""
 NULL_GAIN_OF_FORM = 5.0
 """More that a cause has to gain on a ship of another form than the model's, of which no reference tells: the form has
 a few smooth functions, and what they leave looks like causes. [nats] Assumed, as much as `ENOUGH`."""
@@ -83,7 +83,7 @@ CHANNEL_SIZES = (1.0, 1.0, np.radians(1.0), 0.03, 0.03, np.radians(0.03))
 LENGTHS_PER_GYRADIUS = 4.0
 """Lengths of a ship over her radius of gyration, to turn an acceleration into one in yaw."""
 SIZE_FROM_PART_TO_PART = 0.1
-"""Of a cause's size, by which its model may be wrong from part to part of the log. Assumed."""
+"""Share of a cause's size by which its model may differ between parts of the log. Assumed."""
 LEAST_LOG_P = -700.0
 """Logarithm of the smallest p-value; smaller ones are 0 to the machine."""
 
@@ -104,7 +104,7 @@ CALM_WALK = 3e-6
 """Random walk of the unexplained acceleration beside which courses are sought, too. [m/s2.5] Healthy developing logs have
 a third of it, one with a tow that came and went ten times it."""
 WALK_IN_YAW = 0.12
-"""The same of the acceleration in yaw. [1/m] As tuned on the same logs."""
+"""Random walk in yaw over that of the other axes. [1/m] As tuned on the same logs."""
 MEASURED_WHILE_PRESENT = 0.5
 """Share of the rows of a spell in which position and heading must be measured. Assumed: in most of them."""
 SHORTEST_SPELL = 300.0
@@ -118,15 +118,15 @@ MOST_WALK = 3e-5
 """Fastest random walk of the unexplained acceleration: some 400 N on a ship of 750 t in ten minutes. [m/s2.5] Left
 free, it swallowed every cause (prototypes)."""
 GUST_FACTOR = 10.0
-"""Times as fast may it walk where the wind is unknown. Assumed."""
+"""Factor on the random walk where the wind is unknown. Assumed."""
 TUNED_BESIDE = 3.0
-"""Gain of a cause at first sight, from which on noise is tuned beside it. [nats]"""
+"""Gain of a cause at first sight, above which noise is tuned beside it. [nats]"""
 NOISE_MARGIN = 1.5
 """Factor on the noise that position and velocity leave room for. Assumed."""
 NOISE_WIDTHS = (2.0, 4.0, 8.0)
 """Widths of the kernels that they are compared with. [rows]"""
 SOUND = 0.98
-"""Share of the rows that is taken to be sound where they are compared. Assumed."""
+"""Share of sound rows in a comparison. Assumed."""
 
 # Predictions
 

@@ -73,7 +73,7 @@ class Channel(BaseModel):
 
 @dataclass(frozen=True)
 class ChannelFile:
-    """What a channel file says.
+    """Content of a channel file.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a channel can be instead of what its label says, and how to put it right."""
+"""Possible mislabels of a channel, and their corrections."""
 
 from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass, field, replace
@@ -171,7 +171,7 @@ def _apparent(log):
 
 
 def _apparent_from_north(log):
-    """The same, with the direction from north."""
+    """Apparent wind of a log with its direction from north."""
     return _apparent(log | _from_bow(log))
 
 

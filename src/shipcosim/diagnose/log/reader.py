@@ -159,7 +159,7 @@ def _digest(path: Path) -> str:
 
 
 def _source_of(log, form) -> tuple[LogColumns, dict[str, str]]:
-    """A log as columns, and what says which file it is."""
+    """A log as columns, and the fingerprint of its file."""
     if isinstance(log, (str, os.PathLike)):
         return columns_of(log, form), {"source": str(log), "sha256": _digest(Path(log))}
     values = {"time": np.asarray(log["time"].values, float)}
@@ -180,7 +180,7 @@ def _stated(channel: Channel, name: str, columns: LogColumns) -> str:
 
 
 def _sure(columns: LogColumns, proposal: Proposal) -> dict[str, Channel]:
-    """Channels by names that have one meaning; an error that says what could be written where they do not do."""
+    """Channels by unambiguous names; an error with a proposal if these are not enough."""
     mapping = proposal.channels()
     source = columns.source
     doubled = [
@@ -212,7 +212,7 @@ _WHICH = 'Rename one, or name it in a channel file; the second is "NAME (2)".'
 
 
 def _signals(columns, mapping, form, is_asked):
-    """Values and unit of each channel, by role or connector, and what is to be said.
+    """Values and unit of each channel, by role or connector, and remarks.
 
     A column in a wrong unit is an error where somebody asked for it or the navigation needs it; else it is not used.
     """
@@ -247,7 +247,7 @@ def _signals(columns, mapping, form, is_asked):
 
 
 def _beyond(where, values):
-    """A problem where a number is beyond anything that is measured, so that what is made of it overflows."""
+    """Problem of a number that is too large to be measured and would overflow."""
     # A check of the first such row is enough for a message.
     beyond = np.flatnonzero((np.abs(values) > LARGEST_NUMBER) & np.isfinite(values))
     remedy = "A missing value is an empty field or nan."
@@ -392,7 +392,7 @@ def _without_value(source, signals):
 
 
 def _told(proposal):
-    """Which column is what, where its name is not the role's; which is not used, and why."""
+    """Remarks on columns with other names than their roles, and on unused columns with the reason."""
     named = [g for g in proposal.used if g.rank < 2]
     other = [f"{g.role} from '{g.column}'{_said(g)}" for g in named if g.column != g.role or g.said]
     if other:

@@ -46,7 +46,7 @@ def remarks(log: xarray.Dataset) -> list[str]:
 
 
 def handled(log: xarray.Dataset) -> list[str]:
-    """The same, and how the file was read: which column is what, and which is not used and why."""
+    """Remarks on ordinary things, and how the file was read: which column is what, and which is not used and why."""
     told = log.attrs.get("column_remarks", ())
     unused = ", ".join(map(str, log.attrs.get("unused_columns", ())))
     plain = [f"Columns without a role are not used: {unused}."] if unused else []

@@ -139,7 +139,7 @@ def _true_time(logged, base, findings, step):
 
 
 def _put_right(time, channels, findings):
-    """Channels with labels corrected, then with outliers and all that is no measurement cut out."""
+    """Channels with corrected labels, without outliers and without samples that are not measured."""
     # Mistakes of the whole log first, then those of segments.
     channels = read_anew({"time": time, **channels}, findings) | {"time": time}
     for finding in findings:

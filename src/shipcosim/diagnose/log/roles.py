@@ -58,7 +58,7 @@ THRUSTER_ROLES = {
 
 
 def role_of(name: str) -> Role | None:
-    """Role of that name, None where there is none.
+    """Role of a name, or None.
 
     Examples
     --------

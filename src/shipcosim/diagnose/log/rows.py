@@ -34,7 +34,7 @@ def usual_distance(time: np.ndarray) -> float:
 
 
 def inside(time: np.ndarray, segments: Sequence[Segment]) -> np.ndarray:
-    """Which times are in one of the segments; all where there is none, (n,) array of bool."""
+    """True for times in one of the segments, or for all without segments, (n,) array of bool."""
     if not segments:
         return np.ones(len(time), bool)
     return np.any([(time >= first) & (time <= last) for first, last in segments], axis=0)

@@ -18,7 +18,7 @@ LogSource = AnyPath | xarray.Dataset
 """A log: a file, the folder of a run, or a table."""
 
 _LONGEST_HEADER = 1 << 20
-"""Characters of a header that are looked at: what unpacks to one line without end is no table of a run."""
+"""Characters of a header that are read: a file with a longer first line is not the table of a run."""
 _SHIP = {
     "north": ("x", "m"),
     "east": ("y", "m"),

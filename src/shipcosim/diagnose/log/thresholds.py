@@ -13,15 +13,15 @@ FEWEST_GAP_ROWS = 5
 RUN_CHANCE = 1e-7
 """Probability of a run of equal or straight values that long anywhere in a log, below which data was lost."""
 FEWEST_CONSTANT = 30
-"""Rows from which on a channel that never changes is one without life. Assumed."""
+"""Rows above which a channel that never changes is one without life. Assumed."""
 CHANGES = 20.0
 """Range of a channel over its noise and resolution that is a change. Assumed."""
 FEWEST_OTHERS = 0.3
 """Share of a log outside of runs that must be there to say that runs are unusual. Assumed."""
 MOST_FLAGGED = 0.6
-"""Share of these rows that are held or straight, from which on a channel is too coarse to say so. Assumed."""
+"""Share of these rows that are held or straight, above which a channel is too coarse to say so. Assumed."""
 NOISE_SEEN = 0.75
-"""Noise of a channel over its resolution, from which on it is seen. By the same differences rounding alone is noise of
+"""Noise of a channel over its resolution, above which it is seen. By the same differences rounding alone is noise of
 0.35 to 0.6 steps."""
 LONGEST_WRAP = 6
 """Most samples of the heading that are interpolated across north. Assumed."""
@@ -30,11 +30,11 @@ NEAR_NORTH = 45.0
 NO_TURN = 15.0
 """Change of heading from row to row that can be one interpolated across north. [deg] Assumed."""
 FASTER = 5.0
-"""Over what three in four changes of a log stay below, from which on it is no turn of the craft. Assumed."""
+"""Over what three in four changes of a log stay below, above which it is no turn of the craft. Assumed."""
 LEAP = 5.0
-"""Way between two rows over that by the logged velocity, from which on rows were lost. Assumed."""
+"""Way between two rows over that by the logged velocity, above which rows were lost. Assumed."""
 END_DISTANCE = 10.0
-"""Distance of the first or last sample of a channel from the middle of all others over their range, from which on it is
+"""Distance of the first or last sample of a channel from the middle of all others over their range, above which it is
 no measurement: it has one neighbour only. Start-up rows were off by millions. Assumed."""
 FEWEST_LEAPS = 3
 """Rows in which the ship leaps: a single leap can be another reference."""
@@ -53,14 +53,15 @@ few: a boat's positions came in 0.499 or 0.501 of the rows of its parts, and onl
 FIT_CLIP = 4.0
 """Standard deviations beyond which a row counts no more."""
 NOISIER = 2.0
-"""Variance of what is left in a part of a log over that in its calm parts, from which on it is more than noise.
+"""Variance of what is left in a part of a log over that in its calm parts, above which it is more than noise.
 Assumed."""
 CALM_SHARE = 0.25
 """Share of the parts of a log that are calm."""
 UNSURE_NOISE = (0.25, 0.35, 0.15)
-"""Of what noise takes from a factor, measured in two ways: how far from the larger to the smaller the value is taken,
-how unsure it is as a share of their difference, and as a share of the larger even where both agree. Set on hold logs
-of seeds 200 to 213: 28 factors are off by 0.6 of their stated error, as a root mean square."""
+"""Uncertainty of the loss that noise causes in a factor, which is measured in two ways: how far from the larger to the
+smaller the value is taken, how unsure it is as a share of their difference, and as a share of the larger even where
+both agree. Set on hold logs of seeds 200 to 213: 28 factors are off by 0.6 of their stated error, as a root mean
+square."""
 HEARD = 12.0
 """What the best form of a relation must gain over none, to be heard. [nats] Assumed; of 36 forms without any relation
 the best one gains 5."""
@@ -81,9 +82,9 @@ SCALE_TOLERANCE = (0.007, 0.08)
 """By how much velocity and position of a right log differ in scale, as standard deviations: of most, and of a few.
 Assumed."""
 RATE_TOLERANCE = (0.012, 0.08)
-"""The same of yaw rate and heading. Assumed."""
+"""Standard deviations of the scale between yaw rate and heading: of most logs, and of a few. Assumed."""
 ANGLE_TOLERANCE = (0.02, 0.1)
-"""The same of the angle between velocity and change of position. [rad] Assumed."""
+"""Standard deviations of the angle between velocity and change of position. [rad] Assumed."""
 FAR_SHARE = 0.03
 """Share of those few. Assumed."""
 GOES_AHEAD = 0.8
@@ -93,7 +94,7 @@ Assumed."""
 DRIFT = 0.25
 """By how much such a course is off the bow, beyond what it varies by. [rad] Assumed."""
 ONE_COURSE = 0.9
-"""Length of the mean direction of the velocity against the bow, fast rows counting for more, from which on it is one
+"""Length of the mean direction of the velocity against the bow, fast rows counting for more, above which it is one
 course. Ships that work at low speed went sideways at up to 0.82, in truth's logs of seeds 200 to 207."""
 COMPASS_OFF = 20.0
 """Angle by which a compass is off at most; positions that are turned further are in a grid that is turned. [deg]
@@ -105,7 +106,7 @@ USUAL_STEP = (0.5, 8.0)
 UNEXPLAINED_COST = 14.0
 """Cost of something that no combination of two changes explains. [nats] Assumed."""
 FEWEST_WIND_ROWS = 100
-"""Rows with wind that it takes to hear it. Assumed."""
+"""Fewest rows with wind for the wind to count. Assumed."""
 WIND_ROWS = 4.0
 """Standard deviation of the bell over the velocity that the wind is compared with, in rows: wind sensors average."""
 WIND_SCALE = 0.2
@@ -116,19 +117,19 @@ MOST_OF_WIND = 10.0
 """Most that the wind says against a reading: it turns of itself, too, and must not silence what position and heading
 say, so it is less than UNEXPLAINED_COST. [nats] Assumed."""
 THROUGHOUT = 0.75
-"""Share of a log, by what its parts say, in which a reading holds that is one of all of it. Assumed."""
+"""Share of a log, by its parts, in which a reading must hold to count for the whole log. Assumed."""
 UNLABELLED = 0.95
-"""The same where the log as labelled can be held against a reading, by the logarithms of what both leave in each part.
+"""Such a share where both labels are compared, by the logarithms of their residuals in each part.
 Drawn boats (tests/bench/mistakes, seeds 3000 to 3024): 1.00 in all 293 with a label that is wrong throughout; where it
 is wrong in three quarters, 119 of 161 are below 0.95 and the rest above 0.98: there the last quarter does not tell."""
 READING_SURE = 0.95
-"""Probability from which on a change is named."""
+"""Probability above which a change is named."""
 MOST_SURE = 0.998
 """Largest probability of a reading: what is not thought of remains."""
 LEFT_OPEN = 0.5
-"""Probability of something that no reading explains, from which on nothing is reported."""
+"""Probability of something that no reading explains, above which nothing is reported."""
 UNLIKELY_READING = 0.02
-"""Probability below which a reading is not said beside others."""
+"""Probability below which a reading is not listed as an alternative."""
 MOST_ALTERNATIVES = 6
 """Readings that are reported beside another."""
 
@@ -139,7 +140,7 @@ LONGEST_BRIDGE = 4.5
 SLOW_MOTION = 4.0
 """Standard deviation of the bell over which noise and waves are averaged out. [s]"""
 CLEAR_MOTION = 4.0
-"""Slow motion over its noise, from which on its size can be judged."""
+"""Slow motion over its noise, above which its size can be judged."""
 NOISE_WINDOWS = 24
 """Windows of a log in which the noise is looked at."""
 WHITENESS_LAGS = 12
@@ -160,7 +161,7 @@ LABEL_ROWS = 60
 SHORTEST_WRONG = 10.0
 """Shortest segment of a label however close the rows are. [s] Assumed."""
 RARE_LABEL = 6.5
-"""Cost of a mistake from which on it is not looked for in parts. [nats] Assumed: feet and miles, whose factors are near
+"""Cost of a mistake above which it is not looked for in parts. [nats] Assumed: feet and miles, whose factors are near
 those of knots and km/h."""
 MOST_LABELS = 4
 """Mislabels of a part, of those that gain most, that are judged. Assumed."""
@@ -228,7 +229,7 @@ SCALE_SLAB = {1: 0.03, 2: 0.1}
 CLOCK_GAIN = 8.0
 """What a segment must gain after the cost of choosing it. [nats]"""
 CLOCK_TOLERANCE = 0.05
-"""Of ρ, below which it is no fault. Assumed."""
+"""Deviation of ρ from 1 below which the clock counts as right. Assumed."""
 PLAUSIBLE_RATES = (0.65, 1.5)
 """ρ of a clock; noise alone, where a ship hardly moves, looks like a clock of a half."""
 MOST_BLOCKS = 160
@@ -240,25 +241,25 @@ FEWEST_BLOCKS = 3
 LARGEST_SHARE = 0.5
 """Largest share of the log; what is longer is a scale, not a segment."""
 CLOCK_REACH = 30
-"""Rows about an end, in which it is sought."""
+"""Rows around the end of a segment in which it is sought."""
 MOST_SEGMENTS = 4
 """Segments in one log. Assumed."""
 CLOCK_CLIP = 25.0
 """Standard deviations beyond which an innovation counts no more."""
 RATE_UNSURE = 0.03
-"""Of ρ - 1, what the ends of segments and the scale of the whole log leave open, as a standard deviation. Assumed."""
+"""Standard deviation of ρ from the ends of segments and the scale of the whole log. Assumed."""
 ROUGHEST = 3.5
 """Innovations that are more correlated, after all that was found, say nothing about a clock."""
 
 # Repair
 
 HOLE = 1.5
-"""Step over the usual one, from which on rows are missing between."""
+"""Step over the usual one, above which rows are missing between."""
 LONGEST_SPAN = 50.0
-"""Span of a log over what its rows can fill, from which on some of its stamps are wrong. Assumed."""
+"""Span of a log over what its rows can fill, above which some of its stamps are wrong. Assumed."""
 UNEVEN = 0.02
-"""Spread of the steps as a share of the usual one, from which on it is remarked; and median distance of the spans from
-whole steps, in steps, from which on the times of a log are uneven. Assumed."""
+"""Spread of the steps as a share of the usual one, above which it is remarked; and median distance of the spans from
+whole steps, in steps, above which the times of a log are uneven. Assumed."""
 LATEST = 2.6e11
 """Latest time that is one, after the year 9999 counted from 1970. [s]"""
 SHORTEST_STEP = 2e-4

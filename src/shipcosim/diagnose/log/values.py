@@ -28,7 +28,7 @@ TEN_MILLIONTHS = "1e-7 deg"
 """Spelling of the unit of latitudes and longitudes that autopilots write as whole numbers."""
 LARGEST = {"latitude": 90.0, "longitude": 180.0}
 NOT_AVAILABLE = {"latitude": 91.0, "longitude": 181.0, "heading": 511.0, "speed_over_ground": 102.3}
-"""Numbers by which AIS says that there is no value. ITU-R M.1371-5, table 48. [deg, deg, deg, kn]"""
+"""Numbers by which AIS marks a missing value. ITU-R M.1371-5, table 48. [deg, deg, deg, kn]"""
 _STEPS = (
     SHORTEST_STEP,
     90.0,
@@ -48,7 +48,7 @@ _NEAR_END = 300.0  # s; within which of its end one was, and of its start it is.
 def values_of(
     channel: Channel, name: str, log: LogColumns, form: FileLayout
 ) -> tuple[np.ndarray, str, list[str]]:
-    """Values of a channel, their unit, and what is to be said of them.
+    """Values of a channel, their unit, and remarks on them.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def values_of(
 
 
 def _without_placeholders(values, name, column):
-    """The values without numbers that stand for none, and what is to be said of them."""
+    """The values without numbers that stand for none, and remarks on them."""
     rows = values == NOT_AVAILABLE.get(name)
     if not rows.any():
         return values, []
@@ -140,7 +140,7 @@ def heading_of_quaternion(parts: np.ndarray, frame: str) -> np.ndarray:
 
 
 def _found(log: LogColumns, name: str) -> str:
-    """A column's name as the log has it, also of one that was written with its unit."""
+    """Name of a column in the log, also if it was written with a unit."""
     if name in log.values:
         return name
     plain = name_and_unit(name)[0]
@@ -170,7 +170,7 @@ def _is_number(text):
 
 
 def _time(channel, column, stated, log, form):
-    """Times in seconds and what is to be said."""
+    """Times in seconds and remarks."""
     values = log.values[column]
     # Texts and time stamps: read dates and clock times,
     # with the date from its own column if there is one.
@@ -220,7 +220,7 @@ def _check_steps(column, times, factor, stated):
 
 
 def _without_summer_time(times):
-    """Stamps of a clock that is once put back by an hour, which go on, and what is to be said."""
+    """Stamps of a clock that is once put back by an hour, which go on, and remarks."""
     # One step back of nearly an hour, and no other, is the end of summer time.
     known = np.flatnonzero(np.isfinite(times))
     steps = np.diff(times[known])
@@ -236,7 +236,7 @@ def _without_summer_time(times):
 
 
 def _past_the_end(times):
-    """Seconds of the day, or of the week of GPS, that go on past its end, and what is to be said."""
+    """Seconds of the day, or of the week of GPS, that go on past its end, and remarks."""
     # The clock must fall by nearly a whole period, from
     # near its end to near its start, at each fall.
     known = finite(times)
@@ -304,7 +304,7 @@ def _position(channel, column, stated, name, log):
         hemisphere = _found(log, channel.hemisphere)
         signs = hemisphere_signs(log.values[hemisphere], name)
         if signs is None:
-            found = f"column '{hemisphere}' is none of hemispheres."
+            found = f"column '{hemisphere}' does not hold hemispheres."
             raise error_at("", found, "It should hold N and S, or E and W.")
         degrees = np.abs(degrees) * signs
     return channel.sign * degrees + channel.offset, said

@@ -86,7 +86,7 @@ def clock_by_response(problem: IdentificationProblem) -> Finding | None:
 
 
 def _all_aspects_agree(problem, finding, known):
-    """Whether way, speed, heading and turning are those of one rate.
+    """Whether distance, speed, heading and turning agree with one rate.
 
     A compass can be wrong alone, and so can a force: it changes the speed, but how far the ship comes at her speed
     is a matter of the clock.

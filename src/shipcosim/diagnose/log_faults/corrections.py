@@ -87,7 +87,7 @@ def with_right_clock(found: Identification) -> Identification:
 
 
 def with_right_wind(found: Identification) -> Identification:
-    """The log with a mislabelled wind read as the ship's response says: what it is instead, and where."""
+    """The log with a mislabelled wind corrected by the ship's response: the label, and its segment."""
     for place, fault in enumerate(found.faults):
         if fault.mislabel in WIND_LABELS and len(fault.segments) < 2:
             found = _with_right_wind_label(found, place)
@@ -116,7 +116,7 @@ def _with_right_wind_label(found, place):
 
 
 def _is_told_by_the_ship(problem, logged):
-    """Whether the ship answers a log with a label corrected, as the problem has it, and not one as logged."""
+    """Whether the ship's response supports the corrected label and not the logged one."""
     return (
         likelihood(problem, problem.record)
         > likelihood(problem, record_of(logged, problem.model)) + PART_GAIN
@@ -149,7 +149,7 @@ def _likeliest_direction(as_logged, fault):
 
 
 def with_right_connections(found: Identification) -> Identification:
-    """The ship with connections as their names say, where the log contradicts how the system has them."""
+    """The ship with connections corrected by their names, where the log contradicts the system."""
     if found.ship.wiring is None:
         return found
     # Correct one odd connection at a time, and keep it if the evidence grows by the threshold.
@@ -169,7 +169,7 @@ def with_right_connections(found: Identification) -> Identification:
 
 
 def with_right_inputs(explained: ExplainedLog) -> ExplainedLog:
-    """The log with mislabelled channels of thrusters and wind corrected, where it is not healthy; explained anew."""
+    """The log with mislabelled channels of thrusters and wind corrected, where it is not healthy; explained again."""
     known = len(explained.identification.faults)
     for _ in range(MOST_INPUT_FAULTS):
         better = None if explained.is_healthy else _with_right_input(explained)
@@ -185,7 +185,7 @@ def with_right_inputs(explained: ExplainedLog) -> ExplainedLog:
 def _with_right_input(explained):
     """The log with the likeliest fault of thrusters' or the wind's channels corrected; None if there is none.
 
-    The ends of a segment are rough until they are settled, so the likeliest fault is settled before it is held against
+    The ends of a segment are rough until they are settled, so the likeliest fault is settled before it is compared with
     all causes; further ones only where they are better than those even so.
     """
     found = explained.identification
@@ -223,7 +223,7 @@ def _with_right_input(explained):
 
 
 def _repaired(found, faults, noise=None):
-    """An identification anew, of the log as read with some faults corrected."""
+    """A repeated identification, of the log as read with some faults corrected."""
     log = _without(found, faults)
     problem = identification_problem(log, found.ship, found.causes, noise)
     return replace(found, faults=tuple(faults), repaired=log, problem=problem)
@@ -235,7 +235,7 @@ def _without(found, faults):
 
 
 def _relabelled(found, fault):
-    """An identification anew, of its repaired log with a mislabel undone too."""
+    """A repeated identification, of its repaired log with a mislabel undone too."""
     log = with_label(found.repaired, fault.mislabel, fault.segments)
     return replace(
         found, repaired=log, problem=identification_problem(log, found.ship, found.causes)

@@ -111,7 +111,7 @@ def with_refined_segment(
         return known[ends]
 
     def likelihoods_of(many):
-        """The same, of several side by side."""
+        """Likelihoods of several segments, computed side by side."""
         return dict(zip(many, each(likelihood_of, many), strict=True)).get
 
     # Start from the segment at hand, and search coarsely, then finely.

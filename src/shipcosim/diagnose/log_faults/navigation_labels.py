@@ -56,7 +56,7 @@ class Relabelled:
 def relabelled(
     log: xarray.Dataset, faults: Sequence[Finding], problem: IdentificationProblem
 ) -> list[Relabelled]:
-    """The likeliest labels of the navigation, where they are not those that the faults say.
+    """The likeliest labels of the navigation, if they differ from those of the found faults.
 
     Each in its likeliest stretch, and except for units throughout: row by row it is judged with the noise of the log as it
     is, which a wrong label throughout makes too large.
@@ -135,7 +135,7 @@ def _matters(plain, label):
 
 
 def _is_clear(plain):
-    """Whether the ship moves so much that position against velocity has said what there is to say."""
+    """Whether the ship moves so much that position against velocity already decides the labels."""
     motion = position_motion(arrays_of(plain))
     return motion is not None and is_clear(motion, filter_for(motion)[0])
 

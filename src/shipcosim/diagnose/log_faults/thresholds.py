@@ -10,8 +10,8 @@ FAULT = 15.0
 """What a fault of the data must gain over the best causes without it. [nats] It takes the place of causes that explain
 the log too."""
 UNIT = 3.0
-"""The same for another unit over a cause that it looks like (`wind_scale`): a scale is free, so the log in knots is
-likelier than a wind load of exactly 1.94 squared. [nats]"""
+"""Evidence that another unit must gain over a cause that it resembles (`wind_scale`): a scale is free, so the log in
+knots is likelier than a wind load of exactly 1.94 squared. [nats]"""
 MOST_TRIED = 3
 """Mislabels of thrusters and wind that are tried, the likeliest first."""
 MOST_INPUT_FAULTS = 2
@@ -22,15 +22,15 @@ ROUNDS_OF_SEGMENT = 2
 # Labels of thrusters and wind
 
 LEAST_ROW_GAIN = 10.0
-"""Log-likelihood over the rows of its segment from which on a mislabel is tried. [nats] Assumed."""
+"""Log-likelihood over the rows of its segment above which a mislabel is tried. [nats] Assumed."""
 SHORTEST_INPUT = 60.0
 """Shortest segment in which an input is wrong. [s] Assumed."""
 WHOLE = 0.85
-"""Share of the log from which on a segment is taken as all of it. Assumed."""
+"""Share of the log above which a segment is taken as all of it. Assumed."""
 BESIDE_AN_END = 4
 """Rows on either side of an end that are neither as logged nor corrected: series are averaged over neighbours. [1]"""
 SEARCH_STEP = 60.0
-"""Time between the places where an end of a segment is sought first. [s]"""
+"""Time between the first candidates for the end of a segment. [s]"""
 MOST_PLACES = 80
 """So many places at most; in a log of more than 80 minutes they are farther apart, as the time goes with both."""
 FIRST_MOVE = 32
@@ -52,7 +52,7 @@ SHORTEST_LABEL = 180.0
 CHANGED = 0.7
 """Share of the root mean square of its channels that another frame must change. Assumed."""
 LIKELY_LABELS = 4
-"""Labels for which the noise is tuned anew."""
+"""Labels for which the noise is tuned again."""
 CALM_JOLT = 0.2
 """Share of the first guess of the jolts that the noise may have: under a wrong label jolts grow to cover it."""
 
@@ -75,11 +75,11 @@ MOST_SEGMENTS = 2
 PLAUSIBLE_RATES = (0.65, 1.5)
 """ρ of a clock; outside it is noise (developing logs)."""
 SMALLEST_RATE = 0.08
-"""Of ρ - 1, below which it is no fault. Assumed."""
+"""Deviation of ρ from 1 below which the clock counts as right. Assumed."""
 RATE_UNSURE = 0.03
-"""Of ρ - 1, what the ends of segments leave open, as a standard deviation. Assumed."""
+"""Standard deviation of ρ from the ends of segments. Assumed."""
 ASPECT_APART = 0.15
-"""Of ρ - 1, by which what way, speed, heading and turning say may differ beyond noise. Assumed."""
+"""Difference of ρ by distance, speed, heading and turning that may go beyond noise. Assumed."""
 ASPECT_CHANCE = 0.01
 """Probability that they differ more if the clock is wrong; the limit is 11.3. 28 of 30 developing logs with a wrong
 clock lay below 10.1; 17 of 19 in which a shoal, a wind shadow or a deviating compass looked like one, above 14."""

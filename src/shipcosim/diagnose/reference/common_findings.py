@@ -80,7 +80,7 @@ def is_of_thrusters(fault: Finding) -> bool:
 
 
 def leans_to(labels: Labels | None, fault: Finding) -> bool:
-    """Whether a log that does not show a fault of the thrusters' labels leans to it all the same, or cannot tell."""
+    """Whether a log without this label fault has weak evidence for it, or none at all."""
     # A log that does not show the fault may still have these thrusters among its likeliest labels.
     if labels is None:
         return True
@@ -151,7 +151,7 @@ class RatioOfLogs:
 
     @property
     def contradiction(self) -> str:
-        """That the logs contradict each other, in a sentence; empty where they do not."""
+        """Sentence that the logs contradict each other; empty if they do not."""
         if self.common is not None or not self.each:
             return ""
         sizes = ", ".join(

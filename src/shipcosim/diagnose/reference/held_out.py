@@ -84,7 +84,7 @@ def sizes_by_log(
 
 
 def weather_of(fit: JointFit, name: str, hypotheses: Sequence[Hypothesis]) -> list[Finding]:
-    """Those of some causes that are of the day of one log, as all logs together have them."""
+    """Causes that belong to the day of one log, from the fit of all logs."""
     own = {hypothesis.cause for hypothesis in hypotheses if hypothesis.component == name}
     return [
         finding
@@ -156,7 +156,7 @@ def _log_errors(
     causes: Mapping[str, Cause],
     progress: Callable[[str, int, int], None],
 ) -> LogErrors | None:
-    """The errors of one log; None where no stretch of it is whole."""
+    """The errors of one log; None if it has no complete stretch."""
     # Predict by co-simulation. If it fails, at least the
     # errors of the unchanged system, by the array model.
     remark = ""

@@ -123,7 +123,7 @@ def fitted_jointly(
 
 
 def _scaled(column: Regressor, scale: float) -> Regressor:
-    """A known number's column whose tolerance is so many times as large, if it is the ship's."""
+    """Column of a known number, with its tolerance scaled if the number is the ship's."""
     of_day = any(ShipModel.is_of_day(path) for path in column.changes)
     return column if of_day else replace(column, prior=scale * column.prior)
 

@@ -125,7 +125,7 @@ def _null_gains(logs, fit, fits):
 
 
 def joint_excitation(verdict: JointVerdict) -> Excitation:
-    """What these logs together tell of each cause, had it its typical size."""
+    """Information of all logs together on each cause of typical size."""
     # Inner products of the columns of all causes, added up over the logs.
     logs = verdict.logs
     nothing = cast(JointFit, without_causes(verdict.fits))

@@ -48,7 +48,7 @@ def write_parameter_set(system: System, reference: Reference, path: AnyPath) -> 
 
 
 def _variable(system: System, number: KnownNumber):
-    """Variable of the system that holds a number; None where it has none, or it is another number there."""
+    """Variable of the system that holds a number; None if it has none, or a different number."""
     component, _, name = number.name.rpartition(".")
     part = system.components.get(component)
     if part is None or name not in part.variables:

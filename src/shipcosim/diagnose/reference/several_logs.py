@@ -27,7 +27,7 @@ def is_of_day(hypothesis: Hypothesis) -> bool:
 
 
 def of_log(hypothesis: Hypothesis, name: str) -> Hypothesis:
-    """A cause of the day as that of one log: its component is the log's name, which its numbers have before theirs."""
+    """A cause of the day for one log: the log's name is its component and the prefix of its numbers."""
     parameters = (
         replace(parameter, paths=tuple(f"{name}{_SEPARATOR}{path}" for path in parameter.paths))
         for parameter in hypothesis.parameters
@@ -73,7 +73,7 @@ class SeveralLogs:
         return (*ship.values(), *day)
 
     def within(self, name: str, hypothesis: Hypothesis) -> Hypothesis | None:
-        """A cause as the problem of one log has it; None where that log has nothing to say of it."""
+        """A cause in the problem of one log; None if that log cannot show it."""
         # A cause of the day exists in its own log only, and there without the log's name.
         component = hypothesis.component
         if is_in_one_log(hypothesis):
@@ -89,13 +89,13 @@ class SeveralLogs:
     def all_within(
         self, name: str, hypotheses: Sequence[Hypothesis]
     ) -> list[tuple[Hypothesis, Hypothesis]]:
-        """Causes that one log has something to say of, each with what it is there."""
+        """Causes that one log can show, each as it is in that log."""
         pairs = ((one, self.within(name, one)) for one in hypotheses)
         return [(one, own) for one, own in pairs if own is not None]
 
 
 def values_in(name: str, values: Mapping[str, float]) -> dict[str, float]:
-    """Numbers as one log has them: those of the ship, and those of its own day."""
+    """Numbers for one log: those of the ship, and those of the log's own day."""
     found = {}
     # Numbers with the prefix of another log are left out, the own prefix is removed.
     for path, value in values.items():

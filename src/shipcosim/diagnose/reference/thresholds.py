@@ -21,14 +21,14 @@ ORDINARY = 2.0
 """Times the gain of an unmodelled error in the logs of a reference, up to which it is no news: of 1.4 times the size.
 Assumed."""
 NOT_WELL = 100.0
-"""Gain of a cause, or of an unmodelled error, beside the calibrated ship, from which on the logs are refused. [nats] As
+"""Gain of a cause, or of an unmodelled error, beside the calibrated ship, above which the logs are refused. [nats] As
 much as no healthy developing log came near."""
 AT_EDGE = 3.0
 """Tolerances, as wide as the logs want them, beyond which a number is remarked upon."""
 MOST_SUSPECTS = 4
 """Causes in the ship that are fitted beside the calibrated one, to see whether she is well."""
 MOST_WEIGHT = 100.0
-"""Information of a part of a log about a column, in units of its prior, from which on more does not count more."""
+"""Information of a part of a log about a column, in units of its prior, above which more does not count more."""
 BEYOND = 3.0
 """Standard deviations by which a number would have to leave its bounds for the logs to be refused. Assumed."""
 SAME_RATIO = 0.01

@@ -99,7 +99,7 @@ class TrialEvidence:
 
     @property
     def covariance(self) -> np.ndarray:
-        """Of the features about those of a ship with the right causes."""
+        """Covariance of the features about those of a ship with the right causes."""
         return self.noise + self.known.T @ self.known
 
 

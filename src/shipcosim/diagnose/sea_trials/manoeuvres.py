@@ -75,7 +75,7 @@ class PlannedTrial:
 
     @property
     def way(self) -> float:
-        """Of all legs. [ship lengths]"""
+        """Distance sailed on all legs. [ship lengths]"""
         return sum(leg.way for leg in self.legs)
 
 

@@ -47,7 +47,7 @@ STEPS = {
     "fitted on all manoeuvres": 5.0,
     "what would tell causes apart": 5.0,
 }
-"""What `study` tells its progress function, in order, with the time that it typically takes. [s]"""
+"""Steps that `study` reports to its progress function, in order, with their typical times. [s]"""
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ class SeaTrialStudy:
 
     @property
     def pairs(self) -> list[tuple[str, str]]:
-        """What each two of the compared sets do not share."""
+        """Causes that two compared sets do not share, for each pair."""
         return [differing(one, other) for one, other in combinations(self.compared, 2)]
 
     @property
@@ -276,7 +276,7 @@ def study(
     read = checked(ReadLog(read_log(log, channels, drives), ship, read_catalogue(causes)))
     if read.ship.third_party:
         found = f"{', '.join(read.ship.third_party)}: third-party FMUs, which are only known where a log has been."
-        raise error_at(system.file, found, "Sea trials are sailed with thrusters of ours.")
+        raise error_at(system.file, found, "Sea trials need thruster FMUs of shipcosim.")
     # Gaps must not fall within a trial.
     lost = [segment for fault in read.faults if fault.cause == "gap" for segment in fault.segments]
     record = record_of(read.repaired, read.ship)
@@ -401,7 +401,7 @@ def best_of(ranking: Iterable[SetOfCauses]) -> SetOfCauses:
 
 
 def _worth(one):
-    """Evidence less what is asked of each cause. [nats]"""
+    """Evidence minus the cost of each cause. [nats]"""
     return one.evidence - thresholds.NAMED * len(one.hypotheses)
 
 

@@ -12,15 +12,15 @@ ZIG_ZAG = 0.06
 CIRCLE = 330.0
 """Heading turned by a circle that can be used, from the start of the order. [deg]"""
 HALF_A_CIRCLE = 180.0
-"""Heading turned from which on a circle is steady: speeds of the trials of 2022 change little after it. [deg]"""
+"""Change of heading after which a circle is steady: speeds of the trials of 2022 change little after it. [deg]"""
 DRIFT_TOLD = 270.0
-"""Heading turned in steady state from which on the drift of a circle's centre tells the current. [deg]"""
+"""Change of heading in a steady circle after which the drift of its centre gives the current. [deg]"""
 CIRCLES = 540.0
 """Heading turned up to which a circle is used. [deg]"""
 SWINGS = 3
 """Changes of the helm of a zig-zag that can be used. [1]"""
 LONGEST_SWING = 20.0
-"""Way from one change of the helm to the next, above which it is no zig-zag. [ship lengths]"""
+"""Largest distance between changes of the helm in a zig-zag. [ship lengths]"""
 REVERSED = 2.0
 """Way over which the helm of a zig-zag is put over from side to side. [ship lengths]"""
 SETTLED = 15.0
@@ -32,7 +32,7 @@ STRAIGHT_RATE = 0.03
 REST = 10.0
 """Time over which a helmsman's corrections average out, and orders are held. [s]"""
 CLIPPED = 0.98
-"""Order over the largest speed of a shaft, above which it says nothing of the speed that the shaft had. [1]"""
+"""Ordered over largest shaft speed, above which the order does not give the true shaft speed. [1]"""
 RUN = 40.0
 """Way over which the model settles to its own speed. [ship lengths]"""
 FROUDE = 0.2
@@ -60,23 +60,23 @@ RATE = 0.025
 DRIFT = 0.026
 """How well the steady speed, rate (shares) and drift angle (rad) of a circle repeat, assumed: waves, wind, helm."""
 TIMES = (0.10, 0.06, 0.05, 0.04)
-"""The same of the times to `HEADINGS`, assumed. [1]"""
+"""How well the times to `HEADINGS` repeat, assumed. [1]"""
 SPEEDS = 0.05
-"""The same of the speeds at `HEADINGS_OF_SPEED`, assumed. [1]"""
+"""How well the speeds at `HEADINGS_OF_SPEED` repeat, assumed. [1]"""
 WAYS = (0.04, 0.06, 0.04)
-"""The same of advance, transfer and tactical diameter, assumed. [1]"""
+"""How well advance, transfer and tactical diameter repeat, assumed. [1]"""
 STRAIGHT_SPEED = 0.015
-"""The same of the speed of a straight run, beside the current, assumed. [1]"""
+"""How well the speed of a straight run repeats, apart from the current, assumed. [1]"""
 PEAK_RATE = 0.04
 SWING = 0.08
 ZIG_ZAG_SPEED = 0.03
-"""The same of a zig-zag's mean largest rate, mean heading change of a swing, and mean speed, assumed. [1]"""
+"""How well mean largest rate, mean heading change and mean speed of a zig-zag repeat, assumed. [1]"""
 PULL_OUT_RATE = 0.04
 SPIRAL_RATE = 0.03
 CHANGED_SPEED = 0.025
 TURNED = 0.1
-"""The same of the rates of a pull-out and a spiral over the first, of a changing speed over the first (shares), and of
-the change of heading while a course is held (rad), assumed."""
+"""How well these repeat: the rates of a pull-out and a spiral over the first, of a changing speed over the first
+(shares), and of the change of heading while a course is held (rad), assumed."""
 START = 0.12
 """How well the start of a circle's order is known, times the root of the length in m: 0.7 s for 34 m. [s/m^0.5]"""
 COMMON = 0.02
@@ -99,7 +99,7 @@ MOST_CAUSES = 3
 RELINEARISED = 8
 """Sets, best in the linear approximation, that are fitted to the simulation itself. [1]"""
 ROUNDS = 2
-"""Times that they are linearised anew. [1]"""
+"""Times that they are linearised again. [1]"""
 NAMED = 5.0
 """Evidence that each cause of a set must add. [nats]"""
 RIVAL = NAMED

@@ -19,7 +19,7 @@ from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 
 @dataclass(frozen=True)
 class SeaTrial:
-    """One manoeuvre of a log, on the clock that its own motion tells.
+    """One manoeuvre of a log, on the clock that follows from its own motion.
 
     Attributes
     ----------
@@ -149,7 +149,7 @@ def as_ordered(record: Record, log: xarray.Dataset, model: ShipModel) -> Record:
 
 
 def _known(series, otherwise, at):
-    """Values of a series at some rows, others where there is none."""
+    """Values of a series at some rows; a default for missing values."""
     return np.where(np.isfinite(series[at]), series[at], otherwise)
 
 

@@ -132,7 +132,7 @@ def loads(
 
 
 def _alike(model: ShipModel, other: ShipModel, found: dict[str, Load]) -> dict[str, Load]:
-    """Those of another ship's loads that this one has too."""
+    """Loads of another ship that this ship has too."""
 
     def alike(name):
         made_of = _MADE_OF.get(name, (name, form_of(name)))

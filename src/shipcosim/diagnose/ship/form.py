@@ -214,7 +214,8 @@ def form_functions(
 
 
 def _hull_sizes(hull: HullParameters) -> dict[str, float]:
-    """Of the numbers that the hull has: coefficients by a share of their size, linear damping by the quadratic one."""
+    """Standard deviations of the hull's numbers: coefficients by a share of their size, linear damping by the quadratic
+    one."""
     # Added mass, lift and damping coefficients: a share of their size.
     found = {
         name: ADDED_MASS * abs(getattr(hull, name)) for name in ("A11", "A22", "A26", "A62", "A66")

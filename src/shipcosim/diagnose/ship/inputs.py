@@ -277,7 +277,7 @@ def _about_stretches(time: np.ndarray) -> list[str]:
     span = (time[-1] - time[0]) / 3600.0
     what = f"{len(parts)} stretches, {used:.0f} min together, spread evenly over its rows"
     return [
-        f"Of this log of {span:.1f} h {what}, are held against the ship; all of it was checked for faults."
+        f"Of this log of {span:.1f} h {what}, are compared with the ship. All of it was checked for faults."
     ]
 
 
@@ -350,7 +350,7 @@ def _column(log: xarray.Dataset, role: str, rows: int) -> np.ndarray:
 
 
 def _unit(log, name, model, rows, remarks):
-    """Speed or thrust of a thruster and its direction, and where they are known."""
+    """Speed or thrust of a thruster and its direction, and the rows in which they are known."""
     # The drive of a thruster is its speed in rev/s, or its thrust if this is logged instead.
     speed = _column(log, f"{name}_rpm", rows) / 60.0
     direction = _column(log, f"{name}_azimuth", rows) * np.pi / 180.0
@@ -385,7 +385,7 @@ def _check_third_party(log: xarray.Dataset, model: ShipModel) -> None:
     lacking += [
         Problem(
             str(name),
-            f"{one.component.fmu.model_name} follows {', '.join(one.idle)}, which no log can tell.",
+            f"{one.component.fmu.model_name} follows {', '.join(one.idle)}, which no log contains.",
             "A diagnosis knows what drives a thruster as rpm, azimuth or thrust: describe her by another kind.",
         )
         for name, one in model.third_party.items()
@@ -398,7 +398,7 @@ def _check_third_party(log: xarray.Dataset, model: ShipModel) -> None:
 def _about_third_party(name: str, one: ThirdPartyFmu) -> str:
     """What the user should know of a third-party FMU."""
     idle = (
-        f" What the log does not tell keeps its start value: {', '.join(one.idle)}."
+        f" Inputs that the log does not have keep their start values: {', '.join(one.idle)}."
         if one.idle
         else ""
     )
@@ -435,7 +435,7 @@ def averaged(series: np.ndarray) -> np.ndarray:
 
 
 def _filled(series: np.ndarray) -> np.ndarray:
-    """The series with linear interpolation where it has no value."""
+    """The series with missing values interpolated linearly."""
     whole = np.isfinite(series)
     if not whole.any():
         return np.zeros_like(series)

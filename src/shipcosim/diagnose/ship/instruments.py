@@ -46,4 +46,4 @@ LAGS = tuple(
 MOUNTING = ("instruments.heading_bias", "instruments.lever_x")
 """What compass and antenna are off, of a log that nobody has checked: paths of these numbers."""
 NONLINEAR = frozenset({"instruments.wind_lag"})
-"""Numbers whose effect is not linear within their tolerance, in quick gusts: every fit linearises about them anew."""
+"""Numbers whose effect is not linear within their tolerance, in quick gusts: every fit linearises about them again."""

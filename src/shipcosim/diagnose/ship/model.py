@@ -145,7 +145,7 @@ class ShipModel:
         return [name for name in self.parts if "azimuth" in self.drives(name)]
 
     def drives(self, name: str) -> tuple[str, ...]:
-        """What a log should have of a part: ``"rpm"``, ``"azimuth"``; nothing where it is no thruster."""
+        """Channels that a log should have for a part: ``"rpm"``, ``"azimuth"``; none unless it is a thruster."""
         if name in self.third_party:
             return self.third_party[name].drives
         if isinstance(self.parts[name], AzimuthParameters) and name not in self.fixed:

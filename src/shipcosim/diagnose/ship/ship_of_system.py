@@ -134,6 +134,6 @@ def _left_out(system: System, ship: Component) -> Iterator[Problem]:
 
 
 def _values(component: Component, kind: type) -> Any:
-    """Parameters of a component; those that its FMU does not know change nothing."""
+    """Parameters of a component; defaults for those that its FMU lacks."""
     names = [item.name for item in fields(kind) if item.name in component.variables]
     return kind(**{name: component.start_value(name) for name in names})

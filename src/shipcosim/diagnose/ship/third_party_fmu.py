@@ -14,7 +14,7 @@ from shipcosim.series import conversion
 from shipcosim.ssp import Component, Connection, System
 
 DRIVES = {"rpm": "rpm", "thrust": "N", "azimuth": "rad"}
-"""What a log says of a thruster, and in which unit it is handed on."""
+"""Quantity of a thruster in a log, and the unit in which the FMU gets it."""
 MOTION = ("x", "y", "psi", "u", "v", "r", "u_r", "v_r")
 """Outputs of the ship that a log tells."""
 _UNITS = {
@@ -75,7 +75,7 @@ class ThirdPartyFmu:
 
     @property
     def drives(self) -> tuple[str, ...]:
-        """What a log has to say of it: ``"rpm"`` or ``"thrust"``, ``"azimuth"``."""
+        """Channels that a log needs for it: ``"rpm"`` or ``"thrust"``, ``"azimuth"``."""
         return tuple(kind for kind in DRIVES if any(link.quantity == kind for link in self.links))
 
 
@@ -151,7 +151,7 @@ def third_party_fmu_of(system: System, name: str, ship: str) -> ThirdPartyFmu:
 
 
 def _kind(system: System, connection: Connection) -> str | None:
-    """Which drive an input would be, by the unit of what feeds it, or by its name where there is none."""
+    """Kind of drive that an input is, by the unit of its source, or by its name without a unit."""
     source, given = connection.source
     label = given if source is None else connection.target[1]
     # The unit decides, and the name must agree with it. Without a unit only a speed is recognised.
@@ -206,7 +206,7 @@ def _parameters(component: Component) -> dict[str, str]:
 
 
 def _numbers(drives: Collection[str]) -> dict[str, Any]:
-    """Numbers that any thruster has, whoever made it: its loss, and offsets of what drives it."""
+    """Numbers of every thruster, also of third parties: its loss, and offsets of its inputs."""
     loss = quantity(
         0.0, "1", "share of its load that is missing", "neutral", tolerance=_KNOWN, maximum=1.0
     )
@@ -244,7 +244,7 @@ def part_of(third_party: ThirdPartyFmu) -> ThirdPartyPart:
 
 
 def problem_of(system: System, name: str, ship: str, one: ThirdPartyFmu) -> Problem | None:
-    """What to say of a third-party FMU whose load no log tells; None where it does."""
+    """Remark on a third-party FMU whose load a log does not determine; None if it does."""
     if one.links and not one.unclear:
         return None
     why = (

@@ -44,7 +44,7 @@ class DpThruster(NamedTuple):
 
     @property
     def pushes_sideways(self) -> bool:
-        """Whether it is one across the ship, as in a tunnel."""
+        """Whether the thruster pushes across the ship, as in a tunnel."""
         return not self.pointed and bool(abs(np.cos(self.axis)) < 0.5)
 
 
@@ -211,19 +211,19 @@ def fixed_of(system: System, parts: Mapping[str, Any]) -> dict[str, float]:
 
 
 def thrust_numbers(model: ShipModel) -> tuple[str, ...]:
-    """Of each thruster, the number that scales all its thrust."""
+    """The number of each thruster that scales all its thrust."""
     return tuple(path for name in model.thrusters if model.has(path := f"{name}.thrust_loss"))
 
 
 def astern_numbers(model: ShipModel) -> tuple[str, ...]:
-    """Of each thruster, the number that scales its thrust astern, where it has one."""
+    """The number of each thruster that scales its thrust astern, where it has one."""
     kinds = ("reverse_loss", "gain_astern")
     paths = [f"{name}.{kind}" for name in model.thrusters for kind in kinds]
     return tuple(path for path in paths if model.has(path))
 
 
 def with_thrust(model: ShipModel, ratio: float, std: float) -> ShipModel:
-    """The ship with all thrusters' thrust a ratio of what it was, known as well as the standard deviation says.
+    """The ship with the thrust of all thrusters scaled; the standard deviation is the new tolerance.
 
     Parameters
     ----------

@@ -37,7 +37,7 @@ class Scales(NamedTuple):
 
     @property
     def middle(self) -> float:
-        """Geometric mean of those that are finite, infinite where none is. [s]"""
+        """Geometric mean of the finite values; infinite if there are none. [s]"""
         finite = [time for time in self if np.isfinite(time)]
         return float(np.exp(np.mean(np.log(finite)))) if finite else np.inf
 

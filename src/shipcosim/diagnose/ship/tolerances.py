@@ -10,7 +10,7 @@ _COEFFICIENT = 0.05  # of a hull's coefficient, as of the damping in surge (assu
 
 
 def tolerances_of(system: System, parts: Mapping[str, Any], vessel: str) -> dict[str, float]:
-    """Tolerances of the system's parameter sets, where they are silent what such a number is known to.
+    """Tolerances of the system's parameter sets, and usual ones where these have none.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def tolerances_of(system: System, parts: Mapping[str, Any], vessel: str) -> dict
 
 
 def _assumed(values: Any, item: Field, value: float) -> float:
-    """Tolerance of a number of which nobody says how well it is known: its own, or a share of its size."""
+    """Assumed tolerance of a number without a stated one: that of its model, or a share of its size."""
     # Tolerances scale with the value relative to the default; a share is of the value itself.
     about = item.metadata
     if about["tolerance"]:

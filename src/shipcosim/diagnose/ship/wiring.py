@@ -1,4 +1,4 @@
-"""Connections of thrusters that are not as their connectors' names say; whether they are wrong, the log decides."""
+"""Connections of thrusters that contradict the names of their connectors; the log decides whether they are wrong."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -16,7 +16,7 @@ _DRIVES = ("rpm", "azimuth")
 
 @dataclass(frozen=True)
 class Wiring:
-    """What is wired otherwise than named.
+    """Connections that contradict the names of their connectors.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Wiring:
 
 
 def wiring_of(system: System, vessel: str, thrusters: Sequence[str]) -> Wiring | None:
-    """What a system wires otherwise than its connectors' names say.
+    """Connections of a system that contradict the names of its connectors.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def wiring_of(system: System, vessel: str, thrusters: Sequence[str]) -> Wiring |
 
 
 def put_right(wiring: Wiring, name: str) -> Wiring | None:
-    """The wiring with one thruster's as its connectors' names say; None where nothing odd is left."""
+    """The wiring with one thruster corrected by the names of its connectors; None if nothing contradicts them."""
     rest = {other: told for other, told in wiring.odd.items() if other != name}
     loads, drives = (
         {k: v for k, v in part.items() if k != name} for part in (wiring.loads, wiring.drives)

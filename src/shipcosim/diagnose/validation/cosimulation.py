@@ -121,7 +121,7 @@ def replayed(
     step_size: float = STEP,
     progress: CountProgress | None = None,
 ) -> Motion:
-    """What a system, run from some rows of a log, says that the log will show after the horizons.
+    """Predictions of a log after the horizons, by a system that is run from some rows.
 
     Parameters
     ----------
@@ -304,7 +304,7 @@ def _driven(model, name):
 
 
 def _input(system, component, variable):
-    """Input of the system that feeds a variable; None where there is none."""
+    """Input of the system that feeds a variable, or None."""
     feeding = (c.source for c in system.connections if c.target == (component, variable))
     return next((name for owner, name in feeding if owner is None), None)
 

@@ -224,7 +224,7 @@ class _Model:
     known: Any
 
     def predictor(self, number, original):
-        """The model with what one of its observers knew."""
+        """The model with the estimates of one of its observers."""
         return Predictor(
             self.record,
             self.model,
@@ -313,7 +313,7 @@ def error_with(comparison: Comparison, numbers: Mapping[str, float]) -> float:
 
 
 def sailed(comparison: Comparison, model: ShipModel) -> Motion:
-    """Where a ship is after the longest horizon of each held-out stretch, from what the plain model knew at its start.
+    """Position after the longest horizon of each held-out stretch, from the plain model's estimate at its start.
 
     Parameters
     ----------

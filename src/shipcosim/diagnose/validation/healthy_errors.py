@@ -26,7 +26,7 @@ class HealthyErrors:
     largest: dict[str, float]
 
     def as_json(self) -> dict:
-        """The entry ``healthy_errors`` of diagnosis.json: the largest that are no news."""
+        """The entry ``healthy_errors`` of diagnosis.json: the largest errors of a healthy ship."""
         return {
             "horizon_s": HORIZONS[-1],
             "position_error_m": self.largest["position"],

@@ -39,7 +39,7 @@ class MissingForce:
 
 
 def missing_forces(problem: IdentificationProblem, fit: Fit | None) -> MissingForce:
-    """The force that the plain model lacks, and where there is a fit what it lacks with the causes in it."""
+    """Missing force of the plain model and, after a fit, of the model with the causes."""
     plain = missing_force(problem, problem.model, problem.motion)
     extended = None if fit is None else missing_force(problem, fit.model, fit.motion)
     angles = [name for name in ("heading", "wind_from") if name in plain]

@@ -22,7 +22,7 @@ from shipcosim.diagnose.validation.thresholds import (
 from shipcosim.models.core.motion import Motion
 
 HORIZONS = (10.0, 30.0, 60.0)
-"""Of the predictions. [s]"""
+"""Horizons of the predictions. [s]"""
 
 
 def first_rows(record: Record, share: float = TRAINED) -> np.ndarray:

@@ -8,7 +8,7 @@ import numpy as np
 # Rows to fit on and to check on
 
 TRAINED = 0.65
-"""Share of the log, from its start, that is fitted on if nobody says otherwise."""
+"""Share of the log, from its start, that is fitted on by default."""
 START_STEP = 5.0
 """Time from the start of one prediction to the next. [s]"""
 SETTLED = 120.0

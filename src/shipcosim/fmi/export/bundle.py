@@ -15,12 +15,12 @@ SHIPCOSIM = Path(__file__).resolve().parents[2]
 ROOT = b'"""What this FMU needs of shipcosim."""\n'
 CARRIED_BY_HOST = {"numpy"} | set(sys.stdlib_module_names)
 WEIGHTS = "weights"
-"""Folder beside a script with trained weights as .npz files, and what is calibrated as .toml, which come along."""
+"""Folder beside a script; its trained weights (.npz) and calibrations (.toml) are packed into the FMU."""
 
 
 @dataclass
 class Module:
-    """One module that goes into the FMU."""
+    """One Python module that is packed into the FMU."""
 
     name: str
     path: Path

@@ -36,7 +36,7 @@ KNOWN = {
     "wind_sway_1": -581.0 / MASS_SWAY,
     "wind_sway_3": -31.0 / MASS_SWAY,
 }
-"""The model as the files of ssp/ships/osv have it, which a test holds: what a filter knows that learned nothing."""
+"""The model of ssp/ships/osv (a test holds that): numbers of a filter without learning."""
 GAINS = {
     "position_by_position": 0.06,
     "position_by_velocity": 0.2,
@@ -54,7 +54,7 @@ GAINS = {
 SIGNED = ("wind_surge_1", "wind_surge_3", "wind_sway_1", "wind_sway_3")
 """Numbers that may change their sign; the others are learned as logarithms."""
 WEIGHT = {**dict.fromkeys(KNOWN, 0.3), **dict.fromkeys(GAINS, 1.5)}
-"""How far a number may be from where it starts, as one standard deviation of its logarithm. Assumed."""
+"""Standard deviation of a number's logarithm about its start value. Assumed."""
 
 
 def measured_at(record: Record, k: int, valid: np.ndarray) -> Measured:

@@ -18,7 +18,8 @@ from shipcosim.models.prediction import velocity_network as law
 
 FULL_POWER = np.array([1.2e6, 0.9e6, 3.0e6])
 FULL_COMMAND = np.array([204.0, 276.0, 28.7])
-"""Of bow tunnel, stern tunnel, main propeller. [W, rpm, rpm, deg] As ssp/ships/osv has them; a test holds it."""
+"""Full power and command of bow tunnel, stern tunnel, main propeller. [W, rpm, rpm, deg] As ssp/ships/osv has them; a
+test holds it."""
 INPUTS = {
     "surge": ("wind angle", "wind speed", "main power", "main action"),
     "sway": ("wind angle", "wind speed", "bow power", "stern power"),
@@ -65,10 +66,11 @@ RECIPES = {
     ),
 }
 NOTES = (
-    "Not printed in the paper, and chosen here: Adam with mini-batches of 64 samples; early stopping on the tenth of"
-    " the samples that the paper validates with, the last of each world; the LSTM sees the ten samples one after the"
-    " other, from an empty memory; learning rates of the single layer; how power follows from the command.",
-    "Widths and learning rates of the LSTM are the printed result of the paper's search, which is not made again.",
+    "The paper does not print the points of this list, so they are chosen here. Adam has mini-batches of 64 samples."
+    " Early stopping looks at the tenth of the samples that the paper validates with: the last of each world. The LSTM"
+    " sees the ten samples one after the other, from an empty memory. The learning rates of the single layer are"
+    " chosen, and how power follows from the command.",
+    "Widths and learning rates of the LSTM are those that the paper's search found. The search is not repeated.",
 )
 
 

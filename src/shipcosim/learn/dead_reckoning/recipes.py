@@ -28,7 +28,7 @@ DESCRIPTION = (
     "Our filter: equations of motion and observer, learned through drills of a minute without GNSS"
 )
 NOTES = (
-    "Drills: GNSS is masked for a minute out of two, DP rides on the filter as it is before training, and a second"
+    "In a drill GNSS is masked for a minute out of two. DP rides on the filter as it is before training. A second"
     " receiver, which DP does not see, is logged. The region is calibrated in other worlds, against the true place.",
 )
 
@@ -202,4 +202,4 @@ KINDS: dict[str, tuple[str, Callable[[Progress], Trained]]] = {
         *UNLEARNED.items(),
     )
 }
-"""Kinds by name: one line for users, and what trains it."""
+"""Kinds by name: one line for users, and the function that trains it."""

@@ -70,7 +70,7 @@ MEASURED: Mapping[str, str] = {
     "second_x": "sensors.x_2_meas",
     "second_y": "sensors.y_2_meas",
 }
-"""What is aboard, by our name: the signal that measures it. The second receiver is logged, and DP does not see it."""
+"""Quantities known aboard: name, and signal that measures it. The second receiver is logged, and DP does not see it."""
 RECKONED: Mapping[str, str] = {
     name: f"reckoning.{name}" for name in ("x_hat", "y_hat", "position_region", "lost_for")
 }
@@ -111,7 +111,7 @@ class World:
 
 
 class Record(NamedTuple):
-    """Of one world or several.
+    """Record of one world or several.
 
     Parameters
     ----------

@@ -58,7 +58,7 @@ under way, loss of azimuths athwartships. [1, s2/m2, 1]"""
 
 @dataclass(frozen=True)
 class Docking:
-    """One docking: who, where, in what weather.
+    """One docking: helmsman, harbour and weather.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ class ShipModel:
 
 @dataclass(frozen=True)
 class Replay:
-    """What a predictor makes of m dockings of n seconds, before anything learned.
+    """Inputs of a predictor from m dockings of n seconds, before anything learned.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def replay(records: Sequence[Record], model: ShipModel) -> Replay:
 
 
 def at_second(aboard: Aboard, k: int) -> Aboard:
-    """What is known at second k, from (m, n) arrays."""
+    """Known quantities at second k, from (m, n) arrays."""
     ship, wind_speed, wind_from, *rest = aboard
     parts = (tuple(one[:, k] for one in group) for group in rest)
     return Aboard(Motion(*(one[:, k] for one in ship)), wind_speed[:, k], wind_from[:, k], *parts)

@@ -33,12 +33,12 @@ class Predicted(NamedTuple):
 
 
 def kinetic(replay: Replay) -> Predicted:
-    """By the equations of motion alone."""
+    """Predictions by the equations of motion alone."""
     return Predicted([motion[:3] for motion in replay.kinetic], np.zeros_like(replay.start.x))
 
 
 def by_paper_iii(replay: Replay, arrays: Mapping[str, np.ndarray]) -> Predicted:
-    """By the networks of paper III."""
+    """Predictions by the networks of paper III."""
     # Kinetic prediction plus the errors that the networks expect.
     expected = paper_iii.expected(arrays, paper_iii.inputs_of(replay))
     return Predicted(networks_iii.corrected(replay.kinetic, expected), np.ones_like(replay.start.x))

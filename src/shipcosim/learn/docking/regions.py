@@ -14,7 +14,7 @@ from shipcosim.learn.regions import conformal
 from shipcosim.models.prediction import docking
 
 HORIZONS = (10, 20, 30)
-"""Of the regions. [s]"""
+"""Horizons of the regions. [s]"""
 
 
 def misses(places: Places, after: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
@@ -44,7 +44,7 @@ def measured_later(replay: Replay) -> dict[str, np.ndarray]:
 
 
 def calibrated(predicted: Predicted, replay: Replay) -> np.ndarray:
-    """Widths as `docking.regions` takes them, from dockings that nothing else was chosen by.
+    """Widths for `docking.regions`, from dockings that no other choice used.
 
     The quantile is that of all starts of all dockings. Starts within a docking are no independent cases, so with few
     dockings the share of other dockings scatters about 0.9; the level 0.9 (1 + 1/m) of m independent cases was too much

@@ -21,7 +21,7 @@ from shipcosim.models.ship.mast import MastParameters
 OURS = distance_ensemble.DockingTraining()
 PAPER_III = paper_iii.PaperIIITraining()
 COMPONENT = "docking_predictor"
-"""Of the system, whose parameters the predictor has."""
+"""Component of the system that has the predictor's parameters."""
 SETS = {
     "training": dockings.TRAINING,
     "choices": dockings.CHOICES[:12],
@@ -33,7 +33,7 @@ SAILING = 0.7
 NOTES = (
     "Targets are what the ship measured later; no true place, current, wind or helmsman is used. Scores in the"
     " benchmark are by the truth.",
-    "An epoch is kept by the dockings of the choices, and regions are calibrated on dockings of their own.",
+    "The best epoch is chosen on separate dockings, and regions are calibrated on others.",
 )
 
 

@@ -17,14 +17,16 @@ from shipcosim.learn.training import BestWeights, Descent, Epochs, Progress, rep
 from shipcosim.models.prediction import paper_iv
 
 NOTES = (
-    "Printed: nine inputs (velocities and accelerations of the equations of motion, the last residual), two layers of"
-    " 20 hyperbolic tangents, three linear outputs, 3000 samples at 1 Hz of DP and low-speed manoeuvring, the mean of"
-    " an ensemble, velocity and heading averaged over 3 s, wind and commands held.",
-    "Not printed, and taken here: an ensemble of five; inputs and outputs scaled to mean 0 and standard deviation 1;"
-    " Adam, learning rate 0.003, mini-batches of 100; a tenth of the samples held out, which decide when to stop; real"
-    " accelerations as differences of the observer's velocities over a second; explicit steps of a second.",
+    "The paper prints these points. The nine inputs are velocities and accelerations of the equations of motion, and"
+    " the last residual. There are two layers of 20 hyperbolic tangents and three linear outputs. The data are 3000"
+    " samples at 1 Hz of DP and low-speed manoeuvring. The prediction is the mean of an ensemble. Velocity and heading"
+    " are averaged over 3 s; wind and commands are held.",
+    "The paper does not print these points, so they are chosen here. The ensemble has five members. Inputs and outputs"
+    " are scaled to mean 0 and standard deviation 1. Adam has a learning rate of 0.003 and mini-batches of 100. A tenth"
+    " of the samples is held out and decides when to stop. Accelerations are differences of the observer's velocities"
+    " over a second. Steps are explicit and take a second.",
     "The paper trains on 50 minutes of one ship in one place and weather, right before the loss of thrust. Worlds here"
-    " hold their ship for three to five minutes, so the samples are drawn from the records of many, before their loss.",
+    " last three to five minutes, so the samples come from many worlds, before their loss.",
 )
 
 

@@ -69,7 +69,7 @@ def known_of(rows: np.ndarray, ship: Ship) -> Known:
 
 
 def tensors(record: Any) -> Any:
-    """The same nested tuples with tensors in place of arrays."""
+    """Turn arrays in nested tuples into tensors."""
     return mapped(lambda array: torch.from_numpy(np.ascontiguousarray(array, dtype=float)), record)
 
 

@@ -27,8 +27,8 @@ PAPER_IV = paper_iv.PaperIVTraining(
 NOTES = (
     "Targets are the ships' own later estimates of place and heading; no true state, current or wind is used.",
     "An epoch is a step of the optimiser with all worlds.",
-    "Few worlds are learned by heart: a quarter of the way from the assumed beliefs is kept. Of the assumed beliefs"
-    " noise, size of the remaining load, and evidence were chosen on worlds 300 to 311, and so was that quarter.",
+    "Few worlds are easily overfitted: only a quarter of the change from the assumed beliefs is kept. Noise,"
+    " size of the remaining load and evidence were chosen on worlds 300 to 311, and so was that quarter.",
 )
 SETTINGS = ("steps", "learning_rate", "pull", "kept", "margin", "before")
 SAILING = 0.5

@@ -220,7 +220,7 @@ def _solve_many(request, commands, slack, start):
 
 
 def _goes_on(more, done):
-    """Whether there is another round: not where all elements are done."""
+    """Whether there is another round: not if all elements are done."""
     return more & ~done if hasattr(done, "maths") else more and not bool(done.all())
 
 
@@ -259,7 +259,7 @@ def _round(request, commands, slack, zero, count, x, side, freed, done, multipli
 
 
 def _first(flags, asked):
-    """Of each element the first flag that is set, where one is asked for."""
+    """The first flag that is set of each element, where one is asked for."""
     found = []
     for flag in flags:
         found.append(flag & asked)

@@ -66,7 +66,7 @@ class ConeChoice(NamedTuple):
 
 
 class ConeMemory(NamedTuple):
-    """What the choice remembers.
+    """State of the choice between cones.
 
     Parameters
     ----------
@@ -215,7 +215,7 @@ def _within(design, half_turns):
 
 
 def _planned(memory, tau, available, h, design, shares):
-    """One plan goes on: they take turns, to save time, and each steps as far as all of them together."""
+    """Advance one plan: they take turns to save time, and each then steps over the time of all turns."""
     far = len(memory.plans) * h
     within = _within(design, memory.cones[0])
     plan = power_step(memory.plans[0], tau, available, far, design=within, shares=shares)
@@ -353,7 +353,7 @@ def _sent(memory, state, gaps, design):
 
 
 def _shifted(memory, state, gaps, design):
-    """The problem with the present intervals: of a unit that shifts it is where the plan has it."""
+    """The problem with the present intervals; a unit that changes its interval has that of the plan."""
     zero = 0.0 * memory.waited
     within = _within(design, memory.half_turns)
     units = []

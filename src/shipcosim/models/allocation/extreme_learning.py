@@ -187,7 +187,7 @@ def step(
     parameters: ExtremeLearningParameters,
     design: Network,
 ) -> Commanded:
-    """Commands for a requested load, a sample after the last ones.
+    """Commands for a requested load, one sample after the previous commands.
 
     Parameters
     ----------

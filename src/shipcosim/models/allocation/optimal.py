@@ -206,7 +206,7 @@ class OptimalUnitsParameters(numbered_units(_fields), FixedAngleParameters):
 
     @property
     def sectors(self) -> tuple:
-        """Intervals of angles of the units; an empty one is no limit. [rad]"""
+        """Intervals of angles of the units; an empty one does not limit. [rad]"""
         intervals = zip(self.of_units("azimuth_first"), self.of_units("azimuth_last"), strict=True)
         return tuple((first, last) if last > first else (-inf, inf) for first, last in intervals)
 
@@ -230,7 +230,7 @@ class OptimalUnitsParameters(numbered_units(_fields), FixedAngleParameters):
 
 
 def design(parameters: OptimalParameters | OptimalUnitsParameters) -> OptimalProblem:
-    """What the law needs of the parameters.
+    """Parameters in the form that the law needs.
 
     Parameters
     ----------

@@ -93,7 +93,7 @@ def granted_power(
 
 
 def thrust_shares(granted: Triple, *, parameters: PowerParameters) -> Triple:
-    """Share of its limits of thrust that each unit can give with a granted power, 1 where power is no limit.
+    """Share of its thrust limits that each unit can give with a granted power; 1 if power does not limit.
 
     Parameters
     ----------

@@ -80,7 +80,7 @@ class AllocatedThruster(NamedTuple):
 
 
 class OptimalProblem(NamedTuple):
-    """What a step needs of the parameters.
+    """Parameters in the form that a step needs.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def designed(
 
 
 def _completed(unit):
-    """The unit with all that follows from its limits, so that a step does not ask for them."""
+    """The unit with all quantities that follow from its limits, computed once."""
     turns = "turning" if unit.azimuth_rate > 0.0 else "fixed"
     # Astern a unit may have another limit at the same full power: the price is higher there.
     astern = -min(unit.least, unit.least_degraded)

@@ -40,7 +40,7 @@ class FairwayParameters:
 
 
 class Progress(NamedTuple):
-    """Where a ship is on the way.
+    """Position of a ship along the fairway.
 
     Parameters
     ----------

@@ -84,7 +84,7 @@ def at_rest(x: Arithmetic, y: Arithmetic, psi: Arithmetic) -> FilteredPidState:
 
 
 def errors(state: FilteredPidState, desired: Desired) -> Triple:
-    """Desired less filtered position and heading in body axes.
+    """Desired minus filtered position and heading, in body axes.
 
     Parameters
     ----------

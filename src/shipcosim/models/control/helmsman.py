@@ -106,7 +106,7 @@ class MannerParameters:
 
 
 class Levers(NamedTuple):
-    """Where the levers stand.
+    """Positions of the levers.
 
     Parameters
     ----------

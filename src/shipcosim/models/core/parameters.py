@@ -10,7 +10,7 @@ from dataclasses import field, make_dataclass
 from typing import Any
 
 LEFT_OUT = 1e30
-"""Size of a number that nobody has given. FMI wants a start value of every parameter: this is the one of a parameter
+"""Value that marks a missing number. FMI wants a start value of every parameter: this is the one of a parameter
 that describes a ship, positive or, where its maximum forbids that, negative; a table's is the empty text."""
 
 

@@ -44,7 +44,7 @@ def samples_due(t: float, period: float) -> int:
 
 
 def tidy_time(t: float) -> float:
-    """Time rounded to 10 ns, so that a master that adds up its steps gives the same as one that multiplies.
+    """Time rounded to 10 ns, so that summed and multiplied steps give the same time.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ _VERES = "fitted to the drift table of a research vessel of 34 m, Tp 4 to 7 s"
 
 @dataclass(frozen=True)
 class OnsetParameters:
-    """From when on something acts."""
+    """Time from which a load acts, and time over which it grows."""
 
     onset_time: float = quantity(0.0, "s", "time from which on it acts", "set by the system")
     ramp_time: float = quantity(

@@ -27,7 +27,7 @@ from shipcosim.models.ship.hull import HullParameters, hull_loads
 from shipcosim.models.ship.vessel import through_water
 
 NOTHING = 1e-3
-"""Thrust below which a unit gives nothing: it is missing. [N]"""
+"""Thrust limit below which a unit counts as missing. [N]"""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -30,7 +30,7 @@ from shipcosim.models.ship.hull import HullParameters
 PLACE_GAIN = 0.2
 VELOCITY_GAIN = 0.3
 LOAD_GAIN = 0.03
-"""Shares of what was missed a second later that go into place and heading, velocity, and load. [1] Chosen on training
+"""Gains of the correction, a second later, for place and heading, velocity, and load. [1] Chosen on training
 dockings."""
 POWERS = (0, 1, 2, 3)
 """Powers of time whose sum over 30 s a correction is. [1]"""

@@ -243,7 +243,7 @@ def thruster_loads(
 ) -> Callable[[float], Callable[[Arithmetic, Arithmetic, Arithmetic], Load]]:
     """Load of the thrusters over time and the ship's velocity through the water, while their commands stay put.
 
-    Thrust and direction run from what shaft speed and direction give now to what is commanded, at their largest rates.
+    Thrust and direction run from what shaft speed and direction give now to the commanded values, at their largest rates.
     Once a drive has reached its command, it keeps that thrust at any speed.
 
     Parameters

@@ -51,7 +51,7 @@ CURRENT = slice(6, 8)
 FORCE = slice(8, 10)
 MOMENT = 10
 COEFFICIENT = slice(11, None)
-"""Where they are among the states. [1]"""
+"""Their indices among the states. [1]"""
 ARM = 0.42  # of the length, bow and stern thrusters from midships: assumed
 SLOW = 0.2  # m/s, where linear and quadratic damping of one coefficient are alike
 HELD = 1e4  # N, thrust at which run-down and wash are given

@@ -55,7 +55,7 @@ DIFFERENCES = (
     1e3,
     *(0.05,) * len(COEFFICIENTS),
 )
-"""Over which slopes are taken. [units of `STATES`]"""
+"""Differences over which slopes are taken. [units of `STATES`]"""
 STRONGEST = 5.0  # m/s, current from which on a filter has gone astray, as from `FASTEST` on
 NO_NUMBER = 1e12  # beyond any sum of states and likelihood
 LEAST = -30.0  # logarithm of a weight, below which none falls: so it can come back

@@ -21,7 +21,7 @@ from shipcosim.models.ship.vessel import accelerations
 WINDOW = 3
 """Samples over which heading and velocities are averaged, one a second. [1]"""
 PERIOD = 1.0
-"""From sample to sample, and from step to step of a prediction. [s]"""
+"""Time between samples, and between steps of a prediction. [s]"""
 
 
 class Ensemble(NamedTuple):

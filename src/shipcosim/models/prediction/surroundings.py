@@ -160,7 +160,7 @@ def step(
     ship: DpShip,
     parameters: SurroundingsParameters,
 ) -> Surroundings:
-    """Surroundings one sample later, from what is known at its end.
+    """Surroundings one sample later, from the known quantities at its end.
 
     Parameters
     ----------

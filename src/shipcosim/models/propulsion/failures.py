@@ -5,7 +5,7 @@ from typing import NamedTuple
 from shipcosim.models.core.maths import Arithmetic
 
 PLENTY = 1e8
-"""Power that is no limit to a thruster. [W]"""
+"""Power so large that it does not limit a thruster. [W]"""
 
 
 class Failures(NamedTuple):

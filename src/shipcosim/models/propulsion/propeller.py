@@ -85,7 +85,7 @@ class Curves(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class PropellerParameters:
-    """A propeller: its polynomials in the first quadrant, and what it is elsewhere beside one of the series."""
+    """A propeller: its polynomials in the first quadrant, and factors on a series propeller elsewhere."""
 
     diameter: float = required("m", "propeller diameter", minimum=0.01)
     thrust_polynomial: str = required_table(
@@ -225,7 +225,7 @@ def loads_at(u_a: Arithmetic, *, propeller: PropellerParameters) -> Callable[[Ar
 
 
 def bollard_torque(n: Arithmetic, *, propeller: PropellerParameters) -> Arithmetic:
-    """Torque at bollard, which is no speed of advance.
+    """Torque at bollard, without speed of advance.
 
     Parameters
     ----------

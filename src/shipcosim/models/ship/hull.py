@@ -516,6 +516,6 @@ CONTRIBUTIONS = {
         ),
     ),
 }
-"""Name: function, and the coefficients without which it is left out."""
+"""Loads by name: function, and its coefficients; it is left out if all are 0."""
 
 _LOADS = {name: function for name, (function, _) in CONTRIBUTIONS.items()}

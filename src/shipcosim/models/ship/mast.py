@@ -18,7 +18,7 @@ REFERENCE_HEIGHT = 10.0
 
 @dataclass(frozen=True, kw_only=True)
 class MastParameters:
-    """Where the anemometer stands."""
+    """Place of the anemometer."""
 
     mast_x: float = required("m", "anemometer forward of the origin")
     mast_y: float = required("m", "anemometer to starboard of the origin")

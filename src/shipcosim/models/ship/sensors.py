@@ -96,7 +96,7 @@ class SensorParameters:
 
     @cached_property
     def heading_wander(self):
-        """The same of the heading."""
+        """Slow deviation of the heading."""
         return _wander(self.period, self.heading_drift_std, self.heading_drift_time)
 
 

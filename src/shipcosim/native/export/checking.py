@@ -18,10 +18,10 @@ STEPS = 40
 """Steps that are compared, for each set of parameters."""
 
 LARGEST = 1e-9
-"""Difference of a variable, over its size or 1, from which on an FMU is refused."""
+"""Difference of a variable, over its size or 1, above which an FMU is refused."""
 
 SHARES = 1e-3, 1e-2, 0.1, 1.0
-"""Of random inputs in each round, of `SIZES`: a boat is thrown about by what moves a ship."""
+"""Size of random inputs in each round, over `SIZES`: inputs for a ship are too large for a boat."""
 
 FASTEST = 50.0
 """Speed of an output beyond which a round ends. [m/s, rad/s]"""
@@ -30,10 +30,10 @@ SPREAD = 0.02
 """Standard deviation of random parameters, over the example's."""
 
 NOT_FOR_THESE = "this native FMU was built where"
-"""What an FMU in C says of parameters that give its state another shape; random ones may."""
+"""Message of an FMU in C on parameters that would change the shape of its state."""
 
 SIZES = {"N": 2e4, "N.m": 1e5, "W": 1e5, "rad": 0.7, "rpm": 60.0, "m": 3.0, "s": 1.0, "Pa": 1e3}
-"""Of random inputs, by unit; 0.5 of others."""
+"""Size of random inputs by unit; 0.5 for other units."""
 
 
 def refuse_other_results(

@@ -19,7 +19,7 @@ LEFT_OUT = 1e30
 RECORDER = str(Path(__file__).parents[1])
 """Folder of the code that records a model."""
 MUCH = 3000
-"""Lines of a function from which on a compiler takes minutes to make it fast, where it is called seldom."""
+"""Lines of a function above which a compiler takes minutes to make it fast, where it is called seldom."""
 
 _VALUES = re.compile(r"\b(?:[vpc]|start_|step_)[0-9]+\b")
 TYPES = {"Real": "REAL", "Integer": "INTEGER", "Boolean": "BOOLEAN", "String": "STRING"}

@@ -1,4 +1,4 @@
-"""What a calibration says in words and rows."""
+"""Texts and rows of a calibration."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def outcome(ship: CalibratedShip) -> Outcome:
 
 
 def sentence(ship: CalibratedShip) -> str:
-    """What a calibration comes to, in a sentence or two."""
+    """Result of a calibration in a sentence or two."""
     count = len(ship.logs)
     logs = "1 log" if count == 1 else f"{count} logs"
     if ship.refusals:
@@ -51,7 +51,7 @@ def blocks(ship: CalibratedShip) -> tuple[Block, ...]:
 
 
 def moved(number: KnownNumber) -> float:
-    """By how many tolerances a number is moved."""
+    """Change of a number, in tolerances."""
     return (number.estimate - number.nominal) / number.tolerance
 
 

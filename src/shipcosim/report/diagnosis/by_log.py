@@ -70,7 +70,7 @@ def _fitted_on(one: LogErrors) -> str:
 
 
 def log_table(found: Diagnosis) -> Table:
-    """What each log says by itself: verdict, faults of its own, causes, its largest discrepancy, error; none of one."""
+    """Rows for each log alone: verdict, faults, causes, largest discrepancy, error; empty for a single log."""
     if not isinstance(found, JointDiagnosis):
         return Table(())
     rows = []

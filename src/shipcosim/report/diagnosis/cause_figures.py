@@ -56,7 +56,7 @@ def evidence_figure(evidence: Evidence) -> Figure:
 
 
 def _bars(names: list[str], gains: list[float], colours: list[str]) -> PlotlyDict:
-    """Gains as horizontal bars; a loss has none."""
+    """Gains as horizontal bars; losses have no bar."""
     return {
         "type": "bar",
         "orientation": "h",

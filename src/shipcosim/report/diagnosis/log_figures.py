@@ -145,7 +145,7 @@ def _thrusters(names: Sequence[str], log: Dataset) -> list[tuple[str, tuple[str,
 
 
 def _traces(raw: Dataset, used: Dataset, channel: str, colour: str, unit: str) -> list[PlotlyDict]:
-    """A channel as used, and as logged where that differs."""
+    """A channel as used, and as logged if that differs."""
     label = channel.replace("_", " ")
     traces = []
     # Thin both; extremes stay visible.

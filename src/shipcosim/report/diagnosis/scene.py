@@ -25,7 +25,7 @@ SIGNALS = {
 }
 """Signal of the scene's vessel and its unit, by role of the log."""
 COLOURS = ("ink", "orange", "blue")
-"""Of the measured ship and of her simulations, as in the figures below the scene."""
+"""Colours of the measured ship and of her simulations, as in the figures below the scene."""
 MOST_ARROWS = 200
 """Means of the missing force over the log: between them it is interpolated. Assumed."""
 

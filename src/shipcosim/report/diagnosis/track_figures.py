@@ -32,7 +32,7 @@ def track_figure(tracks: Tracks) -> Figure:
         "xaxis": {"title": {"text": "East"}},
         "yaxis": {"title": {"text": "North"}, "scaleanchor": "x"},
     }
-    note = f"Every {tracks.horizon:.0f} s the simulation starts anew from the measured position, heading and velocity."
+    note = f"Every {tracks.horizon:.0f} s the simulation starts again from the measured position, heading and velocity."
     return Figure("Track", "m", tuple(traces), layout, note, height=460)
 
 

@@ -18,7 +18,7 @@ from shipcosim.report.theme.numbers import metres, percent, plain, span
 from shipcosim.report.theme.views import Fact, Outcome, known_facts
 
 LIKELY = 0.25
-"""Probability of a candidate beside an unknown error, half of what it were alone, from which on it is mentioned."""
+"""Probability of a candidate beside an unknown error, half of what it were alone, above which it is mentioned."""
 
 
 def title(cause: str, component: str | None = None) -> str:
@@ -226,7 +226,7 @@ def _form(form: LoadForm) -> str:
 
 
 def _better_predictor(diagnosis: Diagnosis) -> str:
-    """That something else predicts this log better than the extended model, where it does."""
+    """Sentence if something else predicts this log better than the extended model."""
     gain = diagnosis.gain
     if not gain:
         return ""
@@ -358,8 +358,8 @@ def next_steps(diagnosis: Diagnosis, extended: str | None = None) -> list[str]:
     better, judged = predicted_better(diagnosis)
     if extended and 2 * better < judged:
         steps.append(
-            f"Do not use {extended} yet: with it {judged - better} of {judged} logs are predicted no better. What is "
-            "named is not all; mend first what stands beside it under what is wrong, largest first."
+            f"Do not use {extended} yet: with it {judged - better} of {judged} logs are predicted no better. There are "
+            "other errors: correct those listed under what is wrong first, the largest first."
         )
     elif extended:
         steps.append(f"Simulate with it in the system: shipcosim simulate {extended}")
@@ -380,7 +380,7 @@ def predicted_better(diagnosis: Diagnosis) -> tuple[int, int]:
 def _manoeuvre_step(prescription: ExperimentDesign | None) -> str:
     """Manoeuvre to sail if causes cannot be told apart."""
     if prescription is None:
-        return "Log more, with larger moves, turns and thrust ahead and astern: what is alike here differs there."
+        return "Log more, with larger moves, turns and thrust ahead and astern: these causes differ there."
     name = prescription.manoeuvre.replace("_", " ")
     pairs = listed(
         [f"{a} from {b}".replace("_", " ") for a, b in prescription.separates] or ["them"]

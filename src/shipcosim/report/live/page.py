@@ -149,7 +149,7 @@ def _header(written: Scenario) -> JsonObject:
 
 
 def _signals(plan: Plan) -> Iterator[tuple[str, JsonObject]]:
-    """Every signal of the exchanges: where its value lies, and what it is."""
+    """Every exchanged signal: place of its value, and description."""
     fed = {connection.target for connection in plan.system.connections}
     for number, kind in enumerate(kinds_of(plan)):
         layout = plan.layouts[kind]

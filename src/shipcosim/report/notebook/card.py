@@ -50,7 +50,7 @@ class Card(Page):
 
     @property
     def colour(self) -> str:
-        """Of the verdict, on white and on black alike."""
+        """Colour of the verdict, legible on white and on black."""
         return COLOURS.get(self.outcome.kind, WRONG)
 
     @property

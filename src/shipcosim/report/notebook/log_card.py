@@ -60,7 +60,7 @@ def _outcome(faults: Sequence[Finding]) -> Outcome:
     return Outcome(
         "faulty",
         "FAULTY",
-        f"{many} show in the channels by themselves; a diagnosis puts right what it can.",
+        f"{many} show in the channels by themselves; a diagnosis corrects what it can.",
     )
 
 

@@ -71,7 +71,7 @@ def comparison_table(found: Comparison) -> Table:
 
 
 def _agreement(found: Comparison, others: list[str]) -> Outcome:
-    """The verdict as the command says it."""
+    """The verdict in the words of the command."""
     if not others and not found.failed:
         return Outcome("plain", "ALONE", "No other engine ran: only the step-size error is known.")
     limit = f"{found.tolerance:g} of its range"

@@ -120,7 +120,7 @@ def lay_over(tables: tuple[Dataset, Dataset], names: tuple[str, str]) -> Pair:
         remedy = "Give one that has."
         raise ShipcosimError([Problem(name, "The run has no rows.", remedy) for name in empty])
     if not set(tables[0].data_vars) & set(tables[1].data_vars):
-        remedy = "Give two runs of one system, or of systems that are alike."
+        remedy = "Give two runs of one system, or of similar systems."
         raise error_at(" and ".join(names), "The two have no signal in common.", remedy)
     # Where the runs have no time in common, move the second to the start of the first.
     times = [np.asarray(table["time"].values, float) for table in tables]
@@ -335,7 +335,7 @@ def _remarks(pair: Pair) -> list[str]:
     if not np.allclose(ends[0], ends[1]):
         start = max(ends[0][0], ends[1][0])
         end = min(ends[0][1], ends[1][1])
-        said.append(f"Differences are those between {start:g} and {end:g} s, where both runs are.")
+        said.append(f"Differences are for {start:g} to {end:g} s, which both runs cover.")
     # Signals that only one run has: name the first five.
     for name, own, other in ((first, *pair.shown), (second, *pair.shown[::-1])):
         if alone := [str(signal) for signal in own.data_vars if signal not in other]:
@@ -344,7 +344,7 @@ def _remarks(pair: Pair) -> list[str]:
 
 
 def _ordered(pair: Pair, found: Sequence[Difference]) -> list[Difference]:
-    """Differences of what people compare runs by, then the others as they come."""
+    """Differences of the most important signals first, then the others in order."""
     roles = pair.roles
     wanted = [roles.signal(roles.ship, axis) for axis in ("x", "y", "psi")]
     wanted += [FROM_REFERENCE, ERRORS["psi"]]

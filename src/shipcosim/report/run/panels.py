@@ -47,7 +47,7 @@ class Panel:
 
 @dataclass(frozen=True)
 class Section:
-    """Panels under one heading, and what stays the same as sentences."""
+    """Panels under one heading, and sentences for signals that stay constant."""
 
     title: str
     panels: tuple[Panel, ...]
@@ -138,7 +138,7 @@ def _panel(
     bands: Iterable[Band] = (),
     states: bool = False,
 ) -> list[Panel]:
-    """The panel with those lines that are there, as a list of one or none."""
+    """List with the panel of the available lines; empty if there are none."""
     there = tuple(line for line in lines if line.signal in shown)
     if not there:
         return []

@@ -162,7 +162,7 @@ def make_run(
     shift: float = 0.0,
     goes_on: bool = False,
 ) -> Run | None:
-    """The scene of one run; None where nothing in it has a position and a heading.
+    """The scene of one run; None if no component has a position and a heading.
 
     Parameters
     ----------
@@ -352,7 +352,7 @@ def _flows(table: Dataset, columns: _Columns, goes_on: bool) -> list[JsonObject]
 
 
 def _references(columns: _Columns) -> list[JsonObject]:
-    """Position references, compasses and sensors, each with what says that it works and that it is rejected."""
+    """Position references, compasses and sensors, each with its signals for valid and rejected."""
     names = list(map(str, columns.table.data_vars))
     found = []
     for name in names:

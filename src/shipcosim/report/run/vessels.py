@@ -39,7 +39,7 @@ Pose = tuple[str, str, str]
 
 @dataclass(frozen=True)
 class DrawnThruster:
-    """A thruster: its signals, None where missing, and its start values.
+    """A thruster: its signals, None for missing ones, and its start values.
 
     Attributes
     ----------

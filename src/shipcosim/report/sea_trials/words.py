@@ -1,4 +1,4 @@
-"""What sea trials say in words and rows."""
+"""Texts and rows of sea trials."""
 
 from collections import Counter
 
@@ -22,14 +22,16 @@ def outcome(found: SeaTrialStudy) -> Outcome:
 def sentence(found: SeaTrialStudy) -> str:
     """The verdict in a sentence."""
     if found.verdict == "consistent":
-        return "The model sails these trials as the ship did, as far as such trials repeat."
+        return (
+            "The model sails these trials as the ship did, within the repeatability of such trials."
+        )
     best = said(found.best.label)
     best = f"{best[0].upper()}{best[1:]}"
     if found.verdict == "named":
-        return f"{best} explains best what the model sails otherwise than the ship."
+        return f"{best} fits best where the model sails differently from the ship."
     count = len(found.rivals)
     others = "another set" if count == 1 else f"{count} other sets"
-    return f"{best} explains best what the model sails otherwise than the ship; {others} of causes fit equally well."
+    return f"{best} fits best where the model sails differently from the ship; {others} of causes fit equally well."
 
 
 def said(label: str) -> str:

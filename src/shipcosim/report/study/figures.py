@@ -394,7 +394,7 @@ def _dots(
     third: Column | None,
     look: Mapping[str, Any],
 ) -> PlotlyDict:
-    """Dots, each with the number of its run where it stands for one."""
+    """Dots, each with the number of its run if it shows a single run."""
     marker = {"opacity": 0.7, "line": {"width": 0}} | dict(look)
     # A third quantity sets the size of the dots.
     if third is not None and len(rows):

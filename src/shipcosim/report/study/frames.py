@@ -25,7 +25,7 @@ MOST_SERIES = 8
 
 
 class Point(NamedTuple):
-    """A value with its interval, NaN where there is none."""
+    """A value with its interval; NaN without one."""
 
     value: float
     low: float

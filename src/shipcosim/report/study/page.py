@@ -50,7 +50,7 @@ VIEWS: Mapping[str, Callable[[StudyTables, View], Figure]] = {
 
 @dataclass(frozen=True)
 class ErrorOfRuns:
-    """What went wrong in some runs, of which some are listed."""
+    """An error of some runs, and the first of these runs."""
 
     text: str
     count: int

@@ -303,7 +303,7 @@ def measured_table(study: Mapping[str, Any]) -> Table:
 
 
 def _keys(one: Mapping[str, Any], *names: str) -> list[str]:
-    """Entries of a part as they are written."""
+    """Entries of a part of the study file, as written there."""
     return [f"{name} {one[name]}" for name in names if name in one]
 
 

@@ -16,7 +16,7 @@ MOST_POINTS = 3000
 
 
 def rounded(values: ArrayLike, digits: int = 5) -> list[float | None]:
-    """Numbers with few significant digits, None where there is none.
+    """Numbers with few significant digits; None for missing ones.
 
     Examples
     --------

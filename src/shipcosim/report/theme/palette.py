@@ -33,7 +33,7 @@ def source(name: str, rank: int) -> str:
 
 
 def faded(colour: str, opacity: float) -> str:
-    """The same colour, partly transparent; `opacity` from 0 to 1.
+    """Make a colour partly transparent; `opacity` from 0 to 1.
 
     Examples
     --------

@@ -63,7 +63,7 @@ OBSERVER = {
     "wave_motion": 0.035,
     "wave_yaw": 0.00239,
 }
-"""Of the tuned loop, docs/dp-loop.md."""
+"""Numbers of the tuned loop, docs/dp-loop.md."""
 DISTURBANCES = {
     "velocity_disturbance": (5.54e-5, 4),
     "rate_disturbance": (2.34e-7, 4),
@@ -76,7 +76,7 @@ FILTERS = {"wind_filter_time": 0.7, "force_filter_time": 1.19, "moment_filter_ti
 
 @dataclass(frozen=True, kw_only=True)
 class ControlledShip:
-    """What the rule needs of a ship.
+    """Numbers of a ship that the rule needs.
 
     Attributes
     ----------

@@ -25,7 +25,8 @@ FLATTEST = 8.0
 """Breadth over draught at which that curve ends. [1]"""
 GRAVITY = 9.81  # m/s2
 TIME_CONSTANTS = {"X_u": 30.0, "Y_v": 18.0, "N_r": 9.4}
-"""Of linear damping, over the root of length and gravity; fitted to the models in docs/generated/ship-estimates.md. [1]"""
+"""Time constants of linear damping, over the root of length and gravity; fitted to the models in
+docs/generated/ship-estimates.md. [1]"""
 SLOW_FROUDE = 0.04
 """Over which it fades: 1.1 m/s of a ship of 76 m, twice the speeds of DP; assumed. [1]"""
 
@@ -63,7 +64,7 @@ class HullDimensions:
 
     @property
     def mass(self) -> float:
-        """Of the displaced water. [kg]"""
+        """Mass of the displaced water. [kg]"""
         return self.density * self.volume
 
 

@@ -226,7 +226,7 @@ def drag_coefficient(
 
 
 def froude_number(form: HullDimensions) -> float:
-    """Of the service speed.
+    """Froude number of the service speed.
 
     Parameters
     ----------

@@ -99,7 +99,7 @@ class Draft:
     def assemble(
         self, parameters: ParameterSets = (), swapped: Swapped = None
     ) -> tuple[System | None, Findings]:
-        """Assemble the system as it is now; None or incomplete where there are errors."""
+        """Assemble the present system; None or incomplete if there are errors."""
         findings = Findings()
         self.package.located.clear()
         system = assemble_package(
@@ -126,7 +126,7 @@ class Draft:
             self._assembled = None
 
     def _content(self) -> dict[Path, bytes | Path]:
-        """What the files say from which the system is assembled."""
+        """Content of the files from which the system is assembled."""
         return {
             path: etree.tostring(held.root) if isinstance(held, Document) else held
             for path, held in self.package.held.items()

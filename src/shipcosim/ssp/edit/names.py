@@ -27,7 +27,7 @@ class NameMatch(NamedTuple):
 
     @property
     def element_name(self) -> str | None:
-        """Of the element, as in a connection; None for the system itself."""
+        """Name of the element, as in a connection; None for the system itself."""
         return None if self.element is None else self.element.get("name")
 
     def declared(self) -> etree._Element | None:

@@ -203,7 +203,7 @@ class Sets:
         )
 
     def clear(self, name: str) -> bool:
-        """Remove a parameter from all sets; false if none has it, or one that is shared."""
+        """Remove a parameter from all sets; False if no set or only a shared one has it."""
         places = [one for one in self.bound if one.parameter(name) is not None]
         for one in places:
             if one.shared:

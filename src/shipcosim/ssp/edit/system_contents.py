@@ -20,7 +20,7 @@ from shipcosim.ssp.xml.document import AnyPath, children
 
 
 class SystemContents:
-    """A system structure as one looks at it, checks it and writes it.
+    """A system structure to look at, check and write.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class SystemContents:
 
     @property
     def description(self) -> str:
-        """What the system is, one line."""
+        """Description of the system in one line."""
         return self._draft.root.get("description", "")
 
     @description.setter

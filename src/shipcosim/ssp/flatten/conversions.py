@@ -55,7 +55,7 @@ class Flow:
         return value
 
     def scaled(self, factor: float, offset: float) -> "Flow":
-        """The same flow, followed by a linear step."""
+        """This flow followed by a linear step."""
         # a (f x + o) + b = (a f) x + (a o + b).
         return replace(self, factor=factor * self.factor, offset=factor * self.offset + offset)
 

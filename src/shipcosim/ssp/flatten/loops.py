@@ -10,9 +10,9 @@ from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.fmu.feedthrough import feedthrough
 
 MOST_STARTS = 50
-"""Variables of a loop from which its shortest cycle is sought."""
+"""Most variables of a loop from which its shortest cycle is searched."""
 MOST_TRIED = 50
-"""Components of which it is tried whether they break a loop."""
+"""Most components that are tried as breaks of a loop."""
 
 
 Node = tuple[Any, Any]

@@ -15,7 +15,7 @@ SOURCES_INSIDE = ("input", "parameter", "structuralParameter")
 """Kinds of a system's connectors that give a value to what is inside the system."""
 
 FREE = ("inout", "unspecified")
-"""Kinds that do not say which way the value goes."""
+"""Kinds of connectors without a direction."""
 
 
 class Key(NamedTuple):

@@ -22,7 +22,7 @@ from shipcosim.ssp.xml.values import Value
 SHORT = 2  # characters of a name of which a slip and another name look alike
 
 Arrival = tuple[Value, Flow, "Wire | Setting", Key]
-"""A value on its way: as it started, what has happened to it, the step that it takes next, and where that leads."""
+"""A value on its way to a component: original value, conversions so far, next step and target."""
 
 
 class Settings:

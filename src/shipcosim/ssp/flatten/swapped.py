@@ -10,7 +10,7 @@ from shipcosim.ssp.read.structure import KIND_NAMES, Connector
 
 MOST_NAMED = 12  # connectors that an error lists
 WHERE = "components"
-"""Where problems with FMUs in place of others are said to be."""
+"""Place that messages name for problems with exchanged FMUs."""
 
 
 def has_connector(fmu: FmuDescription, connector: Connector) -> bool:

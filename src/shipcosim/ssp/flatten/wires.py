@@ -142,7 +142,7 @@ def _undeclared(end: End, fmu: FmuDescription, link: Link, tree: Hierarchy) -> b
 def _wanted(
     end: End, ends: list[End], fmu: FmuDescription | None, tree: Hierarchy
 ) -> tuple[str, list[str]]:
-    """Kind of connector that is missing at an end, as the other end says, and the names of this kind that there are."""
+    """Kind of connector that is missing at an end, from the other end, and the available names of this kind."""
     other = ends[0] if end is ends[1] else ends[1]
     seeks_source = end is ends[0]
     if other.key in tree.ports:

@@ -64,7 +64,7 @@ def read_variables(document: Document, findings: Findings) -> dict[str, Variable
 
 
 def _start_outside(variable: Variable) -> str:
-    """Where a variable that can be set starts outside its own range; empty where it does not."""
+    """Message on a settable variable that starts outside its own range; empty if it does not."""
     low, high = variable.minimum, variable.maximum
     start = variable.start
     if variable.causality not in ("input", "parameter") or variable.required:

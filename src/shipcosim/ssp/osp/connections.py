@@ -233,7 +233,7 @@ class ConnectionReader:
         return simulator, name
 
     def _fmu(self, simulator: str | None) -> FmuDescription:
-        """FMU of a simulator that has one."""
+        """FMU of a simulator."""
         fmu = self.simulators.tree.components[simulator or "",][1]
         assert fmu is not None  # ends of connections without one were refused
         return fmu

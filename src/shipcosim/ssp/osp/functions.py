@@ -58,11 +58,11 @@ class Function:
 
 
 MOST_SIGNALS = 10_000
-"""Of one function: a few digits in a file can ask for more than any memory holds."""
+"""Most signals of one function: a few digits in a file can ask for more than any memory holds."""
 
 
 def read_function(element: etree._Element, place: str, findings: Findings) -> Function | None:
-    """Function of its element; None with an error where it has too many signals.
+    """Function from its XML element; None, with an error, if it has too many signals.
 
     Parameters
     ----------

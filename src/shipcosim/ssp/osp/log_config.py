@@ -11,7 +11,7 @@ from shipcosim.ssp.xml.document import Findings, local, read_document
 
 
 class LogConfig(NamedTuple):
-    """What libcosim would record.
+    """Signals that libcosim would record.
 
     Attributes
     ----------

@@ -27,7 +27,7 @@ ORDER = (
 
 EMPTY_IS_ABSENT = ("stepSize", "causality", "powerBond", "factor", "offset")
 TEXTS = ("StartTime", "EndTime", "BaseStepSize", "Algorithm")
-"""Elements that say nothing without a text."""
+"""Elements without meaning if they have no text."""
 
 
 def mend_osp(document: Document, findings: Findings) -> None:

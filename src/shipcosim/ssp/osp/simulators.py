@@ -141,7 +141,7 @@ class Simulators:
                     self.findings.flaw(
                         place,
                         f"There is no '{source}'; {found.name} is taken.",
-                        "Write its name so.",
+                        "Write this name.",
                     )
         except (ValueError, OSError) as error:
             self.findings.error(place, f"'{source[:80]}' is no usable address: {error}.")

@@ -1,4 +1,4 @@
-"""Table of features that tools which read system files themselves do not support as standardised.
+"""Table of features that other tools do not support as the standard says, if they read a system file themselves.
 
 Every entry is what the tool did when tried (libcosimpy 0.0.6, ecospy 0.7.2); tests run them again
 and compare. `shipcosim simulate --engine` differs: each engine gets the system as we read it.

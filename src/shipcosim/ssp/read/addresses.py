@@ -13,7 +13,7 @@ ENDINGS = (".fmu", ".ssv", ".ssm", ".ssb", ".ssd", ".ssp")
 
 
 def path_of(uri: str) -> str | None:
-    """Path of a file address, or None if it is no file of this machine.
+    """Path of a file address, or None if the file is not on this machine.
 
     Examples
     --------

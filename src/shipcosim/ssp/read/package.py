@@ -248,7 +248,7 @@ def open_package(
 
 
 def remark_copy(found: Path, elsewhere: Iterable[Path], place: str, findings: Findings) -> None:
-    """Add a remark where an FMU runs that lies beside its system, and the project has another one of its name."""
+    """Add a remark if an FMU beside its system runs, and the project has a different one of that name."""
     other = next((path for path in elsewhere if path.is_file()), found)
     if not filecmp.cmp(found, other, shallow=False):
         text = f"{found.name} beside the system runs. It is not the same as {other}, which does not run."
@@ -256,7 +256,7 @@ def remark_copy(found: Path, elsewhere: Iterable[Path], place: str, findings: Fi
 
 
 def remark_others(folder: Path, shown: str, taken: str, asked: str, findings: Findings) -> None:
-    """Add a remark where a folder has several system structures and nobody asked for the one that runs."""
+    """Add a remark if a folder has several system structures and the user chose none."""
     others = sorted(
         file.name
         for file in folder.iterdir()

@@ -50,7 +50,7 @@ def _says_nothing(element: etree._Element, base: etree._Element) -> bool:
 def noted_units(
     document: Document, elements: Iterable[etree._Element], findings: Findings
 ) -> dict[str, Unit]:
-    """Units by name, as `read_units`, with what is to be said of their definitions.
+    """Units by name, as `read_units`, with remarks on their definitions.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def noted_units(
                 _note_contradiction(unit, document.place(element), findings)
         for base in (part for part in element if local(part) == "BaseUnit"):
             if _says_nothing(element, base):
-                found = f"The base unit of '{name}' says nothing; the unit is what it is commonly."
+                found = f"The base unit of '{name}' is empty; the unit has its usual meaning."
                 findings.flaw(
                     document.place(base), found, "State its exponents, or leave BaseUnit out."
                 )
@@ -113,7 +113,7 @@ def _items_of(elements: Iterable[etree._Element]) -> dict[str, int]:
 
 
 def by_name(what: str, pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
-    """What a file defines by its names.
+    """Definitions of a file by their names.
 
     Raises
     ------

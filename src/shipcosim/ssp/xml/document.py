@@ -31,7 +31,7 @@ REMEDIES = {
     "is not expected": "Remove it.",
     "is invalid": "Correct it.",
 }
-"""What would be right, by part of what was found."""
+"""Remedy by a part of the message."""
 MOST_PREFIXES = 10
 UNDECLARED = "Namespace prefix"
 LARGEST_FILE = 64 * 2**20  # bytes; the largest model descriptions in the wild are a few MB
@@ -100,7 +100,7 @@ class Findings:
 
     @property
     def remarks(self) -> list[Problem]:
-        """Those of the problems that stop nothing."""
+        """Problems that stop nothing."""
         return [problem for problem in self.problems if problem.severity != "error"]
 
 
@@ -262,7 +262,7 @@ def parse(
         findings.error(
             f"{file}, line {line}" if line else file,
             f"Not well-formed XML: {text}.",
-            "Correct or export anew.",
+            "Correct the file, or export it again.",
         )
         return None
     # Entities could expand without limit.
@@ -350,7 +350,7 @@ def with_prefixes(data: bytes, shown: str, findings: Findings) -> bytes:
     line = data[: start.start()].count(b"\n") + 1
     findings.flaw(
         f"{shown}, line {line}",
-        f"Prefixes that are not declared: {listed}. Those of SSP are taken as everywhere, others as unknown.",
+        f"Prefixes that are not declared: {listed}. Those of SSP have their usual meaning, others are unknown.",
         f"Add {known} to the outermost element." if known else "Declare them.",
     )
     declared = b"".join(

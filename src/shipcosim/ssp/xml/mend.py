@@ -66,7 +66,7 @@ LISTS = (
 )
 LISTS += ("GraphicalElements", "Annotations")
 ONCE = ("MappingEntry", "MapEntry", "Unit", "Enumeration", "Item")
-"""Elements of which a second one that says the same says nothing."""
+"""Elements that may be repeated with equal content without effect."""
 
 
 def mend(document: Document, tag: str) -> None:
@@ -269,7 +269,7 @@ def _drop_what_1_0_lacks(
 def drop_unknown(
     document: Document, element: etree._Element, known: Collection[str], noted: Findings
 ) -> None:
-    """Remove parts of an element that are not known and are no misspelt known ones."""
+    """Remove unknown parts of an element, except misspelt known ones."""
     for part in [part for part in element if local(part)]:
         name = local(part)
         if name not in known and not is_slip(name, known):

@@ -62,7 +62,7 @@ def is_slip(name: str, known: Collection[str]) -> bool:
 def report_schema(
     checker: etree.XMLSchema, names: Names, root: etree._Element, file: str, findings: Findings
 ) -> None:
-    """Report every violation of a schema; unknown attributes that are no slip are flaws.
+    """Report every violation of a schema; unknown attributes are flaws unless they look misspelt.
 
     Parameters
     ----------

@@ -94,5 +94,5 @@ def text_of(value: Value) -> str:
 
 
 def typed_part(element: etree._Element) -> etree._Element | None:
-    """Element within another that carries its type, as <Real>; None without one."""
+    """Child element with the type, such as <Real>; None without one."""
     return next((part for part in element if local(part) in KINDS), None)

@@ -18,7 +18,7 @@ TARGETS = {
     "darwin-x86_64": "x86_64-macos",
     "darwin-arm64": "aarch64-macos",
 }
-"""Platforms as Python names them, and as the compiler does."""
+"""Names of platforms in Python and in the compiler."""
 OPTIONS = (
     "-shared",
     "-O3",

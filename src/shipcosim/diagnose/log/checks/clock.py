@@ -124,7 +124,7 @@ class _Segment:
 
 
 def wrong_clock(log: dict) -> list[Finding]:
-    """Segments of wrong clock, those of one rate as one finding.
+    """Segments of a wrong clock; segments of one rate are one finding.
 
     Parameters
     ----------
@@ -239,7 +239,7 @@ def evidence_of_rate(match: Any, energy: Any) -> tuple[Any, Any, Any]:
 
 
 def _refined(sides, first, last, cost):
-    """The segment with its ends where the evidence puts them."""
+    """The segment with its ends at the largest evidence."""
     time = sides[0].motion.time
     # Coarse then fine search: move one end at a time to the place of most evidence.
     for reach, stride in ((3 * CLOCK_REACH, 6), (CLOCK_REACH // 2, 1)):
@@ -293,7 +293,7 @@ def _is_said_by_both(segment):
 
 
 def _is_like(segment, sure):
-    """Whether a segment that one side cannot tell of has the rate of another that both tell of."""
+    """Whether a segment that only one relation shows has the rate of one that both relations show."""
     return any(
         abs(segment.value - other.value) < 3.0 * np.hypot(segment.std, other.std)
         and _agree(segment.apart, other.value)

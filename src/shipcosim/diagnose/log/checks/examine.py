@@ -98,7 +98,7 @@ def _in_parts(table, stated, contradiction):
 
 
 def _agreeing(clock):
-    """Segments of a wrong clock; none where one lies in another, as they contradict each other."""
+    """Segments of a wrong clock; none if one lies in another, because they contradict each other."""
     # Two segments that overlap by more than half of the shorter one contradict each other.
     segments = sorted(segment for finding in clock for segment in finding.segments)
     for (first, end), (start, later) in pairwise(segments):
@@ -114,7 +114,7 @@ def _as_logged(segment, start, rate):
 
 
 def _stated_units(log):
-    """Units that are stated, by role; of positions that come from latitude and longitude, that they do."""
+    """Stated units by role; for positions, whether they come from latitude and longitude."""
     geodetic = {"latitude": "deg"} if "latitude_origin" in log.attrs else {}
     return geodetic | {
         str(n): v.attrs["stated_unit"]

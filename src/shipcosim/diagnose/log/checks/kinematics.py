@@ -95,7 +95,7 @@ def position_motion(log: dict) -> Motion | None:
 
 
 def heading_motion(log: dict) -> Motion | None:
-    """Heading against the yaw rate; None where there is too little of them."""
+    """Relation of heading and yaw rate; None if there are too few rows."""
     rows = complete_rows(log, ("heading", "yaw_rate"))
     if len(rows) < 30:
         return None
@@ -152,7 +152,7 @@ class Filter:
     ratio: float = 0.0
 
     def __call__(self, levels: np.ndarray) -> np.ndarray:
-        """Innovations of levels (n, ...) in units of their standard deviation; 0 where a row starts anew."""
+        """Innovations of levels (n, ...) in units of their standard deviation; 0 where a row starts again."""
         # The level that the filter predicts follows a linear recursion.
         # It is solved for all rows at once as a bidiagonal system.
         flat = levels.reshape(len(levels), -1)

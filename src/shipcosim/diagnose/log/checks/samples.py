@@ -1,4 +1,4 @@
-"""Samples that are no measurement: rows that are missing, held or filled in, headings interpolated across north."""
+"""Samples without a measurement: missing, held or filled rows, and headings interpolated across north."""
 
 from dataclasses import dataclass
 
@@ -43,7 +43,7 @@ GROUPS = (
 
 @dataclass(frozen=True)
 class _Run:
-    """Rows in which a group of channels has nothing to say, and why."""
+    """Rows in which a group of channels is not usable, with the reason."""
 
     first: int
     last: int
@@ -86,7 +86,7 @@ def gaps(log: dict) -> list[Finding]:
 
 
 def lifeless(log: dict) -> list[Finding]:
-    """Channels of the navigation that never change, although others say that they should.
+    """Channels of the navigation that never change, although other channels show motion.
 
     Parameters
     ----------
@@ -232,7 +232,7 @@ def _kind(values):
 
 
 def _is_line(log, roles, first, last):
-    """Whether each channel of the group is one straight line throughout, and not just at rest at zero."""
+    """Whether each channel of the group is one straight line throughout, other than zero."""
     # Straight line between the inner ends of the run, against which each sample is compared.
     share = np.linspace(0.0, 1.0, last - first + 1)[1:-1]
     for role in roles:
@@ -261,7 +261,7 @@ def _straight(values, role):
 
 
 def quantum(values: np.ndarray) -> float:
-    """Resolution of a channel: the smallest step between its values that is no rounding error; 0 if it is fine."""
+    """Resolution of a channel: the smallest step between its values above rounding errors; 0 if it is fine."""
     # Smallest step between levels. A channel in which most values differ has no visible resolution.
     levels = np.unique(finite(values))
     steps = np.diff(levels)

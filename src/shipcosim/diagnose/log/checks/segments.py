@@ -45,7 +45,7 @@ def in_segment(values: np.ndarray, time: np.ndarray, segment: Segment | None) ->
 
 
 def refined(log: dict, mislabel: Mislabel, segment: Segment) -> Segment:
-    """A segment with each end where the log with a mislabel undone is likeliest and leaps least.
+    """A segment whose ends are the likeliest for a mislabel; the corrected log leaps least there.
 
     Parameters
     ----------

@@ -85,7 +85,7 @@ def _axes(vector):
 
 
 def _frame(time, winds, slow, filters):
-    """How the direction is counted, where, and the evidence for it; as labelled where nothing says otherwise."""
+    """Convention of the direction, the segment, and the evidence; by default the logged label."""
     likely = {}
     # Log-likelihood of each row as apparent wind or as wind
     # over ground, whichever is likelier in the whole log.
@@ -185,7 +185,7 @@ def leaps(time: np.ndarray, speed: np.ndarray, segment: Segment | None, factor: 
 
 
 def _goes_on(time, labelled, right, segment):
-    """Whether the wind over ground beside a segment goes on in it if corrected, rather than as labelled.
+    """Whether the corrected wind over ground continues through a segment better than the logged one.
 
     The ship's own way makes the wind that she meets stronger and weaker too, most of all that of a fast small craft.
     """
@@ -199,7 +199,7 @@ def _goes_on(time, labelled, right, segment):
 
 
 def _about(time, segment):
-    """Rows of a segment that are near one of its ends, and those outside of it; none of the whole log."""
+    """Rows of a segment near its ends, and rows outside of it near them; empty for the whole log."""
     if segment is None:
         return np.zeros((2, len(time)), bool)
     here = inside(time, [segment])

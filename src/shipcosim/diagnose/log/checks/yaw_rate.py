@@ -65,7 +65,7 @@ def _is_below_its_resolution(rate, fine):
 
 
 def _signs_turn(motion):
-    """Whether the signs of the rate, those of its zeros too, go as the heading turns."""
+    """Whether the signs of the rate, also of its zeros, agree with the turning of the heading."""
     sign = 1.0 - 2.0 * np.signbit(motion.velocity)
     turning = np.gradient(motion.seen, motion.time, axis=0)
     told, seen = (motion.slow(series)[:, 0] for series in (sign, turning))

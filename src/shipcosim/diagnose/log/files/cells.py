@@ -25,14 +25,14 @@ _FILLERS = (
     -32768.0,
     32767.0,
 )
-"""Numbers that loggers write where they have none."""
+"""Numbers that loggers write for missing values."""
 
 
 _MOST_DAMAGED = 0.01  # share of a column's cells that may be no numbers; more make it a column of texts. Assumed.
 
 
 def numbers_of(name: str, cells: Any, decimal: str) -> tuple[np.ndarray, list[str]]:
-    """A column of texts as numbers where nearly all of them are such, with what is to be said.
+    """A column of texts as numbers where nearly all of them are such, with remarks.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def numbers_of(name: str, cells: Any, decimal: str) -> tuple[np.ndarray, list[st
 
 
 def without_fillers(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
-    """A column without the number that stands for nothing in it, and what is to be said.
+    """A column without the number that means 'no value' in it, and remarks.
 
     It is one of those that loggers take for it, stands there more than once, and is further from all other values
     than these are from each other.
@@ -99,15 +99,13 @@ def without_fillers(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str
         if filler not in _FILLERS or len(known) - len(rest) < 2 or not len(rest):
             continue
         if np.abs(rest - filler).min() > max(np.ptp(rest), 10.0):
-            said = (
-                f"Column '{name}': {filler:g} stands for nothing in {len(known) - len(rest)} rows."
-            )
+            said = f"Column '{name}': {filler:g} means 'no value' in {len(known) - len(rest)} rows."
             return np.where(values == filler, np.nan, values), [said]
     return values, []
 
 
 def with_unit(cells: np.ndarray, decimal: str) -> tuple[np.ndarray, str] | None:
-    """Numbers of cells that all have the same unit behind them, and this unit; None for others.
+    """Numbers and unit of cells that all end with the same unit; None for others.
 
     Examples
     --------

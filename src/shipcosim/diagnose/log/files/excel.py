@@ -16,7 +16,7 @@ LARGEST_WORKBOOK = 1 << 30
 
 
 def is_workbook(path: Path) -> bool:
-    """Whether a file is a workbook: an archive that holds one, or a file of its name that is no text."""
+    """Whether a file is a workbook: an archive with one, or a binary file with such a name."""
     with path.open("rb") as file:
         head = file.read(8)
     if path.suffix.lower() in (".xlsx", ".xlsm"):
@@ -28,7 +28,7 @@ def is_workbook(path: Path) -> bool:
 
 
 def text_of_sheet(path: Path, sheet: str | None = None) -> tuple[str, list[str]]:
-    """Cells of a sheet as lines of text with tabs between, and what is to be said.
+    """Cells of a sheet as lines of text with tabs between, and remarks.
 
     Parameters
     ----------

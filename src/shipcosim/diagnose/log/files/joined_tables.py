@@ -17,7 +17,7 @@ _TABLES = (".csv", ".txt", ".tsv", ".dat", ".csv.gz", ".xlsx", ".parquet")
 
 
 def tables_in(path: Path) -> dict[str, Path]:
-    """Files of tables in a folder, by their names; none of a path that is no folder."""
+    """Files of tables in a folder, by their names; empty for other paths."""
     files = sorted(path.iterdir()) if path.is_dir() else []
     tables = [file for file in files if file.is_file() and file.name.lower().endswith(_TABLES)]
     names = [_without_ending(file.name) for file in tables]
@@ -107,7 +107,7 @@ def _below_each_other(path, tables, clocks):
 
 
 def _needs_table(name, column, names):
-    """Whether a column needs its table's name: where it says nothing alone, or the table is one of set points."""
+    """Whether a column needs its table's name: its own name is not clear, or the table has set points."""
     told = vocabulary()["words"]
     fillers = set(told["filler"])
     says_little = all(word in fillers or len(word) == 1 for word in words_of(column))

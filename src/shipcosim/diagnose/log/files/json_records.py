@@ -16,7 +16,7 @@ def is_json(path: Path) -> bool:
 
 
 def text_of_records(path: Path) -> tuple[str, list[str]]:
-    """Records as lines of text with tabs between, and what is to be said; names of nested values have dots.
+    """Records as lines of text with tabs between, and remarks; names of nested values have dots.
 
     Raises
     ------

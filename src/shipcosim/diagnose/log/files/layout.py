@@ -14,7 +14,7 @@ from shipcosim.errors import error_at
 
 @dataclass(frozen=True)
 class Layout:
-    """How a text is a table.
+    """Layout of a text file as a table.
 
     Attributes
     ----------
@@ -171,7 +171,7 @@ def _is_row_of_units(row, is_unit):
 
 
 def _header_cells(text, separator, width):
-    """Cells of what may be a header of so many columns, None where it is none."""
+    """Cells of a possible header with a given number of columns; None if it is no header."""
     # Columns with a separator may end in empty cells.
     if separator != " ":
         row = cells_in(text, separator)

@@ -33,7 +33,7 @@ _ALONE = 0.1  # share of rows with most channels, below which rows are messages 
 
 
 def spread(log: LogColumns, form: FileLayout) -> LogColumns:
-    """A log with one value a row as one with a column for each name; any other as it is.
+    """Turn a log with one value a row into one with a column for each name; leave others unchanged.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def spread(log: LogColumns, form: FileLayout) -> LogColumns:
 
 
 def _long(log, form):
-    """Columns that name values, and the one that holds them; none and None where the log is none of that kind."""
+    """Columns with the names of values, and the column with the values; empty and None for a log of another kind."""
     if form.name is not None and form.value is not None:
         return [form.name], form.value
     # Usual names of such columns, where the values look like names.
@@ -136,7 +136,7 @@ def _wide(log, names, value, clock, unit):
 def brought_together(
     time: np.ndarray, signals: dict[str, tuple[np.ndarray, str]], joined: bool = False
 ) -> tuple[np.ndarray, dict[str, tuple[np.ndarray, str]], list[str]]:
-    """Channels that no row has together at the times of one of them; others as they are.
+    """Interpolate channels that never share a row to the times of one of them; leave other logs unchanged.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def brought_together(
     Returns
     -------
     time, signals and list of str
-        Interpolated between a channel's own times, angles the short way round, not across holes; what is to be said.
+        Interpolated between a channel's own times, angles the short way round, not across holes; remarks.
     """
     # If more than a few rows hold most of the channels, the log needs no interpolation.
     is_finite = {name: np.isfinite(values) for name, (values, _) in signals.items()}

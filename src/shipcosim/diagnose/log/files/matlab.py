@@ -31,7 +31,7 @@ def is_matlab(path: Path) -> bool:
 def columns_of_matlab(
     path: Path,
 ) -> tuple[dict[str, np.ndarray], dict[str, str], tuple[str, ...]]:
-    """Values and units by name, and what is to be said.
+    """Values and units by name, and remarks.
 
     Raises
     ------

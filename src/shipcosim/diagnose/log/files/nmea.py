@@ -181,7 +181,7 @@ def holds_sentences(lines: list[str]) -> bool:
 def columns_of_sentences(
     source: str, lines: list[str]
 ) -> tuple[dict[str, np.ndarray], dict[str, str], list[str]]:
-    """Values and units by role, and what is to be said.
+    """Values and units by role, and remarks.
 
     Parameters
     ----------
@@ -201,7 +201,7 @@ def columns_of_sentences(
     if len(read.damaged) > _MOST_DAMAGED * count:
         found = f"{len(read.damaged)} of {count} sentences of NMEA do not fit their checksum or their form."
         raise error_at(
-            f"{source}, line {read.damaged[0] + 1}", found, "Record them anew, or as a table."
+            f"{source}, line {read.damaged[0] + 1}", found, "Record them again, or as a table."
         )
     said = _told(read)
     # Time of each sentence, and the channels that the sentences give.
@@ -279,7 +279,7 @@ def _told(read: _Read) -> list[str]:
 
 
 def _times(source: str, read: _Read) -> tuple[np.ndarray, list[str]]:
-    """Time of each sentence that was read, NaN where it is not known, and what is to be said. [s]"""
+    """Time of each sentence that was read, NaN where it is not known, and remarks. [s]"""
     # Stamps before the sentences are the time of reception, if nearly all sentences have one.
     stamped = [read.stamps[number] for number, *_ in read.sentences]
     if sum(map(bool, stamped)) > _ENOUGH * len(stamped):
@@ -319,7 +319,7 @@ def _times(source: str, read: _Read) -> tuple[np.ndarray, list[str]]:
 
 
 def _with_dates(timed: list[tuple[int, Values]]) -> tuple[np.ndarray, list[str]]:
-    """Times of day as times that go on past midnight, over whole days too where sentences have a date. [s]"""
+    """Continuous times from times of day: past midnight, and over whole days if sentences have a date. [s]"""
     # Clock times go on past midnight; dates then show whole days that were not logged.
     seconds, said = seconds_of_clock(np.array([values["clock"] for _, values in timed]))
     dated = np.array([k for k, (_, values) in enumerate(timed) if "date" in values], int)

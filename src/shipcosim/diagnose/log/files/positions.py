@@ -23,7 +23,7 @@ _TEXT = re.compile(
 
 
 def is_minutes(values: np.ndarray, largest: float) -> bool:
-    """Whether numbers are no degrees, and can be degrees times 100 plus minutes.
+    """Whether numbers cannot be degrees, but can be degrees times 100 plus minutes.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def hemisphere_signs(cells: np.ndarray, role: str) -> np.ndarray | None:
 
 
 def degrees_of_texts(cells: np.ndarray, largest: float) -> np.ndarray | None:
-    """Degrees of texts such as ``63° 24.09' N``, ``63 24 5.7 N`` or ``6324.0949,N``; None where they are none.
+    """Degrees of texts such as ``63° 24.09' N``, ``63 24 5.7 N`` or ``6324.0949,N``; None for other texts.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Files of other programs that are not read: which they are, and what makes a table of them."""
+"""Refused files of other programs: their formats, and how to make a table of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Any file that is a log as columns: their names, values and units as they stand there, and what is to be said."""
+"""Any file that is a log as columns: their names, values and units as they stand there, and remarks."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
 
 
 def _names(layout: Layout) -> tuple[list[str], dict[str, str], tuple[str, ...]]:
-    """Names that differ, their units, and those that stand there more than once."""
+    """Unique names, their units, and the names that occur more than once."""
     names = []
     units = {}
     seen = Counter()
@@ -180,7 +180,7 @@ def _rows(source: str, lines: list[str], layout: Layout) -> tuple[list[str], lis
         if header[-1] in line and cells_in(line, separator) == header
     }
     if again:
-        said.append(f"The header stands there again in {_count(len(again), 'row')}: left out.")
+        said.append(f"The header is repeated in {_count(len(again), 'row')}: left out.")
         rows = [line for i, line in enumerate(rows) if i not in again]
     return rows, said
 
@@ -302,7 +302,7 @@ def _with_comma(columns):
 
 
 def _column(name, cells, decimal):
-    """Values of a column, and what is to be said of them."""
+    """Values of a column, and remarks on them."""
     if cells.dtype.kind in "fiub":
         return without_fillers(name, cells.to_numpy(float))
     values, said = numbers_of(name, cells, decimal)

@@ -16,7 +16,7 @@ _TOO_LONG = re.compile(rb"(?<![^\r\n])[^\r\n]{%d}" % LONGEST_LINE)
 
 
 def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
-    """Text of a file and what is to be said of its encoding.
+    """Text of a file and remarks on its encoding.
 
     Parameters
     ----------

@@ -177,7 +177,7 @@ _PARTS = {
 
 @cache
 def _marks_of(form: str) -> str:
-    """What stands between the letters and digits of stamps of a form."""
+    """Separators between letters and digits of time stamps of one form."""
     return _WORD.sub("", datetime(2022, 10, 27, 23, 57, 30).strftime(form))
 
 
@@ -322,7 +322,7 @@ def _largest_step(values):
 
 
 def seconds_of_clock(seconds: np.ndarray, period: float = DAY) -> tuple[np.ndarray, list[str]]:
-    """Times of day that go on past midnight, and what is to be said.
+    """Times of day that go on past midnight, and remarks.
 
     Parameters
     ----------

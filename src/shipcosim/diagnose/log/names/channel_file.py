@@ -53,7 +53,7 @@ def _key(role: str) -> str:
 
 
 def _entry(record: BaseModel) -> str:
-    """What a record says beside its defaults as an inline table; empty for nothing."""
+    """Entries of a record that differ from its defaults, as an inline table."""
     told = record.model_dump(exclude_defaults=True)
     return (
         "{" + ", ".join(f"{key} = {_text(value)}" for key, value in told.items()) + "}"

@@ -1,4 +1,4 @@
-"""The column of time among those that may be it, and its unit."""
+"""The time column among the possible ones, and its unit."""
 
 from dataclasses import replace
 
@@ -73,7 +73,7 @@ def _all_between(values, least, most):
 
 
 def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
-    """A guess with the unit of its numbers, or with the date beside its clock; None where it is no time."""
+    """A guess with the unit of its numbers, or with the date for its clock time; None if it is not a time."""
     # Texts and stamps are read as they are; so are numbers with a stated unit.
     values = log.values[guess.column]
     if values.dtype.kind == "O":
@@ -120,7 +120,7 @@ def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
 
 
 def _is_clock_number(known):
-    """Whether numbers can be hhmmss, and are no seconds, as minutes and seconds end at 60.
+    """Whether numbers can be hhmmss and not seconds, because minutes and seconds stay below 60.
 
     Fractions of days run slower than any clock: their steps are below a millisecond.
     """

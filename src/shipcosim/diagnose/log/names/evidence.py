@@ -22,7 +22,7 @@ _BESIDE = 60.0  # deg, by which a course may be off the bow throughout
 def unit_of_speed(
     time: np.ndarray, north: np.ndarray, east: np.ndarray, speed: np.ndarray
 ) -> str | None:
-    """Unit of a speed, by the way that positions tell; None where they do not tell it.
+    """Unit of a speed, from the distance between positions; None if they do not determine it.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def unit_of_speed(
 
 
 def unit_of_rate(time: np.ndarray, heading: np.ndarray, rate: np.ndarray) -> str | None:
-    """Unit of a yaw rate, by the heading in degrees; None where it does not tell it.
+    """Unit of a yaw rate, from the heading in degrees; None if it does not determine it.
 
     Examples
     --------
@@ -104,7 +104,7 @@ def frame_of_angle(
     readings: dict[Any, np.ndarray],
     drift: np.ndarray | None = None,
 ) -> Any:
-    """Which of several readings of a heading agrees with the course; None where not one alone does.
+    """The only reading of a heading that agrees with the course; None if there are none or several.
 
     Parameters
     ----------

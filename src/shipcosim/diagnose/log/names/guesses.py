@@ -60,7 +60,7 @@ class Guess:
     said: tuple[str, ...] = field(default=())
 
     def read_as(self, settings: Mapping[str, Any], **more: Any) -> Guess:
-        """The same column read by other settings of its channel, and what else changes of the guess."""
+        """Guess for this column with other settings of its channel and other changes."""
         return replace(self, channel=self.channel.model_copy(update=settings), **more)
 
     @property
@@ -76,7 +76,7 @@ class Guess:
 
 
 def guesses_of(column: str, log: LogColumns, thrusters: Thrusters | None) -> list[Guess]:
-    """What a column may be, by itself; one guess without a role where it is nothing.
+    """Guesses for a column by itself; one guess without a role if nothing fits.
 
     Parameters
     ----------

@@ -103,7 +103,7 @@ def propose(
 
 
 def _known_together(every):
-    """Letters that have one meaning where all of them are there: N and E; u, v and r."""
+    """Letters with one meaning if all of a group occur: N and E; u, v and r."""
     letters = {guess.column: words_of(guess.column) for guess in every}
     single = {words[0] for words in letters.values() if len(words) == 1}
     sure = set()

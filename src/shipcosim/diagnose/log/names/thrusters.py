@@ -42,7 +42,7 @@ class Drive:
 
 
 def drive_of(words: tuple[str, ...], unit: str, values: np.ndarray) -> Drive | None:
-    """What a column says of a thruster; None where it says nothing of one.
+    """The quantity of a thruster that a column names; None if it names none.
 
     Parameters
     ----------

@@ -48,7 +48,7 @@ def is_unit(text: str) -> bool:
 
 
 def unit_for(spelling: str, target: str) -> str:
-    """A unit as shipcosim spells it: of several that a spelling can be the one that measures what `target` does.
+    """A unit in shipcosim's spelling; an ambiguous spelling means the unit of the same kind as `target`.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Units and frames that nobody stated: by what the channels say of each other, or left as guesses."""
+"""Unstated units and frames: from relations between channels, or left as guesses."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -112,7 +112,7 @@ def _values(chosen, role, log, form) -> Any:
 
 
 def _motion(chosen, log, form) -> Any:
-    """Times and positions of the log [s, m, m], None where it has none."""
+    """Times and positions of the log [s, m, m], or None."""
     time = _values(chosen, "time", log, form)
     if time is None:
         return None

@@ -65,7 +65,7 @@ def word_parts() -> re.Pattern[str]:
 
 
 def meaning_of(words: tuple[str, ...]) -> Meaning:
-    """What the words of a name say, those of thrusters apart.
+    """Meaning of the words of a name, thruster words separately.
 
     Examples
     --------

@@ -276,7 +276,7 @@ def _freed(reading, what):
 
 
 def _odd(stated) -> Iterator[LogMistake]:
-    """What has no name or cannot be corrected, and must be beaten by what has one."""
+    """Readings without a name or correction, which a named reading must beat."""
     for name, what, verb, alike in ODD_UNITS:
         # Units that a header states are wrong less often, so these mistakes cost more then.
         slot = f"unit of {name}"

@@ -88,7 +88,7 @@ def fitted(
     labelled: _Key,
     axes: int = 2,
 ) -> dict[_Key, Relation]:
-    """The relation of each pair of what is seen and told; none where no pair tells anything.
+    """Regression of observed on reported change for each pair; empty if no pair has information.
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ def likeliest_fits(
 
 
 def _fit(seen, told, axes, offset):
-    """The factor that leaves least of white rows, those that it does not explain at all counting little.
+    """The factor with the smallest residual of white rows; outliers count little.
 
     `offset`: of the logarithm of the likelihood, by the whitening.
     """

@@ -59,7 +59,7 @@ class Evidence:
     courses: dict[float, dict[tuple[bool, bool], complex]] = field(default_factory=dict)
 
     def relation_of(self, reading: LogInterpretation) -> Relation | None:
-        """Position against velocity, as a reading has it."""
+        """Relation of position and velocity under a reading."""
         return self.position.get((reading.heading_unit, reading.degrees), {}).get(reading.form)
 
 
@@ -271,7 +271,7 @@ def _one_factor(value, std, tolerance, free):
 
 
 def _log_density(value, std, tolerance):
-    """Of a deviation as measured, and as instruments differ: mostly by the first tolerance, a few by the second."""
+    """Log-density of a deviation: measured uncertainty and the spread of instruments, of which a few differ more."""
     # Measured uncertainty and both tolerances of instruments: a mixture of two normal densities.
     near = math.hypot(std, tolerance[0])
     far = math.hypot(std, tolerance[1])

@@ -104,7 +104,7 @@ def explained(log: dict) -> float:
 
 
 def is_as_labelled(log: dict, stated: dict[str, str]) -> bool:
-    """Whether no reading of a log, except for its clock, is likelier than the one that its labels say.
+    """Whether the logged labels are the likeliest reading, apart from the clock.
 
     Parameters
     ----------
@@ -339,7 +339,7 @@ def _clock(change, readings):
 
 
 def _left_open(rests, rates, besides):
-    """One finding of readings that explain a log alike: the likeliest; beside it others, and `besides`."""
+    """One finding of readings that explain a log equally well: the likeliest, and others and `besides` as alternatives."""
     # The likeliest non-empty set leads; the others are its alternatives.
     (first, share), *others = sorted(rests.items(), key=lambda entry: (not entry[0], -entry[1]))
     words = {rest: _words(rest, rates[rest]) for rest in rests}

@@ -28,7 +28,7 @@ from shipcosim.diagnose.log.thresholds import (
 from shipcosim.diagnose.numerics import gaussian_filter
 
 UNITS = {1.0: 0.0, KNOT: WIND_LABEL_COST, 1.0 / KNOT: WIND_LABEL_COST, 1.0 / 3.6: WIND_LABEL_COST}
-"""Factors that the wind's speed may need, and what that costs."""
+"""Possible factors on the wind's speed, and their costs."""
 SEEN = {"bow": 0.0, "mirrored": WIND_LABEL_COST, "north": WIND_LABEL_COST}
 """How the wind's direction may be counted, and what that costs."""
 
