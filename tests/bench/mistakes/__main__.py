@@ -26,12 +26,13 @@ def main(arguments=None):
     parser.add_argument(
         "--draws", type=int, default=4, help="drawn mistakes for each log, besides none"
     )
+    parser.add_argument("--most", type=int, default=2, help="most mistakes in a log")
     parser.add_argument("--among", nargs="+", help="mistakes, where not all")
     parser.add_argument("--into", type=Path, help="file for the answers, one JSON line each")
     options = parser.parse_args(arguments)
     start, found = time.monotonic(), []
     for answer in answers(
-        options.sources, options.seeds, options.single, options.draws, options.among
+        options.sources, options.seeds, options.single, options.draws, options.among, options.most
     ):
         found.append(answer)
         if answer.outcome != "right":

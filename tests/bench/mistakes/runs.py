@@ -69,24 +69,24 @@ def _simulated(kind, seed):
     return logs
 
 
-def answers(sources, seeds, single=False, draws=4, among=None):
+def answers(sources, seeds, single=False, draws=4, among=None, most=2):
     """The answer to each log with each of its mistakes, as they come; the first of each log is to it as it is."""
     for source in sources:
         for seed in seeds:
             log, true = log_of(source, seed), log_of(source, seed, noise=0.0)
             rng = np.random.default_rng([seed, SOURCES.index(source), BASE])
             possible = [n for n in among or MISTAKES if set(MISTAKES[n].channels) <= set(log)]
-            sets = [(name,) for name in possible] if single else _drawn(rng, log, draws)
+            sets = [(name,) for name in possible] if single else _drawn(rng, log, draws, most)
             for names in [(), *sets]:
                 hidden = tuple(name for name in names if not is_visible(log, true, name))
                 yield answered(log, source, seed, names, bool(rng.random() < 0.5), hidden)
 
 
-def _drawn(rng, log, draws):
-    """Sets of one or two mistakes, alternately."""
+def _drawn(rng, log, draws, most):
+    """Sets of one to `most` mistakes, in turn."""
     sets = []
     while len(sets) < draws:
-        names = draw_mistakes(rng, 1 + len(sets) % 2)
+        names = draw_mistakes(rng, 1 + len(sets) % most)
         if all(set(MISTAKES[name].channels) <= set(log) for name in names):
             sets.append(names)
     return sets

@@ -10,13 +10,14 @@ def table(answers):
     lines = [
         f"{'':34}" + "".join(f"{name:>{max(8, len(name) + 1)}}" for name in OUTCOMES) + "   of"
     ]
+    counts = sorted({len(answer.mistakes) for answer in answers})
     for source in dict.fromkeys(answer.source for answer in answers):
-        for count in (0, 1, 2):
+        for count in counts:
             group = [a for a in answers if a.source == source and len(a.mistakes) == count]
             lines += [_line(f"{source}, {count} mistakes", group)] if group else []
     lines += [
         _line(f"all, {count} mistakes", [a for a in answers if len(a.mistakes) == count])
-        for count in (0, 1, 2)
+        for count in counts
     ]
     names = dict.fromkeys(a.mistakes[0] for a in answers if len(a.mistakes) == 1)
     lines += [_line(name, [a for a in answers if a.mistakes == (name,)]) for name in sorted(names)]
