@@ -1,79 +1,161 @@
-// The instruments of the scene: heading scale with wind, current and waves, figures, and the load of every thruster.
+// The instruments of the scene: OpenBridge's compass and thrusters with their numbers as text, and the figures.
 (() => {
   if (!scene) return;
-  const { runs, colour, compass, wrapped, arrow, stroke } = scene, two = runs.length > 1;
+  const { runs, compass, wrapped } = scene, two = runs.length > 1;
   const three = (degrees) => `${compass(+degrees.toFixed(1)).toFixed(1).padStart(5, "0")}°`;
   const whole = (degrees) => `${String(Math.round(compass(degrees)) % 360).padStart(3, "0")}°`;
   const signed = (v, digits = 2) => (Number.isFinite(v) ? (v < -0.5 * 10 ** -digits ? "−" : v > 0.5 * 10 ** -digits ? "+" : " ") + plain(Math.abs(v), digits) : "–");
-  const plain = (v, digits = 2) => (Number.isFinite(v) ? (Math.abs(v) >= 1e6 ? v.toExponential(2) : v.toFixed(digits)).replace(/^-(0\.0*)$/, "$1").replace("-", "−") : "–");
-  const FLOW = { wind: "sky", current: "blue", waves: "green" };
+  const plain = (v, digits = 2) => (Number.isFinite(v) ? (Math.abs(v) >= 1e6 ? v.toExponential(2) : v.toFixed(digits)).replace(/^-(0\.?0*)$/, "$1").replace("-", "−") : "–");
+  const chosen = (states) => states.map((one) => ({ run: one.run, state: scene.of(one) }));
 
-  // ---- heading scale
+  // ---- components
 
-  const dial = scene.canvas("compass", (width) => Math.min(width, 250)), layer = scene.layer();
+  const made = (tag, properties = {}, ...parts) => { const found = Object.assign(document.createElement(tag), properties); found.append(...parts); return found; };
+  const tenth = (value) => Math.round(10 * value) / 10;  // finer steps nobody sees, and each one draws the component anew
+  const known = (value, otherwise) => (Number.isFinite(value) ? tenth(value) : otherwise);
+  const write = (place, text) => { if (place.textContent !== text) place.textContent = text; };
 
-  function scale(c, x, y, R, on) {
-    c.beginPath(); c.arc(x, y, R, 0, 2 * Math.PI); c.fillStyle = colour("sea"); c.fill(); stroke(c, "faint", 1);
-    c.beginPath();
-    for (let a = 0; a < 360; a += 10) { c.moveTo(...on(a, R)); c.lineTo(...on(a, R - (a % 30 ? 5 : 10))); }
-    stroke(c, "soft", 1);
-    c.textAlign = "center"; c.textBaseline = "middle";
-    for (let a = 0; a < 360; a += 30) {
-      c.fillStyle = colour(a % 90 ? "soft" : "ink");
-      c.fillText(a % 90 ? String(a).padStart(3, "0") : "NESW"[a / 90], ...on(a, R + 12));
-    }
+  // A component with a title and a table of its numbers: what it shows, now, and the set point where there is one.
+  function instrument(place, tag, title, run, properties = {}, caption = title) {
+    const component = made(tag, { priority: "enhanced", role: "img", ...properties }), rows = made("table"), name = made("figcaption", { textContent: caption });
+    if (two) name.style.color = `var(--${run.colour})`;
+    const figure = made("figure", { className: "instrument" }, made("div", { className: "dial" }, component), made("div", {}, name, rows));
+    place.append(figure);
+    return {
+      component, figure, rows,
+      tell(texts) {  // rows of name, unit, value and set point
+        tabulate(rows, texts.map(([what, unit, now, wanted]) => [unit ? `${what} [${unit}]` : what, now, ...(wanted ? [`set ${wanted}`] : [])]));
+        component.ariaLabel = `${title}: ${texts.map(([what, unit, now, wanted]) => `${what} ${now}${unit && ` ${unit}`}${wanted ? `, set point ${wanted}${unit && ` ${unit}`}` : ""}`.trim()).join(", ")}`;
+      },
+    };
   }
 
+  // ---- compass
+
+  const BEAUFORT = [0.3, 1.6, 3.4, 5.5, 8, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7];  // m/s from which each force holds, as the WMO has them
+  const CURRENT = 0.5;  // m/s an arrow, up to four; assumed, OpenBridge says none
+  const UNDER_WAY = 0.1;  // m/s, from which a ship has a course; assumed
+  const SECTOR = 30;  // deg of caution drawn beyond a limit of the heading alarm
+
+  // Letters inside, where no arrow lies over them, in place of a ship; nothing turns that is no measured value.
+  const DIAL = { showLabels: true, tickmarksInside: true, vesselImage: "", rotType: undefined };
+  const compasses = runs.map((run) => instrument(document.getElementById("scene-compasses"), "obc-compass", two ? `Compass, ${run.label}` : "Compass", run, DIAL, two ? run.label : ""));
+
+  function steer({ component, figure }, run, state, flows) {
+    figure.classList.toggle("gone", !state);
+    if (!state) return;
+    const aim = heading(state), course = courseOf(state);
+    const from = (what) => { const flow = flows.find((one) => one.what === what); return flow && flow.size > 0 && Number.isFinite(flow.degrees) ? { size: flow.size, degrees: tenth(compass(flow.degrees + (flow.sense === "from" ? 0 : 180))) } : null; };
+    const wind = from("wind"), current = from("current");
+    Object.assign(component, {
+      heading: tenth(compass(state.heading)), courseOverGround: tenth(compass(course ?? state.heading)), headingSetpoint: Number.isFinite(aim) ? tenth(compass(aim)) : null,
+      windSpeed: wind && BEAUFORT.filter((least) => wind.size >= least).length, windFromDirection: wind && wind.degrees,
+      currentSpeed: current && Math.min(Math.ceil(current.size / CURRENT), 4), currentFromDirection: current && current.degrees,
+    });
+    // Beyond the limits of the heading alarm; angles near the heading, as the component compares them with it.
+    const limit = run.watch.heading, about = tenth(compass(state.heading) + wrapped(aim - state.heading));
+    if (!limit || !Number.isFinite(about) || component.about === about) return;
+    component.about = about;
+    component.headingAdvices = [[limit, limit + SECTOR], [-limit - SECTOR, -limit]].map(([least, most]) => ({ minAngle: about + least, maxAngle: about + most, type: "caution", hinted: true }));
+  }
+  const courseOf = ({ heading, u, v }) => (Math.hypot(u, v) > UNDER_WAY ? heading + (Math.atan2(v, u) * 180) / Math.PI : null);
+  const heading = ({ aims }) => (aims.reference || aims["set point"])?.heading;
+
+  function bearings(state) {
+    const aim = heading(state), course = courseOf(state);
+    return [["Heading", "", three(state.heading), Number.isFinite(aim) ? three(aim) : ""], ...(Number.isFinite(state.u + state.v) ? [["Course", "", course === null ? "–" : three(course)]] : [])];
+  }
+
+  // ---- thrusters
+
+  const place = document.getElementById("scene-thrusters"), thrusters = new Map();  // by run, then by name of the unit
+  place.ariaLabel = report.data.bars ?? "Thrusters";
+
+  // What turns is an azimuth thruster, what pushes sideways a tunnel; by the force of the run where no signal says it.
+  function kindOf({ run, unit, force }) {
+    if (unit.azimuth) return "azimuth";
+    const [forward, starboard] = force;
+    if (Math.min(forward, starboard) > 0.1 * Math.max(forward, starboard)) return "azimuth";
+    return starboard > forward ? "tunnel" : "fixed";
+  }
+  const COMPONENTS = { azimuth: ["obc-azimuth-thruster", {}], tunnel: ["obc-thruster", { tunnel: true }], fixed: ["obc-thruster", {}] };
+
+  function mount() {
+    place.replaceChildren();
+    thrusters.clear();
+    for (const run of runs) for (const unit of scene.vesselOf(run)?.units ?? []) {
+      const force = (unit.force ?? []).map((name) => run.columns[name].reduce((most, v) => (Math.abs(v) > most ? Math.abs(v) : most), 0));
+      thrusters.set(unit, fit({ run, unit, force: unit.force ? force : [0, 0] }));
+    }
+    place.hidden = !thrusters.size;
+  }
+
+  function fit(thruster) {  // with the component of its kind
+    const { run, unit } = thruster, kind = kindOf(thruster), [tag, properties] = COMPONENTS[kind], before = thruster.figure;
+    const advices = unit.sectors.map(([from, to]) => ({ minAngle: from, maxAngle: to, type: "caution", hinted: true }));
+    Object.assign(thruster, { kind }, instrument(place, tag, two ? `${run.label}: ${unit.name}` : unit.name, run, { ...properties, ...(kind === "azimuth" ? { angleAdvices: advices } : {}) }));
+    thruster.figure.classList.add(kind);
+    before?.replaceWith(thruster.figure);
+    return thruster;
+  }
+
+  function refitted(thruster, force) {  // a run that goes on shows late which way a unit pushes
+    force?.forEach((v, way) => { if (Math.abs(v) > thruster.force[way]) thruster.force[way] = Math.abs(v); });
+    return kindOf(thruster) === thruster.kind ? thruster : fit(thruster);
+  }
+
+  function push(thruster, now) {
+    const { unit, component, figure } = thruster, { limits, thrust, command, azimuth, azimuthCommand, force, state } = now;
+    figure.className = `instrument ${thruster.kind} ${state}`;
+    const turned = thruster.kind === "azimuth" && !unit.azimuth;  // shows the force itself
+    const share = (kN) => Math.max(-100, Math.min(100, (100 * kN) / ((kN < 0 ? -limits[0] : limits[1]) || 1)));
+    Object.assign(component, { state: state === "failed" ? "off" : "active", thrust: known(share(turned ? Math.hypot(...force) : thrust), 0) });
+    const angle = turned ? (Math.atan2(force[1], force[0]) * 180) / Math.PI : azimuth;
+    if (thruster.kind === "azimuth") Object.assign(component, { angle: known(wrapped(angle), 0), angleSetpoint: known(wrapped(azimuthCommand)), thrustSetpoint: known(share(command)) });
+    else component.setpoint = known(share(command));
+  }
+
+  function say(thruster, { thrust, command, azimuth, azimuthCommand, rpm, state, unit }) {
+    const rows = [["Thrust", "kN", plain(thrust, 1), unit.command && plain(command, 1)]];
+    if (unit.azimuth) rows.push(["Azimuth", "", `${plain(wrapped(azimuth), 0)}°`, unit.azimuth_command && `${plain(wrapped(azimuthCommand), 0)}°`]);
+    if (unit.rpm) rows.push(["Shaft", "rpm", plain(rpm, 0)]);
+    if (state !== "runs") rows.push([state === "failed" ? "failed" : "at its limit", "", ""]);
+    thruster.tell(rows);
+  }
+
+  mount();
+  addEventListener("scene-vessel", mount);
+
+  // A component takes 1 ms to draw: while the run plays one of them a frame, in turn, else all.
+  let turn = 0;
   scene.paints((states) => {
-    const target = dial(), { context: c, width, height } = target, x = width / 2, y = height / 2, R = Math.min(width, height) / 2 - 24, drawn = [];
-    const on = (degrees, radius) => [x + radius * Math.sin((degrees * Math.PI) / 180), y - radius * Math.cos((degrees * Math.PI) / 180)];
-    layer(target, "", (still) => scale(still, x, y, R, on));
-    const main = states.find((state) => state.flows.length) || states[0];
-    for (const flow of main.flows) {
-      if (!(flow.size > 0) || !Number.isFinite(flow.degrees)) continue;
-      const from = flow.sense === "from", inner = { wind: 0.62, waves: 0.4, current: 0.36 }[flow.what] * R, outer = { wind: 0.9, waves: 0.6, current: 0.66 }[flow.what] * R;
-      const tail = on(flow.degrees, from ? outer : inner), tip = on(flow.degrees, from ? inner : outer);
-      arrow(c, ...tail, ...tip, FLOW[flow.what], 4);
-      drawn.push({ what: "flow", of: flow.what, degrees: flow.degrees, sense: flow.sense, size: flow.size });
-    }
-    for (const { run, state } of chosen(states)) {
-      const length = 0.3 * R, wide = Math.min(length * (state.vessel.size[1] / state.vessel.size[0]), 0.8 * length), a = (state.heading * Math.PI) / 180;
-      const [f, b] = state.vessel.outline, [l, w] = state.vessel.size;
-      c.beginPath();
-      f.forEach((fore, k) => { const u = (fore / l) * 2 * length, v = (b[k] / w) * 2 * wide; c.lineTo(x + Math.sin(a) * u + Math.cos(a) * v, y - Math.cos(a) * u + Math.sin(a) * v); });
-      c.closePath(); c.fillStyle = colour(`${run.colour}/0.3`); c.fill(); stroke(c, run.colour, 1.5);
-      const aim = state.aims.reference || state.aims["set point"];
-      if (aim && Number.isFinite(aim.heading)) {
-        if (run.watch.heading) { c.beginPath(); for (const side of [-1, 1]) { c.moveTo(...on(aim.heading + side * run.watch.heading, R)); c.lineTo(...on(aim.heading + side * run.watch.heading, R - 16)); } stroke(c, Math.abs(state.off.heading) > run.watch.heading ? "alarm" : "caution", 2); }
-        wedge(c, on, aim.heading, R, R - 13); stroke(c, two ? run.colour : "orange", 2);
-        drawn.push({ what: "pointer", of: "aim", run: run.label, degrees: compass(aim.heading) });
-      }
-      wedge(c, on, state.heading, R - 1, R - 15); c.fillStyle = colour(run.colour); c.fill();
-      c.beginPath(); c.moveTo(...on(state.heading, 2 * length * 0.5)); c.lineTo(...on(state.heading, R - 15)); stroke(c, run.colour, 1.5);
-      drawn.push({ what: "pointer", of: "heading", run: run.label, degrees: compass(state.heading) });
-    }
-    return drawn;
+    const flows = states.find((one) => one.flows.length)?.flows ?? [], draws = [];
+    chosen(states).forEach(({ run, state }, k) => {
+      draws.push(() => steer(compasses[k], run, state, states[k].flows.length ? states[k].flows : flows));
+      for (const now of state?.units ?? []) if (thrusters.has(now.unit)) draws.push(() => push(refitted(thrusters.get(now.unit), now.force), now));
+    });
+    turn += 1;
+    for (const draw of scene.playing ? [draws[turn % draws.length]] : draws) draw();
+    return [];
   });
-
-  const chosen = (states) => states.map((one) => ({ run: one.run, state: scene.of(one) })).filter(({ state }) => state);
-
-  function wedge(c, on, degrees, outer, inner) {
-    c.beginPath(); c.moveTo(...on(degrees, outer)); c.lineTo(...on(degrees - 5, inner)); c.lineTo(...on(degrees + 5, inner)); c.closePath();
-  }
+  scene.writes((states) => chosen(states).forEach(({ state }, k) => {
+    compasses[k].tell(state ? bearings(state) : [["not in the run at this time", "", ""]]);
+    for (const now of state?.units ?? []) if (thrusters.has(now.unit)) say(thrusters.get(now.unit), now);
+  }));
 
   // ---- figures
 
-  const table = document.getElementById("scene-figures");
+  const FLOWS = ["wind", "current", "waves"], table = document.getElementById("scene-figures");
   scene.writes((states) => {
-    const rows = two ? compared(states) : single(chosen(states)[0]?.state);
-    for (const what of Object.keys(FLOW)) {
+    const rows = two ? compared(states) : single(scene.of(states[0]));
+    for (const what of FLOWS) {
       const found = states.map(({ flows }) => flows.find((flow) => flow.what === what));
       if (!found.some(Boolean)) continue;
       const said = found.map((flow) => (flow ? `${plain(flow.size, 1)} ${flow.unit} ${flow.sense} ${whole(flow.degrees)}` : "–"));
       const same = said.every((text) => text === said[0]);
       rows.push([what[0].toUpperCase() + what.slice(1), same ? said[0] : said.map((text, k) => `${runs[k].label} ${text}`).join(", ")]);
     }
-    write(rows);
+    tabulate(table, rows, 4);
   });
 
   function single(state) {
@@ -104,57 +186,16 @@
     return rows;
   }
 
-  function write(rows) {  // cells that stay are not made again
+  function tabulate(table, rows, columns = 3) {  // cells that stay are not made again; the last one spans the rest
     while (table.rows.length > rows.length) table.deleteRow(-1);
     rows.forEach((texts, k) => {
       const row = table.rows[k] || table.insertRow();
       while (row.cells.length > texts.length) row.deleteCell(-1);
       texts.forEach((text, i) => {
-        const cell = row.cells[i] || row.insertCell(), span = i === texts.length - 1 ? 4 - i : 1;
+        const cell = row.cells[i] || row.insertCell(), span = i === texts.length - 1 ? columns - i : 1;
         if (cell.textContent !== text) cell.textContent = text;
         if (cell.colSpan !== span) cell.colSpan = span;
       });
     });
-  }
-
-  // ---- thrusters
-
-  const units = () => runs.flatMap((run) => scene.vesselOf(run)?.units ?? []);
-  const names = () => [...new Set(units().map((unit) => unit.name))];
-  const BAR = two ? 44 : 30, bars = scene.canvas("thrust", () => names().length * BAR + (names().length ? 24 : 0));
-
-  scene.paints((states) => {
-    const { context: c, width } = bars(), drawn = [], all = names();
-    if (!all.length) return drawn;
-    const left = Math.min(90, 0.28 * width), right = width - 104, middle = (left + right) / 2, half = (right - left) / 2;
-    c.textBaseline = "middle"; c.fillStyle = colour("soft"); c.textAlign = "left"; c.fillText(report.data.bars ?? "Thrusters", 0, 10);
-    const tall = two ? 12 : 14;
-    all.forEach((name, k) => {
-      const y = 24 + k * BAR + BAR / 2;
-      c.fillStyle = colour("ink"); c.textAlign = "left"; c.fillText(fitted(c, name, left - 8), 0, y);
-      chosen(states).forEach(({ run, state }, rank) => {
-        const found = state.units.find(({ unit }) => unit.name === name);
-        if (!found) return;
-        const { thrust, command, limits, azimuth, state: how, unit } = found, most = Math.max(Math.abs(limits[0]), limits[1]) || 1, top = y - (two ? (rank ? -3 : tall + 3) : tall / 2);
-        const at = (kN) => middle + (half * Math.max(-1, Math.min(1, kN / most)));
-        c.fillStyle = colour("chart-grid"); c.fillRect(at(limits[0]), top, at(limits[1]) - at(limits[0]), tall);
-        c.fillStyle = colour(how === "runs" ? run.colour : how === "limit" ? "caution" : "alarm");
-        if (Number.isFinite(thrust)) c.fillRect(Math.min(middle, at(thrust)), top, Math.abs(at(thrust) - middle), tall);
-        if (how === "failed") c.fillRect(middle - 2, top, 4, tall);
-        c.beginPath(); c.moveTo(middle, top - 2); c.lineTo(middle, top + tall + 2); stroke(c, "soft", 1);
-        if (Number.isFinite(command)) { c.beginPath(); c.moveTo(at(command), top + tall / 2); c.lineTo(at(command) - 4, top - 4); c.lineTo(at(command) + 4, top - 4); c.closePath(); c.fillStyle = colour("ink"); c.fill(); }
-        c.fillStyle = colour(how === "runs" ? "ink" : how === "limit" ? "caution-text" : "alarm"); c.textAlign = "right";
-        const angle = Number.isFinite(azimuth) && !two ? ` ${plain(wrapped(azimuth), 0)}°` : "";  // from the bow, as in the diagram
-        c.fillText(how === "failed" ? "failed" : `${plain(thrust, 1)} kN${angle}`, width, two ? top + tall / 2 : y);
-        drawn.push({ what: "bar", run: run.label, unit: unit.name, thrust, command, share: thrust / (thrust < 0 ? -limits[0] : limits[1]), from: middle, to: at(thrust), state: how });
-      });
-    });
-    return drawn;
-  });
-
-  function fitted(c, text, width) {  // what is too long loses its middle: names begin, or end, alike
-    let shown = text;
-    for (let n = text.length - 2; n > 3 && c.measureText(shown).width > width; n--) shown = `${text.slice(0, Math.ceil(n / 2))}…${text.slice(text.length - Math.floor(n / 2))}`;
-    return shown;
   }
 })();
