@@ -2,145 +2,125 @@
 (() => {
   if (!scene) return;
   const { runs, compass, wrapped } = scene, two = runs.length > 1;
-  const three = (degrees) => `${compass(+degrees.toFixed(1)).toFixed(1).padStart(5, "0")}°`;
+  const three = (degrees) => (Number.isFinite(degrees) ? `${compass(+degrees.toFixed(1)).toFixed(1).padStart(5, "0")}°` : "–");
   const whole = (degrees) => `${String(Math.round(compass(degrees)) % 360).padStart(3, "0")}°`;
   const signed = (v, digits = 2) => (Number.isFinite(v) ? (v < -0.5 * 10 ** -digits ? "−" : v > 0.5 * 10 ** -digits ? "+" : " ") + plain(Math.abs(v), digits) : "–");
   const plain = (v, digits = 2) => (Number.isFinite(v) ? (Math.abs(v) >= 1e6 ? v.toExponential(2) : v.toFixed(digits)).replace(/^-(0\.?0*)$/, "$1").replace("-", "−") : "–");
-  const chosen = (states) => states.map((one) => ({ run: one.run, state: scene.of(one) }));
 
-  // ---- components
+  // ---- an instrument: a component of OpenBridge, and a table of its numbers
 
   const made = (tag, properties = {}, ...parts) => { const found = Object.assign(document.createElement(tag), properties); found.append(...parts); return found; };
-  const tenth = (value) => Math.round(10 * value) / 10;  // finer steps nobody sees, and each one draws the component anew
-  const known = (value, otherwise) => (Number.isFinite(value) ? tenth(value) : otherwise);
-  const write = (place, text) => { if (place.textContent !== text) place.textContent = text; };
+  const tenth = (value) => (Number.isFinite(value) ? Math.round(10 * value) / 10 : undefined);  // finer steps nobody sees, and each draws the component anew
 
-  // A component with a title and a table of its numbers: what it shows, now, and the set point where there is one.
-  function instrument(place, tag, title, run, properties = {}, caption = title) {
-    const component = made(tag, { priority: "enhanced", role: "img", ...properties }), rows = made("table"), name = made("figcaption", { textContent: caption });
+  function instrument(place, run, title, caption = title) {
+    const dial = made("div", { className: "dial" }), name = made("figcaption", { textContent: caption }), rows = made("table");
     if (two) name.style.color = `var(--${run.colour})`;
-    const figure = made("figure", { className: "instrument" }, made("div", { className: "dial" }, component), made("div", {}, name, rows));
+    const figure = made("figure", { className: "instrument" }, dial, made("div", {}, name, rows));
     place.append(figure);
-    return {
-      component, figure, rows,
-      tell(texts) {  // rows of name, unit, value and set point
-        tabulate(rows, texts.map(([what, unit, now, wanted]) => [unit ? `${what} [${unit}]` : what, now, ...(wanted ? [`set ${wanted}`] : [])]));
-        component.ariaLabel = `${title}: ${texts.map(([what, unit, now, wanted]) => `${what} ${now}${unit && ` ${unit}`}${wanted ? `, set point ${wanted}${unit && ` ${unit}`}` : ""}`.trim()).join(", ")}`;
-      },
-    };
+    return { figure, dial, rows, title };
+  }
+  const put = (one, tag, properties) => one.dial.replaceChildren((one.component = made(tag, { priority: "enhanced", role: "img", ...properties })));
+
+  const has = (text) => Boolean(text) && text !== "–";
+  function tell({ component, rows, title }, texts) {  // each of name, unit, value and set point
+    tabulate(rows, texts.map(([what, unit, now, wanted]) => [unit ? `${what} [${unit}]` : what, now, ...(has(wanted) ? [`set ${wanted}`] : [])]));
+    component.ariaLabel = `${title}: ${texts.map(([what, unit, now, wanted]) => `${what} ${now} ${unit}${has(wanted) ? `, set point ${wanted} ${unit}` : ""}`.trim()).join(", ")}`;
   }
 
   // ---- compass
 
   const BEAUFORT = [0.3, 1.6, 3.4, 5.5, 8, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7];  // m/s from which each force holds, as the WMO has them
-  const CURRENT = 0.5;  // m/s an arrow, up to four; assumed, OpenBridge says none
-  const UNDER_WAY = 0.1;  // m/s, from which a ship has a course; assumed
-  const SECTOR = 30;  // deg of caution drawn beyond a limit of the heading alarm
+  const CURRENT = 0.5, UNDER_WAY = 0.1;  // m/s: an arrow of the current, up to four; the least at which a ship has a course; both assumed
+  const SECTOR = 30;  // deg that are marked beyond a limit of the heading alarm
 
-  // Letters inside, where no arrow lies over them, in place of a ship; nothing turns that is no measured value.
-  const DIAL = { showLabels: true, tickmarksInside: true, vesselImage: "", rotType: undefined };
-  const compasses = runs.map((run) => instrument(document.getElementById("scene-compasses"), "obc-compass", two ? `Compass, ${run.label}` : "Compass", run, DIAL, two ? run.label : ""));
+  const compasses = runs.map((run) => instrument(document.getElementById("scene-compasses"), run, two ? `Compass, ${run.label}` : "Compass", two ? run.label : ""));
+  // Letters inside, where no arrow lies over them, in place of a ship; no ring that turns by itself.
+  for (const one of compasses) put(one, "obc-compass", { showLabels: true, tickmarksInside: true, vesselImage: "", rotType: undefined });
+
+  const heading = ({ aims }) => (aims.reference || aims["set point"])?.heading;
+  const course = ({ heading, u, v }) => (Math.hypot(u, v) > UNDER_WAY ? heading + (Math.atan2(v, u) * 180) / Math.PI : NaN);
 
   function steer({ component, figure }, run, state, flows) {
     figure.classList.toggle("gone", !state);
     if (!state) return;
-    const aim = heading(state), course = courseOf(state);
-    const from = (what) => { const flow = flows.find((one) => one.what === what); return flow && flow.size > 0 && Number.isFinite(flow.degrees) ? { size: flow.size, degrees: tenth(compass(flow.degrees + (flow.sense === "from" ? 0 : 180))) } : null; };
-    const wind = from("wind"), current = from("current");
+    const aim = heading(state), [wind, current] = ["wind", "current"].map((what) => flows.find((flow) => flow.what === what && flow.size > 0) ?? {});
+    const from = ({ degrees, sense }) => tenth(compass(degrees + (sense === "from" ? 0 : 180))) ?? null;
     Object.assign(component, {
-      heading: tenth(compass(state.heading)), courseOverGround: tenth(compass(course ?? state.heading)), headingSetpoint: Number.isFinite(aim) ? tenth(compass(aim)) : null,
-      windSpeed: wind && BEAUFORT.filter((least) => wind.size >= least).length, windFromDirection: wind && wind.degrees,
-      currentSpeed: current && Math.min(Math.ceil(current.size / CURRENT), 4), currentFromDirection: current && current.degrees,
+      heading: tenth(compass(state.heading)), courseOverGround: tenth(compass(course(state))) ?? tenth(compass(state.heading)), headingSetpoint: tenth(compass(aim)) ?? null,
+      windSpeed: BEAUFORT.filter((least) => wind.size >= least).length, windFromDirection: from(wind),
+      currentSpeed: Math.min(Math.ceil(current.size / CURRENT), 4), currentFromDirection: from(current),
     });
-    // Beyond the limits of the heading alarm; angles near the heading, as the component compares them with it.
+    // The component compares these angles with the heading as they are: they must not lie a turn from it.
     const limit = run.watch.heading, about = tenth(compass(state.heading) + wrapped(aim - state.heading));
-    if (!limit || !Number.isFinite(about) || component.about === about) return;
+    if (!limit || component.about === about) return;
     component.about = about;
-    component.headingAdvices = [[limit, limit + SECTOR], [-limit - SECTOR, -limit]].map(([least, most]) => ({ minAngle: about + least, maxAngle: about + most, type: "caution", hinted: true }));
+    component.headingAdvices = [limit, -limit - SECTOR].map((least) => ({ minAngle: about + least, maxAngle: about + least + SECTOR, type: "caution", hinted: true }));
   }
-  const courseOf = ({ heading, u, v }) => (Math.hypot(u, v) > UNDER_WAY ? heading + (Math.atan2(v, u) * 180) / Math.PI : null);
-  const heading = ({ aims }) => (aims.reference || aims["set point"])?.heading;
 
-  function bearings(state) {
-    const aim = heading(state), course = courseOf(state);
-    return [["Heading", "", three(state.heading), Number.isFinite(aim) ? three(aim) : ""], ...(Number.isFinite(state.u + state.v) ? [["Course", "", course === null ? "–" : three(course)]] : [])];
-  }
+  const bearings = (state) => [["Heading", "", three(state.heading), three(heading(state))], ["Course", "", three(course(state))]];
 
   // ---- thrusters
 
-  const place = document.getElementById("scene-thrusters"), thrusters = new Map();  // by run, then by name of the unit
-  place.ariaLabel = report.data.bars ?? "Thrusters";
-
-  // What turns is an azimuth thruster, what pushes sideways a tunnel; by the force of the run where no signal says it.
-  function kindOf({ run, unit, force }) {
-    if (unit.azimuth) return "azimuth";
-    const [forward, starboard] = force;
-    if (Math.min(forward, starboard) > 0.1 * Math.max(forward, starboard)) return "azimuth";
-    return starboard > forward ? "tunnel" : "fixed";
-  }
-  const COMPONENTS = { azimuth: ["obc-azimuth-thruster", {}], tunnel: ["obc-thruster", { tunnel: true }], fixed: ["obc-thruster", {}] };
+  const place = document.getElementById("scene-thrusters"), thrusters = new Map();
+  place.ariaLabel = report.data.bars ?? "Thrusters";  // a diagnosis shows another force
 
   function mount() {
-    place.replaceChildren();
+    place.replaceChildren(...(report.data.bars ? [made("h3", { textContent: report.data.bars })] : []));
     thrusters.clear();
-    for (const run of runs) for (const unit of scene.vesselOf(run)?.units ?? []) {
-      const force = (unit.force ?? []).map((name) => run.columns[name].reduce((most, v) => (Math.abs(v) > most ? Math.abs(v) : most), 0));
-      thrusters.set(unit, fit({ run, unit, force: unit.force ? force : [0, 0] }));
+    const units = runs.flatMap((run) => (scene.vesselOf(run)?.units ?? []).map((unit) => ({ run, unit }))), names = units.map(({ unit }) => unit.name);
+    units.sort((a, b) => names.indexOf(a.unit.name) - names.indexOf(b.unit.name));  // those of two runs next to each other
+    for (const { run, unit } of units) {
+      const most = (unit.force ?? []).map((name) => run.columns[name].reduce((largest, v) => (Math.abs(v) > largest ? Math.abs(v) : largest), 0));
+      thrusters.set(unit, { ...instrument(place, run, two ? `${run.label}: ${unit.name}` : unit.name), most });
     }
     place.hidden = !thrusters.size;
   }
 
-  function fit(thruster) {  // with the component of its kind
-    const { run, unit } = thruster, kind = kindOf(thruster), [tag, properties] = COMPONENTS[kind], before = thruster.figure;
-    const advices = unit.sectors.map(([from, to]) => ({ minAngle: from, maxAngle: to, type: "caution", hinted: true }));
-    Object.assign(thruster, { kind }, instrument(place, tag, two ? `${run.label}: ${unit.name}` : unit.name, run, { ...properties, ...(kind === "azimuth" ? { angleAdvices: advices } : {}) }));
-    thruster.figure.classList.add(kind);
-    before?.replaceWith(thruster.figure);
-    return thruster;
+  // What turns is an azimuth thruster, what pushes sideways a tunnel: by the force, where no signal says it. A run that goes on shows it late.
+  function fit(one, { unit, force }) {
+    one.most = one.most.map((largest, way) => (Math.abs(force[way]) > largest ? Math.abs(force[way]) : largest));
+    const [forward = 0, starboard = 0] = one.most, kind = unit.azimuth || Math.min(forward, starboard) > 0.1 * Math.max(forward, starboard) ? "azimuth" : starboard > forward ? "tunnel" : "fixed";
+    if (one.kind === kind) return;
+    one.kind = kind;
+    if (kind === "azimuth") put(one, "obc-azimuth-thruster", { angleAdvices: unit.sectors.map(([from, to]) => ({ minAngle: from, maxAngle: to, type: "caution", hinted: true })) });
+    else put(one, "obc-thruster", { tunnel: kind === "tunnel" });
   }
 
-  function refitted(thruster, force) {  // a run that goes on shows late which way a unit pushes
-    force?.forEach((v, way) => { if (Math.abs(v) > thruster.force[way]) thruster.force[way] = Math.abs(v); });
-    return kindOf(thruster) === thruster.kind ? thruster : fit(thruster);
+  function push(one, now) {
+    fit(one, now);
+    const { unit, limits, thrust, command, azimuth, azimuthCommand, force, state } = now, turns = one.kind === "azimuth", byForce = turns && !unit.azimuth;
+    const share = (kN) => tenth(Math.max(-100, Math.min(100, (100 * kN) / ((kN < 0 ? -limits[0] : limits[1]) || 1))));
+    one.figure.className = `instrument ${one.kind} ${state}`;
+    Object.assign(one.component, { state: state === "failed" ? "off" : "active", thrust: share(byForce ? Math.hypot(...force) : thrust) ?? 0, [turns ? "thrustSetpoint" : "setpoint"]: share(command) });
+    if (turns) Object.assign(one.component, { angle: tenth(wrapped(byForce ? (Math.atan2(force[1], force[0]) * 180) / Math.PI : azimuth)) ?? 0, angleSetpoint: tenth(wrapped(azimuthCommand)) });
   }
 
-  function push(thruster, now) {
-    const { unit, component, figure } = thruster, { limits, thrust, command, azimuth, azimuthCommand, force, state } = now;
-    figure.className = `instrument ${thruster.kind} ${state}`;
-    const turned = thruster.kind === "azimuth" && !unit.azimuth;  // shows the force itself
-    const share = (kN) => Math.max(-100, Math.min(100, (100 * kN) / ((kN < 0 ? -limits[0] : limits[1]) || 1)));
-    Object.assign(component, { state: state === "failed" ? "off" : "active", thrust: known(share(turned ? Math.hypot(...force) : thrust), 0) });
-    const angle = turned ? (Math.atan2(force[1], force[0]) * 180) / Math.PI : azimuth;
-    if (thruster.kind === "azimuth") Object.assign(component, { angle: known(wrapped(angle), 0), angleSetpoint: known(wrapped(azimuthCommand)), thrustSetpoint: known(share(command)) });
-    else component.setpoint = known(share(command));
-  }
-
-  function say(thruster, { thrust, command, azimuth, azimuthCommand, rpm, state, unit }) {
-    const rows = [["Thrust", "kN", plain(thrust, 1), unit.command && plain(command, 1)]];
-    if (unit.azimuth) rows.push(["Azimuth", "", `${plain(wrapped(azimuth), 0)}°`, unit.azimuth_command && `${plain(wrapped(azimuthCommand), 0)}°`]);
-    if (unit.rpm) rows.push(["Shaft", "rpm", plain(rpm, 0)]);
-    if (state !== "runs") rows.push([state === "failed" ? "failed" : "at its limit", "", ""]);
-    thruster.tell(rows);
-  }
+  const angle = (degrees) => `${plain(wrapped(degrees), 0)}°`;  // from the bow, as in the diagram
+  const numbers = ({ unit, thrust, command, azimuth, azimuthCommand, rpm, state }) => [
+    ["Thrust", "kN", plain(thrust, 1), unit.command && plain(command, 1)],
+    ...(unit.azimuth ? [["Azimuth", "", angle(azimuth), unit.azimuth_command && angle(azimuthCommand)]] : []),
+    ...(unit.rpm ? [["Shaft", "rpm", plain(rpm, 0)]] : []),
+    ...(state === "runs" ? [] : [[state === "failed" ? "failed" : "at its limit", "", ""]]),
+  ];
 
   mount();
   addEventListener("scene-vessel", mount);
 
-  // A component takes 1 ms to draw: while the run plays one of them a frame, in turn, else all.
+  // A component takes 1 ms to draw: while the run plays one of them a frame, in turn; else all.
   let turn = 0;
   scene.paints((states) => {
-    const flows = states.find((one) => one.flows.length)?.flows ?? [], draws = [];
-    chosen(states).forEach(({ run, state }, k) => {
-      draws.push(() => steer(compasses[k], run, state, states[k].flows.length ? states[k].flows : flows));
-      for (const now of state?.units ?? []) if (thrusters.has(now.unit)) draws.push(() => push(refitted(thrusters.get(now.unit), now.force), now));
+    const draws = states.flatMap((one, k) => {
+      const state = scene.of(one), flows = one.flows.length ? one.flows : states.flatMap((other) => other.flows);
+      return [() => steer(compasses[k], one.run, state, flows), ...(state?.units ?? []).map((now) => () => push(thrusters.get(now.unit), now))];
     });
     turn += 1;
     for (const draw of scene.playing ? [draws[turn % draws.length]] : draws) draw();
     return [];
   });
-  scene.writes((states) => chosen(states).forEach(({ state }, k) => {
-    compasses[k].tell(state ? bearings(state) : [["not in the run at this time", "", ""]]);
-    for (const now of state?.units ?? []) if (thrusters.has(now.unit)) say(thrusters.get(now.unit), now);
+  scene.writes((states) => states.forEach((one, k) => {
+    const state = scene.of(one);
+    tell(compasses[k], state ? bearings(state) : [["not in the run at this time", "", ""]]);
+    for (const now of state?.units ?? []) if (thrusters.get(now.unit).component) tell(thrusters.get(now.unit), numbers(now));
   }));
 
   // ---- figures
@@ -165,7 +145,7 @@
     const line = (name, now, want, by) => rows.push([name, now, ...(word ? [want, by] : [])]);
     line("North [m]", plain(state.north), plain(aim.north), signed(off?.north));
     line("East [m]", plain(state.east), plain(aim.east), signed(off?.east));
-    line("Heading", three(state.heading), Number.isFinite(aim.heading) ? three(aim.heading) : "–", Number.isFinite(off?.heading) ? `${signed(off.heading, 1)}°` : "–");
+    line("Heading", three(state.heading), three(aim.heading), Number.isFinite(off?.heading) ? `${signed(off.heading, 1)}°` : "–");
     if (off) rows.push(["Off", `${plain(off.distance)} m: ${plain(Math.abs(off.ahead))} ${off.ahead < 0 ? "aft" : "fwd"}, ${plain(Math.abs(off.starboard))} ${off.starboard < 0 ? "port" : "stbd"}`]);
     if (Number.isFinite(state.u + state.v)) rows.push(["Speed", `${plain(Math.hypot(state.u, state.v))} m/s: ${plain(Math.abs(state.u))} ${state.u < 0 ? "aft" : "fwd"}, ${plain(Math.abs(state.v))} ${state.v < 0 ? "port" : "stbd"}`]);
     if (Number.isFinite(state.r)) rows.push(["Turning", `${plain(Math.abs(state.r))}°/s to ${state.r < 0 ? "port" : "stbd"}`]);

@@ -11,9 +11,9 @@ const INSTRUMENTS = ["azimuth-thruster", "thruster", "compass"];
 const FILE = "openbridge.min.js";
 
 // The instruments, with all that they import.
-writeFileSync("entry.js", INSTRUMENTS.map((name) => `import "${PACKAGE}/navigation-instruments/${name}/${name}.js";\n`).join(""));
+writeFileSync("entry.mjs", INSTRUMENTS.map((name) => `import "${PACKAGE}/navigation-instruments/${name}/${name}.js";\n`).join(""));
 const options = ["--bundle", "--minify", "--format=iife", "--target=es2022", "--legal-comments=none", `--outfile=${FILE}`];
-execFileSync("node_modules/@esbuild/linux-x64/bin/esbuild", ["entry.js", ...options], { stdio: "inherit" });
+execFileSync("node_modules/@esbuild/linux-x64/bin/esbuild", ["entry.mjs", ...options], { stdio: "inherit" });
 const script = readFileSync(FILE, "utf8");
 
 // The variables that they read, and those that these are made of.
@@ -25,7 +25,13 @@ const readBy = (text) => [...text.matchAll(/var\(\s*(--[\w-]+)/g)].map(([, name]
 const used = new Set(readBy(script));
 for (const { variables } of palettes) for (const name of used) for (const [key, value] of variables) if (key === name) readBy(value).forEach((other) => used.add(other));
 
-// A style sheet that the script adds to the page.
+// What the script adds: a style sheet of the page with the palettes, and one of each component for readers who want no motion.
 const rules = palettes.map(({ selector, variables }) => `${selector}{${variables.filter(([name]) => used.has(name)).map((pair) => pair.join(":")).join(";")}}`);
-const sheet = `{const sheet=new CSSStyleSheet();sheet.replaceSync(${JSON.stringify(rules.join(""))});document.adoptedStyleSheets.push(sheet);}\n`;
-writeFileSync(FILE, script + sheet);
+const still = "@media (prefers-reduced-motion:reduce){*{transition:none!important;animation:none!important}}";
+const tags = ["watch", ...INSTRUMENTS].map((name) => `obc-${name}`);
+writeFileSync(FILE, `${script}{
+const sheet=(rules)=>{const made=new CSSStyleSheet();made.replaceSync(rules);return made;};
+document.adoptedStyleSheets.push(sheet(${JSON.stringify(rules.join(""))}));
+for(const tag of ${JSON.stringify(tags)})customElements.get(tag).elementStyles.push(sheet(${JSON.stringify(still)}));
+}
+`);
