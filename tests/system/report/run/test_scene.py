@@ -152,7 +152,9 @@ def test_force_vector_has_length_and_direction_of_the_thrust(page, table, t):
         north = hull["position"][0] + np.cos(heading) * forward - np.sin(heading) * starboard
         east = hull["position"][1] + np.sin(heading) * forward + np.cos(heading) * starboard
         assert item["from"] == pytest.approx([north, east], abs=0.01)
-    assert "tunnel" not in forces  # it has no azimuth and says no direction: an instrument, no vector
+    assert (
+        "tunnel" not in forces
+    )  # it has no azimuth and says no direction: an instrument, no vector
 
 
 def test_limits_and_watch_circle_are_drawn_about_their_points(page, table):
