@@ -15,7 +15,7 @@
   function instrument(place, run, title, caption = title) {
     const dial = made("div", { className: "dial" }), name = made("figcaption", { textContent: caption }), rows = made("table");
     if (two) name.style.color = `var(--${run.colour})`;
-    const figure = made("figure", { className: "instrument" }, dial, made("div", {}, name, rows));
+    const figure = made("figure", { className: "instrument" }, name, dial, rows);
     place.append(figure);
     return { figure, dial, rows, title };
   }
