@@ -97,7 +97,7 @@
 
   const angle = (degrees) => `${plain(wrapped(degrees), 0)}°`;  // from the bow, as in the diagram
   const numbers = ({ unit, thrust, command, azimuth, azimuthCommand, rpm, state }) => [
-    ["Thrust", "kN", plain(thrust, 1), unit.command && plain(command, 1)],
+    [report.data.bars ? "Force" : "Thrust", "kN", plain(thrust, 1), unit.command && plain(command, 1)],
     ...(unit.azimuth ? [["Azimuth", "", angle(azimuth), unit.azimuth_command && angle(azimuthCommand)]] : []),
     ...(unit.rpm ? [["Shaft", "rpm", plain(rpm, 0)]] : []),
     ...(state === "runs" ? [] : [[state === "failed" ? "failed" : "at its limit", "", ""]]),
