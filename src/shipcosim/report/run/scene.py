@@ -287,6 +287,7 @@ def _unit(unit: DrawnThruster, columns: _Columns, to_scale: bool) -> JsonObject 
         "command": columns.add(unit.thrust_command, "kN"),
         "azimuth": columns.add(unit.azimuth, "deg", 0.1),
         "azimuth_command": columns.add(unit.azimuth_command, "deg", 0.1),
+        "rpm": columns.add(unit.rpm, "rpm"),
         "force": _force(unit, columns),
         "place": unit.place if to_scale else None,
         "limits": None if unit.limits is None else [limit / 1000.0 for limit in unit.limits],

@@ -47,7 +47,7 @@ class DrawnThruster:
     thrust : str
     force : (str, str), optional
         Its load on the ship, forward and to starboard.
-    azimuth, thrust_command, azimuth_command, saturated, failed, available : str, optional
+    azimuth, rpm, thrust_command, azimuth_command, saturated, failed, available : str, optional
     place : (float, float), optional
         Forward and to starboard. [m, m]
     limits : (float, float), optional
@@ -60,6 +60,7 @@ class DrawnThruster:
     thrust: str
     force: tuple[str, str] | None
     azimuth: str | None
+    rpm: str | None
     thrust_command: str | None
     azimuth_command: str | None
     saturated: str | None
@@ -332,6 +333,7 @@ def find_units(names: Iterable[Hashable], known: Mapping[str, Any]) -> tuple[Dra
                 thrust=join(unit, "thrust"),
                 force=(x, y) if x and y else None,
                 azimuth=azimuth,
+                rpm=roles.signal(unit, "rpm"),
                 thrust_command=roles.command(unit, "thrust"),
                 azimuth_command=roles.command(unit, "azimuth"),
                 saturated=roles.signal(unit, "saturated"),

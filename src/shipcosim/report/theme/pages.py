@@ -39,8 +39,8 @@ def _environment() -> Environment:
     )
     made.globals |= {
         "asset": _asset,
+        "library": _library,
         "packed": packed_data,
-        "plotly": _plotly,
         "version": shipcosim.__version__,
     }
     return made
@@ -52,8 +52,7 @@ def _asset(path: str) -> Markup:
 
 
 @cache
-def _plotly() -> str:
-    """The plotting library, compressed, with the licences of all its parts."""
-    return packed_text(
-        f"/*{_asset('theme/vendor/LICENSES.txt')}*/{_asset('theme/vendor/plotly.min.js')}"
-    )
+def _library(name: str) -> str:
+    """A library of `theme/vendor`, compressed, with the licences of all its parts."""
+    licences = _asset(f"theme/vendor/{name.upper()}-LICENSES.txt")
+    return packed_text(f"/*{licences}*/{_asset(f'theme/vendor/{name}.min.js')}")

@@ -199,9 +199,7 @@ def test_measured_ship_and_her_simulations_sail_where_the_log_and_the_tracks_hav
             at = np.interp(after, one["time"].values, one["north"].values[segment])
             assert float(text.replace("−", "-")) == pytest.approx(at, abs=0.02)
     # The arrow of the missing force has the size of the figure below.
-    assert page.ask("return scene.drawn.filter(d => d.what === 'bar').map(d => d.unit)") == [
-        "missing"
-    ]
+    assert page.text("#scene-thrusters figcaption") == "measured: missing"
 
 
 def test_page_is_small(file):

@@ -5,6 +5,7 @@ import tomllib
 
 import numpy as np
 import pytest
+from report.run.test_instruments import PALETTES, instruments, number
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 
@@ -145,6 +146,30 @@ def test_a_reader_runs_pauses_fails_and_undoes_by_the_pages_own_buttons(desk):
     assert desk.ask("return desk.live.time.last") == still
     assert desk.errors() == []
     assert desk.requests() == []
+
+
+@pytest.mark.parametrize("palette", PALETTES)
+def test_instruments_show_the_signals_of_the_running_system(desk, palette):
+    desk.ask("desk.live.reach(90); scene.grown(90); scene.go(90)")
+    desk.wait("return scene.frames > 1 && scene.drawn.length > 0 && scene.time === 90")
+    desk.ask("scene.paint()")
+    try:
+        shown = instruments(desk, palette)
+    finally:
+        desk.ask("localStorage.removeItem('shipcosim-palette')")
+    now = lambda name: desk.ask("return desk.live.value(arguments[0])", name)  # noqa: E731
+    heading = np.degrees(now("vessel.psi")) % 360
+    assert shown["compass"]["heading"] == pytest.approx(heading, abs=0.06)
+    for name in ("port", "starboard", "tunnel"):
+        unit, thrust = shown[name], now(f"{name}.thrust") / 1000.0
+        assert set(unit["colours"]) == {PALETTES[palette]}
+        assert number(unit["label"], "Thrust") == pytest.approx(thrust, abs=0.06)
+        assert number(unit["label"], "Shaft") == pytest.approx(now(f"{name}.rpm"), abs=0.6)
+        if name != "tunnel":
+            azimuth = np.degrees(now(f"{name}.azimuth"))
+            assert unit["angle"] == pytest.approx(azimuth, abs=0.06)
+    assert shown["tunnel"]["kind"] == "obc-thruster"
+    assert desk.errors() == []
 
 
 def test_as_fast_as_it_goes_from_the_start_and_back_within_bounds(desk):

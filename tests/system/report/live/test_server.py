@@ -14,6 +14,7 @@ import c_fmus
 import numpy as np
 import pytest
 from report.live.test_live import SAME, largest_difference, repeated
+from report.run.test_instruments import instruments
 from typer.testing import CliRunner
 from websockets.sync.client import connect
 
@@ -120,6 +121,10 @@ def test_what_is_done_at_a_server_is_repeated_by_the_saved_scenario(served, brow
     worst, count = largest_difference(craft, table)
     assert count > 15
     assert worst < SAME
+    # Its instruments are drawn under the server's content security policy, too.
+    craft.ask("scene.go(desk.live.end); scene.paint()")
+    heading = np.degrees(craft.ask("return desk.live.value('craft.psi')")) % 360
+    assert instruments(craft)["compass"]["heading"] == pytest.approx(heading, abs=0.06)
     assert craft.errors() == []
     # Other start values start another run.
     seed = "desk.live.about.starts.find(([, name]) => name === 'craft.seed')[0]"

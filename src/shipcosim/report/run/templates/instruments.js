@@ -1,79 +1,141 @@
-// The instruments of the scene: heading scale with wind, current and waves, figures, and the load of every thruster.
+// The instruments of the scene: OpenBridge's compass and thrusters with their numbers as text, and the figures.
 (() => {
   if (!scene) return;
-  const { runs, colour, compass, wrapped, arrow, stroke } = scene, two = runs.length > 1;
-  const three = (degrees) => `${compass(+degrees.toFixed(1)).toFixed(1).padStart(5, "0")}°`;
+  const { runs, compass, wrapped } = scene, two = runs.length > 1;
+  const three = (degrees) => (Number.isFinite(degrees) ? `${compass(+degrees.toFixed(1)).toFixed(1).padStart(5, "0")}°` : "–");
   const whole = (degrees) => `${String(Math.round(compass(degrees)) % 360).padStart(3, "0")}°`;
   const signed = (v, digits = 2) => (Number.isFinite(v) ? (v < -0.5 * 10 ** -digits ? "−" : v > 0.5 * 10 ** -digits ? "+" : " ") + plain(Math.abs(v), digits) : "–");
-  const plain = (v, digits = 2) => (Number.isFinite(v) ? (Math.abs(v) >= 1e6 ? v.toExponential(2) : v.toFixed(digits)).replace(/^-(0\.0*)$/, "$1").replace("-", "−") : "–");
-  const FLOW = { wind: "sky", current: "blue", waves: "green" };
+  const plain = (v, digits = 2) => (Number.isFinite(v) ? (Math.abs(v) >= 1e6 ? v.toExponential(2) : v.toFixed(digits)).replace(/^-(0\.?0*)$/, "$1").replace("-", "−") : "–");
 
-  // ---- heading scale
+  // ---- an instrument: a component of OpenBridge, and a table of its numbers
 
-  const dial = scene.canvas("compass", (width) => Math.min(width, 250)), layer = scene.layer();
+  const made = (tag, properties = {}, ...parts) => { const found = Object.assign(document.createElement(tag), properties); found.append(...parts); return found; };
+  const tenth = (value) => (Number.isFinite(value) ? Math.round(10 * value) / 10 : undefined);  // finer steps nobody sees, and each draws the component anew
 
-  function scale(c, x, y, R, on) {
-    c.beginPath(); c.arc(x, y, R, 0, 2 * Math.PI); c.fillStyle = colour("sea"); c.fill(); stroke(c, "faint", 1);
-    c.beginPath();
-    for (let a = 0; a < 360; a += 10) { c.moveTo(...on(a, R)); c.lineTo(...on(a, R - (a % 30 ? 5 : 10))); }
-    stroke(c, "soft", 1);
-    c.textAlign = "center"; c.textBaseline = "middle";
-    for (let a = 0; a < 360; a += 30) {
-      c.fillStyle = colour(a % 90 ? "soft" : "ink");
-      c.fillText(a % 90 ? String(a).padStart(3, "0") : "NESW"[a / 90], ...on(a, R + 12));
-    }
+  function instrument(place, run, title, caption = title) {
+    const dial = made("div", { className: "dial" }), name = made("figcaption", { textContent: caption }), rows = made("table");
+    if (two) name.style.color = `var(--${run.colour})`;
+    const figure = made("figure", { className: "instrument" }, name, dial, rows);
+    place.append(figure);
+    return { figure, dial, rows, title };
+  }
+  const put = (one, tag, properties) => one.dial.replaceChildren((one.component = made(tag, { priority: "enhanced", role: "img", ...properties })));
+
+  const has = (text) => Boolean(text) && text !== "–";
+  function tell({ component, rows, title }, texts) {  // each of name, unit, value and set point
+    tabulate(rows, texts.map(([what, unit, now, wanted]) => [unit ? `${what} [${unit}]` : what, now, ...(has(wanted) ? [`set ${wanted}`] : [])]));
+    component.ariaLabel = `${title}: ${texts.map(([what, unit, now, wanted]) => `${what} ${now} ${unit}${has(wanted) ? `, set point ${wanted} ${unit}` : ""}`.trim()).join(", ")}`;
   }
 
+  // ---- compass
+
+  const BEAUFORT = [0.3, 1.6, 3.4, 5.5, 8, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7];  // m/s from which each force holds, as the WMO has them
+  const CURRENT = 0.5, UNDER_WAY = 0.1;  // m/s: an arrow of the current, up to four; the least at which a ship has a course; both assumed
+  const SECTOR = 30;  // deg that are marked beyond a limit of the heading alarm
+
+  const compasses = runs.map((run) => instrument(document.getElementById("scene-compasses"), run, two ? `Compass, ${run.label}` : "Compass", two ? run.label : ""));
+  // Letters inside, where no arrow lies over them, in place of a ship; no ring that turns by itself.
+  for (const one of compasses) put(one, "obc-compass", { showLabels: true, tickmarksInside: true, vesselImage: "", rotType: undefined });
+
+  const heading = ({ aims }) => (aims.reference || aims["set point"])?.heading;
+  const course = ({ heading, u, v }) => (Math.hypot(u, v) > UNDER_WAY ? heading + (Math.atan2(v, u) * 180) / Math.PI : NaN);
+
+  function steer({ component, figure }, run, state, flows) {
+    figure.classList.toggle("gone", !state);
+    if (!state) return;
+    const aim = heading(state), [wind, current] = ["wind", "current"].map((what) => flows.find((flow) => flow.what === what && flow.size > 0) ?? {});
+    const from = ({ degrees, sense }) => tenth(compass(degrees + (sense === "from" ? 0 : 180))) ?? null;
+    Object.assign(component, {
+      heading: tenth(compass(state.heading)), courseOverGround: tenth(compass(course(state))) ?? tenth(compass(state.heading)), headingSetpoint: tenth(compass(aim)) ?? null,
+      windSpeed: BEAUFORT.filter((least) => wind.size >= least).length, windFromDirection: from(wind),
+      currentSpeed: Math.min(Math.ceil(current.size / CURRENT), 4), currentFromDirection: from(current),
+    });
+    // The component compares these angles with the heading as they are: they must not lie a turn from it.
+    const limit = run.watch.heading, about = tenth(compass(state.heading) + wrapped(aim - state.heading));
+    if (!limit || component.about === about) return;
+    component.about = about;
+    component.headingAdvices = [limit, -limit - SECTOR].map((least) => ({ minAngle: about + least, maxAngle: about + least + SECTOR, type: "caution", hinted: true }));
+  }
+
+  const bearings = (state) => [["Heading", "", three(state.heading), three(heading(state))], ["Course", "", three(course(state))]];
+
+  // ---- thrusters
+
+  const place = document.getElementById("scene-thrusters"), thrusters = new Map();
+  place.ariaLabel = report.data.bars ?? "Thrusters";  // a diagnosis shows another force
+
+  function mount() {
+    place.replaceChildren(...(report.data.bars ? [made("h3", { textContent: report.data.bars })] : []));
+    thrusters.clear();
+    const units = runs.flatMap((run) => (scene.vesselOf(run)?.units ?? []).map((unit) => ({ run, unit }))), names = units.map(({ unit }) => unit.name);
+    units.sort((a, b) => names.indexOf(a.unit.name) - names.indexOf(b.unit.name));  // those of two runs next to each other
+    for (const { run, unit } of units) {
+      const most = (unit.force ?? []).map((name) => run.columns[name].reduce((largest, v) => (Math.abs(v) > largest ? Math.abs(v) : largest), 0));
+      thrusters.set(unit, { ...instrument(place, run, two ? `${run.label}: ${unit.name}` : unit.name), most });
+    }
+    place.hidden = !thrusters.size;
+  }
+
+  // What turns is an azimuth thruster, what pushes sideways a tunnel: by the force, where no signal says it. A run that goes on shows it late.
+  function fit(one, { unit, force }) {
+    one.most = one.most.map((largest, way) => (Math.abs(force[way]) > largest ? Math.abs(force[way]) : largest));
+    const [forward = 0, starboard = 0] = one.most, kind = unit.azimuth || Math.min(forward, starboard) > 0.1 * Math.max(forward, starboard) ? "azimuth" : starboard > forward ? "tunnel" : "fixed";
+    if (one.kind === kind) return;
+    one.kind = kind;
+    if (kind === "azimuth") put(one, "obc-azimuth-thruster", { angleAdvices: unit.sectors.map(([from, to]) => ({ minAngle: from, maxAngle: to, type: "caution", hinted: true })) });
+    else put(one, "obc-thruster", { tunnel: kind === "tunnel" });
+  }
+
+  function push(one, now) {
+    fit(one, now);
+    const { unit, limits, thrust, command, azimuth, azimuthCommand, force, state } = now, turns = one.kind === "azimuth", byForce = turns && !unit.azimuth;
+    const share = (kN) => tenth(Math.max(-100, Math.min(100, (100 * kN) / ((kN < 0 ? -limits[0] : limits[1]) || 1))));
+    one.figure.className = `instrument ${one.kind} ${state}`;
+    Object.assign(one.component, { state: state === "failed" ? "off" : "active", thrust: share(byForce ? Math.hypot(...force) : thrust) ?? 0, [turns ? "thrustSetpoint" : "setpoint"]: share(command) });
+    if (turns) Object.assign(one.component, { angle: tenth(wrapped(byForce ? (Math.atan2(force[1], force[0]) * 180) / Math.PI : azimuth)) ?? 0, angleSetpoint: tenth(wrapped(azimuthCommand)) });
+  }
+
+  const angle = (degrees) => `${plain(wrapped(degrees), 0)}°`;  // from the bow, as in the diagram
+  const numbers = ({ unit, thrust, command, azimuth, azimuthCommand, rpm, state }) => [
+    [report.data.bars ? "Force" : "Thrust", "kN", plain(thrust, 1), unit.command && plain(command, 1)],
+    ...(unit.azimuth ? [["Azimuth", "", angle(azimuth), unit.azimuth_command && angle(azimuthCommand)]] : []),
+    ...(unit.rpm ? [["Shaft", "rpm", plain(rpm, 0)]] : []),
+    ...(state === "runs" ? [] : [[state === "failed" ? "failed" : "at its limit", "", ""]]),
+  ];
+
+  mount();
+  addEventListener("scene-vessel", mount);
+
+  // A component takes 1 ms to draw: while the run plays one of them a frame, in turn; else all.
+  let turn = 0;
   scene.paints((states) => {
-    const target = dial(), { context: c, width, height } = target, x = width / 2, y = height / 2, R = Math.min(width, height) / 2 - 24, drawn = [];
-    const on = (degrees, radius) => [x + radius * Math.sin((degrees * Math.PI) / 180), y - radius * Math.cos((degrees * Math.PI) / 180)];
-    layer(target, "", (still) => scale(still, x, y, R, on));
-    const main = states.find((state) => state.flows.length) || states[0];
-    for (const flow of main.flows) {
-      if (!(flow.size > 0) || !Number.isFinite(flow.degrees)) continue;
-      const from = flow.sense === "from", inner = { wind: 0.62, waves: 0.4, current: 0.36 }[flow.what] * R, outer = { wind: 0.9, waves: 0.6, current: 0.66 }[flow.what] * R;
-      const tail = on(flow.degrees, from ? outer : inner), tip = on(flow.degrees, from ? inner : outer);
-      arrow(c, ...tail, ...tip, FLOW[flow.what], 4);
-      drawn.push({ what: "flow", of: flow.what, degrees: flow.degrees, sense: flow.sense, size: flow.size });
-    }
-    for (const { run, state } of chosen(states)) {
-      const length = 0.3 * R, wide = Math.min(length * (state.vessel.size[1] / state.vessel.size[0]), 0.8 * length), a = (state.heading * Math.PI) / 180;
-      const [f, b] = state.vessel.outline, [l, w] = state.vessel.size;
-      c.beginPath();
-      f.forEach((fore, k) => { const u = (fore / l) * 2 * length, v = (b[k] / w) * 2 * wide; c.lineTo(x + Math.sin(a) * u + Math.cos(a) * v, y - Math.cos(a) * u + Math.sin(a) * v); });
-      c.closePath(); c.fillStyle = colour(`${run.colour}/0.3`); c.fill(); stroke(c, run.colour, 1.5);
-      const aim = state.aims.reference || state.aims["set point"];
-      if (aim && Number.isFinite(aim.heading)) {
-        if (run.watch.heading) { c.beginPath(); for (const side of [-1, 1]) { c.moveTo(...on(aim.heading + side * run.watch.heading, R)); c.lineTo(...on(aim.heading + side * run.watch.heading, R - 16)); } stroke(c, Math.abs(state.off.heading) > run.watch.heading ? "alarm" : "caution", 2); }
-        wedge(c, on, aim.heading, R, R - 13); stroke(c, two ? run.colour : "orange", 2);
-        drawn.push({ what: "pointer", of: "aim", run: run.label, degrees: compass(aim.heading) });
-      }
-      wedge(c, on, state.heading, R - 1, R - 15); c.fillStyle = colour(run.colour); c.fill();
-      c.beginPath(); c.moveTo(...on(state.heading, 2 * length * 0.5)); c.lineTo(...on(state.heading, R - 15)); stroke(c, run.colour, 1.5);
-      drawn.push({ what: "pointer", of: "heading", run: run.label, degrees: compass(state.heading) });
-    }
-    return drawn;
+    const draws = states.flatMap((one, k) => {
+      const state = scene.of(one), flows = one.flows.length ? one.flows : states.flatMap((other) => other.flows);
+      return [() => steer(compasses[k], one.run, state, flows), ...(state?.units ?? []).map((now) => () => push(thrusters.get(now.unit), now))];
+    });
+    turn += 1;
+    for (const draw of scene.playing ? [draws[turn % draws.length]] : draws) draw();
+    return [];
   });
-
-  const chosen = (states) => states.map((one) => ({ run: one.run, state: scene.of(one) })).filter(({ state }) => state);
-
-  function wedge(c, on, degrees, outer, inner) {
-    c.beginPath(); c.moveTo(...on(degrees, outer)); c.lineTo(...on(degrees - 5, inner)); c.lineTo(...on(degrees + 5, inner)); c.closePath();
-  }
+  scene.writes((states) => states.forEach((one, k) => {
+    const state = scene.of(one);
+    tell(compasses[k], state ? bearings(state) : [["not in the run at this time", "", ""]]);
+    for (const now of state?.units ?? []) if (thrusters.get(now.unit).component) tell(thrusters.get(now.unit), numbers(now));
+  }));
 
   // ---- figures
 
-  const table = document.getElementById("scene-figures");
+  const FLOWS = ["wind", "current", "waves"], table = document.getElementById("scene-figures");
   scene.writes((states) => {
-    const rows = two ? compared(states) : single(chosen(states)[0]?.state);
-    for (const what of Object.keys(FLOW)) {
+    const rows = two ? compared(states) : single(scene.of(states[0]));
+    for (const what of FLOWS) {
       const found = states.map(({ flows }) => flows.find((flow) => flow.what === what));
       if (!found.some(Boolean)) continue;
       const said = found.map((flow) => (flow ? `${plain(flow.size, 1)} ${flow.unit} ${flow.sense} ${whole(flow.degrees)}` : "–"));
       const same = said.every((text) => text === said[0]);
       rows.push([what[0].toUpperCase() + what.slice(1), same ? said[0] : said.map((text, k) => `${runs[k].label} ${text}`).join(", ")]);
     }
-    write(rows);
+    tabulate(table, rows, 4);
   });
 
   function single(state) {
@@ -83,7 +145,7 @@
     const line = (name, now, want, by) => rows.push([name, now, ...(word ? [want, by] : [])]);
     line("North [m]", plain(state.north), plain(aim.north), signed(off?.north));
     line("East [m]", plain(state.east), plain(aim.east), signed(off?.east));
-    line("Heading", three(state.heading), Number.isFinite(aim.heading) ? three(aim.heading) : "–", Number.isFinite(off?.heading) ? `${signed(off.heading, 1)}°` : "–");
+    line("Heading", three(state.heading), three(aim.heading), Number.isFinite(off?.heading) ? `${signed(off.heading, 1)}°` : "–");
     if (off) rows.push(["Off", `${plain(off.distance)} m: ${plain(Math.abs(off.ahead))} ${off.ahead < 0 ? "aft" : "fwd"}, ${plain(Math.abs(off.starboard))} ${off.starboard < 0 ? "port" : "stbd"}`]);
     if (Number.isFinite(state.u + state.v)) rows.push(["Speed", `${plain(Math.hypot(state.u, state.v))} m/s: ${plain(Math.abs(state.u))} ${state.u < 0 ? "aft" : "fwd"}, ${plain(Math.abs(state.v))} ${state.v < 0 ? "port" : "stbd"}`]);
     if (Number.isFinite(state.r)) rows.push(["Turning", `${plain(Math.abs(state.r))}°/s to ${state.r < 0 ? "port" : "stbd"}`]);
@@ -104,57 +166,16 @@
     return rows;
   }
 
-  function write(rows) {  // cells that stay are not made again
+  function tabulate(table, rows, columns = 3) {  // cells that stay are not made again; the last one spans the rest
     while (table.rows.length > rows.length) table.deleteRow(-1);
     rows.forEach((texts, k) => {
       const row = table.rows[k] || table.insertRow();
       while (row.cells.length > texts.length) row.deleteCell(-1);
       texts.forEach((text, i) => {
-        const cell = row.cells[i] || row.insertCell(), span = i === texts.length - 1 ? 4 - i : 1;
+        const cell = row.cells[i] || row.insertCell(), span = i === texts.length - 1 ? columns - i : 1;
         if (cell.textContent !== text) cell.textContent = text;
         if (cell.colSpan !== span) cell.colSpan = span;
       });
     });
-  }
-
-  // ---- thrusters
-
-  const units = () => runs.flatMap((run) => scene.vesselOf(run)?.units ?? []);
-  const names = () => [...new Set(units().map((unit) => unit.name))];
-  const BAR = two ? 44 : 30, bars = scene.canvas("thrust", () => names().length * BAR + (names().length ? 24 : 0));
-
-  scene.paints((states) => {
-    const { context: c, width } = bars(), drawn = [], all = names();
-    if (!all.length) return drawn;
-    const left = Math.min(90, 0.28 * width), right = width - 104, middle = (left + right) / 2, half = (right - left) / 2;
-    c.textBaseline = "middle"; c.fillStyle = colour("soft"); c.textAlign = "left"; c.fillText(report.data.bars ?? "Thrusters", 0, 10);
-    const tall = two ? 12 : 14;
-    all.forEach((name, k) => {
-      const y = 24 + k * BAR + BAR / 2;
-      c.fillStyle = colour("ink"); c.textAlign = "left"; c.fillText(fitted(c, name, left - 8), 0, y);
-      chosen(states).forEach(({ run, state }, rank) => {
-        const found = state.units.find(({ unit }) => unit.name === name);
-        if (!found) return;
-        const { thrust, command, limits, azimuth, state: how, unit } = found, most = Math.max(Math.abs(limits[0]), limits[1]) || 1, top = y - (two ? (rank ? -3 : tall + 3) : tall / 2);
-        const at = (kN) => middle + (half * Math.max(-1, Math.min(1, kN / most)));
-        c.fillStyle = colour("chart-grid"); c.fillRect(at(limits[0]), top, at(limits[1]) - at(limits[0]), tall);
-        c.fillStyle = colour(how === "runs" ? run.colour : how === "limit" ? "caution" : "alarm");
-        if (Number.isFinite(thrust)) c.fillRect(Math.min(middle, at(thrust)), top, Math.abs(at(thrust) - middle), tall);
-        if (how === "failed") c.fillRect(middle - 2, top, 4, tall);
-        c.beginPath(); c.moveTo(middle, top - 2); c.lineTo(middle, top + tall + 2); stroke(c, "soft", 1);
-        if (Number.isFinite(command)) { c.beginPath(); c.moveTo(at(command), top + tall / 2); c.lineTo(at(command) - 4, top - 4); c.lineTo(at(command) + 4, top - 4); c.closePath(); c.fillStyle = colour("ink"); c.fill(); }
-        c.fillStyle = colour(how === "runs" ? "ink" : how === "limit" ? "caution-text" : "alarm"); c.textAlign = "right";
-        const angle = Number.isFinite(azimuth) && !two ? ` ${plain(wrapped(azimuth), 0)}°` : "";  // from the bow, as in the diagram
-        c.fillText(how === "failed" ? "failed" : `${plain(thrust, 1)} kN${angle}`, width, two ? top + tall / 2 : y);
-        drawn.push({ what: "bar", run: run.label, unit: unit.name, thrust, command, share: thrust / (thrust < 0 ? -limits[0] : limits[1]), from: middle, to: at(thrust), state: how });
-      });
-    });
-    return drawn;
-  });
-
-  function fitted(c, text, width) {  // what is too long loses its middle: names begin, or end, alike
-    let shown = text;
-    for (let n = text.length - 2; n > 3 && c.measureText(shown).width > width; n--) shown = `${text.slice(0, Math.ceil(n / 2))}…${text.slice(text.length - Math.floor(n / 2))}`;
-    return shown;
   }
 })();

@@ -75,7 +75,7 @@ const scene = (() => {
     const read = (name) => value(run, name, where), on = (name) => held(run, name, where) > 0.5;
     const limits = unit.limits || [-unit.largest, unit.largest];
     return {
-      unit, limits, thrust: read(unit.thrust), command: read(unit.command), azimuth: read(unit.azimuth), azimuthCommand: read(unit.azimuth_command),
+      unit, limits, thrust: read(unit.thrust), command: read(unit.command), azimuth: read(unit.azimuth), azimuthCommand: read(unit.azimuth_command), rpm: read(unit.rpm),
       force: unit.force ? unit.force.map(read) : null,
       state: on(unit.failed) || (unit.available && held(run, unit.available, where) < 0.5) ? "failed" : on(unit.saturated) ? "limit" : "runs",
     };

@@ -17,9 +17,9 @@ const report = (() => {
       return;
     }
     shared.data = await unpacked("data").json();
-    if (document.getElementById("plotly")) {
+    for (const library of ["plotly", "openbridge"].filter((id) => document.getElementById(id))) {
       const script = document.createElement("script");
-      script.textContent = await unpacked("plotly").text();
+      script.textContent = await unpacked(library).text();
       document.head.append(script);
     }
     await page();
