@@ -129,7 +129,7 @@ def test_no_number_is_a_difference(loop, make_scenario, monkeypatch):
     )
     comparison = compare(loop, make_scenario(1.0, 0.1))
     assert not comparison.agree and comparison.signals[0].name == "law.y"
-    assert "is no number" in " ".join(comparison.remarks["broken"])
+    assert "is not a number" in " ".join(comparison.remarks["broken"])
 
 
 def test_engine_that_refuses_the_system_is_left_out_and_one_that_fails_counts(

@@ -130,7 +130,7 @@ def test_command_prints_the_front_the_page_marks_ours_and_a_run_is_made_again(pr
     called = CliRunner().invoke(app, command)
     assert (
         called.exit_code == 0
-        and "off_one minimised, highest maximised: of 12 trials" in called.stdout
+        and "off_one minimised, highest maximised: 2 of 12 trials are Pareto-optimal" in called.stdout
     )
     page = (project / "results/own/report.html").read_text(encoding="utf-8")
     assert "is not drawn" not in page and "sought from" in page

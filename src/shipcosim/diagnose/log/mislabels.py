@@ -152,7 +152,8 @@ def turned_axes(angle: float) -> Mislabel:
 
 
 def _turned_back(roles, angle, log):
-    return _turned_to_body(roles, *(log[role] for role in roles), angle)
+    along, across = roles
+    return _turned_to_body(roles, log[along], log[across], angle)
 
 
 def _from_bow(log):
