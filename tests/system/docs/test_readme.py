@@ -92,7 +92,7 @@ def test_the_packages_say_who_may_use_them_and_where_they_run(root):
     assert {"readme", "urls", "version"} <= set(project["dynamic"])
 
 
-def test_the_changelog_has_one_line_a_change(root):
+def test_the_changelog_has_one_line_a_change_and_500_words(root):
     """Under the four headings, of the version that CITATION.cff names."""
     text = (root / "CHANGELOG.md").read_text(encoding="utf-8")
     newest = re.split(r"(?m)^## ", text)[1]
@@ -102,3 +102,4 @@ def test_the_changelog_has_one_line_a_change(root):
     entries = newest.partition("### Breaking")[2].splitlines()
     assert [line for line in entries if line and not line.startswith(("- ", "### "))] == []
     assert [line for line in entries if len(line) > 140] == []
+    assert sum(len(re.findall(r"\S*\w\S*", line)) for line in entries) <= 500

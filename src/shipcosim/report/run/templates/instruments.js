@@ -57,7 +57,13 @@
     component.headingAdvices = [limit, -limit - SECTOR].map((least) => ({ minAngle: about + least, maxAngle: about + least + SECTOR, type: "caution", hinted: true }));
   }
 
-  const bearings = (state) => [["Heading", "", three(state.heading), three(heading(state))], ["Course", "", three(course(state))]];
+  // Its marks that need words: the sectors of the alarm, and the two kinds of arrows.
+  const bearings = (state, { watch }, flows) => [
+    ["Heading", "", three(state.heading), three(heading(state))], ["Course", "", three(course(state))],
+    ...(watch.heading ? [["Hatched", "", `alarm, ${plain(watch.heading, 0)}° off`]] : []),
+    ...(flows.some((flow) => flow.what !== "waves" && flow.size > 0) ? [["Arrows", "", "feathered wind, plain current"]] : []),
+  ];
+  const flowsOf = (one, states) => (one.flows.length ? one.flows : states.flatMap((other) => other.flows));
 
   // ---- thrusters
 
@@ -110,8 +116,8 @@
   let turn = 0;
   scene.paints((states) => {
     const draws = states.flatMap((one, k) => {
-      const state = scene.of(one), flows = one.flows.length ? one.flows : states.flatMap((other) => other.flows);
-      return [() => steer(compasses[k], one.run, state, flows), ...(state?.units ?? []).map((now) => () => push(thrusters.get(now.unit), now))];
+      const state = scene.of(one);
+      return [() => steer(compasses[k], one.run, state, flowsOf(one, states)), ...(state?.units ?? []).map((now) => () => push(thrusters.get(now.unit), now))];
     });
     turn += 1;
     for (const draw of scene.playing ? [draws[turn % draws.length]] : draws) draw();
@@ -119,7 +125,7 @@
   });
   scene.writes((states) => states.forEach((one, k) => {
     const state = scene.of(one);
-    tell(compasses[k], state ? bearings(state) : [["not in the run at this time", "", ""]]);
+    tell(compasses[k], state ? bearings(state, one.run, flowsOf(one, states)) : [["not in the run at this time", "", ""]]);
     for (const now of state?.units ?? []) if (thrusters.get(now.unit).component) tell(thrusters.get(now.unit), numbers(now));
   }));
 
