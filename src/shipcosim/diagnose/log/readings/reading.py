@@ -41,7 +41,7 @@ CONTRADICTION = "positions, heading, velocities and yaw rate contradict each oth
 DEGREE = float(np.degrees(1.0))
 
 
-class Judgement(NamedTuple):
+class LabelJudgement(NamedTuple):
     """What is wrong throughout a log, by its labels and its time base.
 
     Attributes
@@ -57,7 +57,7 @@ class Judgement(NamedTuple):
     contradiction: Finding | None = None
 
 
-def misread(log: dict, stated: dict[str, str], more: float = 0.0) -> Judgement:
+def misread(log: dict, stated: dict[str, str], more: float = 0.0) -> LabelJudgement:
     """Mistakes of units, frames, signs and of the time base that hold throughout a log.
 
     Parameters
@@ -72,18 +72,20 @@ def misread(log: dict, stated: dict[str, str], more: float = 0.0) -> Judgement:
     # The kinematic relations in the log; without any there is nothing to compare.
     evidence = evidence_of(log)
     if not evidence.position and not evidence.rate:
-        return Judgement([])  # what is usual alone says nothing
+        return LabelJudgement([])  # what is usual alone says nothing
     # Posterior of all combinations of mistakes.
     readings, unexplained = judged(evidence, changes(stated), more)
     throughout = _holds_throughout(readings[0], evidence)
     if throughout and unexplained < LEFT_OPEN:
         angle = _angle(readings[0], evidence, "latitude" in stated)
-        return Judgement(_findings(readings, unexplained, angle))
+        return LabelJudgement(_findings(readings, unexplained, angle))
     # A heading that cannot be followed as it is labelled contradicts nothing: its rows may be too far apart.
     followed = (not evidence.position or (1.0, False) in evidence.position) and (
         not evidence.rate or 1.0 in evidence.rate
     )
-    return Judgement([], _contradiction(readings, unexplained, throughout) if followed else None)
+    return LabelJudgement(
+        [], _contradiction(readings, unexplained, throughout) if followed else None
+    )
 
 
 def explained(log: dict) -> float:
