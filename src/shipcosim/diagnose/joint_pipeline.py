@@ -427,7 +427,7 @@ def remarks_on(found: JointDiagnosis) -> list[str]:
     for name, faults in found.relabelled.items():
         what = "; ".join(fault.sentence for fault in faults)
         remarks.append(
-            f"{name} is read as the other logs show ({what}): by itself it does not show it."
+            f"{name} is read as the other logs show ({what}). This log alone does not show it."
         )
     if basis is None:
         return remarks
