@@ -27,6 +27,8 @@ LINT = {
 BUILD = {"shipcosim build": [str(BIN / "shipcosim"), "build"]}
 TIMED = ["tests/bench/speed", "tests/bench/report"]
 """Tests with limits by the clock: nothing else runs beside them."""
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+"""The workers already use both cores: more threads of linear algebra would only wait for each other."""
 OTHER_PROCESSOR = {
     "OPENBLAS_CORETYPE": "Haswell",
     "MKL_ENABLE_INSTRUCTIONS": "SSE4_2",
@@ -39,10 +41,11 @@ def main(target: str) -> int:
     # Without the files of compiled code each of some hundred commands compiles all modules again.
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     if target == "quick":
-        return run(LINT | {"tests": [*TESTS, "tests/unit"]})
+        return run(LINT | {"tests": [*TESTS, "tests/unit"]}, **ONE_THREAD)
     if target == "test":
         beside = {"pyright": [str(BIN / "pyright")]}
-        return run(LINT | BUILD | {"tests": [*TESTS, "tests/unit", "tests/system", "src"]}, beside)
+        tests = {"tests": [*TESTS, "tests/unit", "tests/system", "src"]}
+        return run(LINT | BUILD | tests, beside, **ONE_THREAD)
     benches = [
         *TESTS,
         "tests/bench",

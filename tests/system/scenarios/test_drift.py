@@ -60,7 +60,7 @@ def wave_load(psi):
     )
     side = math.copysign(1.0, travel)
     fine = np.linspace(omegas[0], omegas[-1], 2000)
-    spectrum = np.array([jonswap(omega, HEIGHT, PERIOD, 3.3) for omega in fine])
+    spectrum = jonswap(fine, HEIGHT, PERIOD, 3.3)
     load = [
         np.trapezoid(2 * spectrum * np.interp(fine, omegas, at_heading[:, i]), fine)
         for i in range(3)

@@ -8,7 +8,7 @@ import pytest
 from diagnose.sea_trials import trials
 
 import shipcosim as sc
-from shipcosim.diagnose.sea_trials import study
+from shipcosim.diagnose.sea_trials import separation, study
 
 STUDY = """scenario = "fill"
 
@@ -209,13 +209,23 @@ def test_command_and_call_leave_the_same_files(name, tank, call):
 
 def write_trials(folder):
     planted = {"heavy to turn": {"vessel.inertia_yaw": 2.0 * 43e6}}
-    sc.write_table(trials.logs(planted, seed=3)["heavy to turn"], folder / "trials.csv")
+    log = trials.logs(planted, seed=3)["heavy to turn"]
+    # Its first circle is enough for a study.
+    sc.write_table(log.isel(time=slice(0, 365)), folder / "trials.csv")
 
 
 @pytest.fixture
 def studied_once(monkeypatch):
-    """Has the study of sea trials, which takes a minute, asked for the same by both fronts and worked out once."""
+    """Both fronts ask for the same study of sea trials, of few causes and next manoeuvres; it is worked out once."""
     work_out, asked = study.study, []
+    all_causes, all_manoeuvres = study.causes_of_trials, separation.catalogue
+
+    def few_causes(model, catalogue, *, orders):
+        causes = all_causes(model, catalogue, orders=orders)
+        return [one for one in causes if one.cause in ("yaw_inertia", "drift_drag")]
+
+    def few_manoeuvres(model):
+        return [one for one in all_manoeuvres(model) if "35 deg" in one.name]
 
     def studied(*arguments, **options):
         given = inspect.signature(work_out).bind(*arguments, **options).arguments
@@ -226,6 +236,8 @@ def studied_once(monkeypatch):
         return asked[1]
 
     monkeypatch.setattr(study, "study", studied)
+    monkeypatch.setattr(study, "causes_of_trials", few_causes)
+    monkeypatch.setattr(separation, "catalogue", few_manoeuvres)
     return asked
 
 
