@@ -139,3 +139,22 @@ def as_written(record):
         name: getattr(hint, "__forward_arg__", hint)
         for name, hint in record.__annotations__.items()
     }
+
+
+@pytest.mark.parametrize("wrong", [float("nan"), [1.0], {"s": 1}])
+@pytest.mark.parametrize("name", ["start_time", "until", "max_gap", "timeout"])
+def test_a_time_that_is_none_is_refused_by_name(name, wrong):
+    more = {
+        "timeout": {"isolate": True},
+        "max_gap": {"inputs": sc.simulate("gunnerus_open", stop_time=0.1, step_size=0.1).table},
+    }
+    with pytest.raises(sc.ShipcosimError, match=f"{name} = .* is no time"):
+        sc.simulate(
+            "gunnerus_open", stop_time=1.0, step_size=0.1, **{name: wrong}, **more.get(name, {})
+        )
+
+
+@pytest.mark.parametrize("wrong", ["table.csv", {"port_rpm": [1.0]}, 3])
+def test_inputs_that_are_no_table_are_refused(wrong):
+    with pytest.raises(sc.ShipcosimError, match="is no table.*read_table"):
+        sc.simulate("gunnerus_open", stop_time=1.0, step_size=0.1, inputs=wrong)

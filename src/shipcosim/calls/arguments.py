@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -105,6 +106,12 @@ def in_seconds(arguments: Mapping[str, Any], names: Iterable[str]) -> dict[str, 
                 found[name] = seconds(found[name])
             except UnitError as error:
                 problems.append(Problem(name, error.found, error.remedy))
+                continue
+        # NaN compares with nothing, so no later check would see it.
+        value = found.get(name)
+        if value is not None and (not isinstance(value, Real) or value != value):
+            wrong = f"{name} = {value!r:.60} is no time."
+            problems.append(Problem(named(name), wrong, "Give a number of seconds."))
     raise_errors(problems)
     return found
 

@@ -559,6 +559,9 @@ def fed_by(
                 f"Give one as {named('inputs')}.",
             )
         return None
+    if not hasattr(table, "data_vars"):
+        found = f"A {type(table).__name__} is no table."
+        raise error_at(named("inputs"), found, "Give shipcosim.read_table(FILE), a Dataset.")
     longest = in_seconds({"max_gap": max_gap}, ["max_gap"])["max_gap"]
     table = interpolated(table, system, interpolate)
     return table if longest is None else table.assign_attrs(max_gap=longest)

@@ -63,6 +63,8 @@ class Store:
     ----------
     done : (runs,) array of bool
         Which runs are done.
+    lost : int
+        Runs that were done, and whose rows are no longer there or cannot be read.
     """
 
     def __init__(self, folder: Path, plan: Plan, engine: str, force: bool = False):
@@ -74,6 +76,7 @@ class Store:
         self._written = monotonic()
         self.done = np.zeros(len(plan), dtype=bool)
         self.failed = 0
+        self.lost = 0
         with _said(self.folder):
             self.folder.mkdir(parents=True, exist_ok=True)
             clear_killed(self.folder)
@@ -83,6 +86,7 @@ class Store:
                 # Note which runs are done already.
                 table = self._collected()
                 self.done[table["run"].to_numpy()] = True
+                self.lost = max(about.get("runs", {}).get("done", 0) - int(self.done.sum()), 0)
                 self.failed = sum(bool(error) for error in table["error"].to_pylist())
             else:
                 set_aside(self.folder, [*FILES, *self._pages()], force=force)

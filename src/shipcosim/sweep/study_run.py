@@ -113,6 +113,10 @@ def run_study(
     summary = summarised(plan, runs)
     tables, remarks = _further(plan, runs, search)
     remarks = [*not_reached(plan), *remarks]
+    if store.lost:
+        file = folder / "runs.parquet"
+        found = f"{file}: missing or damaged; the {store.lost} runs that only it held are to be made again."
+        remarks.insert(0, found)
     for name, table in {"summary": summary, **tables}.items():
         write_file(folder / f"{name}.csv", table.to_csv(index=False).encode())
     about = store.write_about(tables=list(tables), remarks=remarks)

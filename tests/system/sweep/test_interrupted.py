@@ -91,6 +91,23 @@ def test_on_a_full_disk_a_study_says_so_and_goes_on_when_there_is_room(project, 
     )
 
 
+@pytest.mark.parametrize("left", [None, 0, 300])
+def test_a_lost_table_of_runs_is_said_and_made_again(project, left):
+    whole = shipcosim.sweep("levels", out="lost", engine="fmpy", workers=1)
+    table = project / "lost/runs.parquet"
+    content = table.read_bytes()
+    table.unlink()
+    if left is not None:
+        table.write_bytes(content[:left])
+    again = shipcosim.sweep("levels", out="lost", engine="fmpy", workers=1)
+    assert any(
+        f"the {len(whole.runs)} runs that only it held" in one for one in again.about["remarks"]
+    )
+    pandas.testing.assert_frame_equal(again.runs, whole.runs)
+    once_more = shipcosim.sweep("levels", out="lost", engine="fmpy", workers=1)
+    assert not once_more.about.get("remarks")
+
+
 def test_a_killed_study_goes_on_where_it_stopped(project, study):
     path = study('extends = "levels"\n[set]\n"lag.pause" = 0.5\n')
     whole = shipcosim.sweep(path, out="whole", engine="fmpy", workers=2)

@@ -27,6 +27,9 @@ UNRECOVERABLE = -1
 _set_stop_time = sundials_cvode.CVodeSetStopTime
 _set_stop_time.argtypes = [c_void_p, c_double]
 _set_stop_time.restype = c_int
+_interpolate = sundials_cvode.CVodeGetDky
+_interpolate.argtypes = [c_void_p, c_double, c_int, c_void_p]
+_interpolate.restype = c_int
 _free_solver = freeing("SUNLinSolFree", SUNLinearSolver)
 _free_matrix = freeing("SUNMatDestroy", SUNMatrix)
 
@@ -68,7 +71,9 @@ class Cvode:
         self._context = Context()
         context = self._context.arguments
         # SUNDIALS has no empty vector: without states there is one constant dummy.
-        self._x, self._absolute = (N_VNew_Serial(max(n, 1), *context) for _ in range(2))
+        self._x, self._absolute, self._between = (
+            N_VNew_Serial(max(n, 1), *context) for _ in range(3)
+        )
         # NumPy views of the solver's own memory: states are read and set without copies.
         self.states = np.ctypeslib.as_array(NV_DATA_S(self._x), (max(n, 1),))
         self._tolerances = np.ctypeslib.as_array(NV_DATA_S(self._absolute), (max(n, 1),))
@@ -110,6 +115,11 @@ class Cvode:
         self._check(flag)
         return reached.value, flag == ROOT_RETURN
 
+    def states_at(self, time: float):
+        """Pointer to the states at a time within the last step, from the solver's own polynomial."""
+        self._check(_interpolate(self._memory, time, 0, self._between))
+        return NV_DATA_S(self._between)
+
     def close(self) -> None:
         """Free the solver's memory."""
         if self._memory is not None:
@@ -118,8 +128,8 @@ class Cvode:
             self._memory = None
             _free_solver(self._solver)
             _free_matrix(self._matrix)
-            N_VDestroy_Serial(self._x)
-            N_VDestroy_Serial(self._absolute)
+            for vector in (self._x, self._absolute, self._between):
+                N_VDestroy_Serial(vector)
             self._context.close()
 
     def _evaluate(self, time, x, dx, _):

@@ -10,6 +10,9 @@ import numpy as np
 
 from shipcosim.cosim.slaves.slave import SlaveError
 
+PARTS = 8
+"""Parts of a step at whose ends the signs are looked at, besides the vertices of parabolas between them."""
+
 
 class EventIndicators:
     """Signs of the event indicators at the last event, and what has become of them.
@@ -40,7 +43,41 @@ class EventIndicators:
 
     def has_changed(self) -> bool:
         """Whether one is past zero, on another side than at the last event."""
-        signs = np.sign(self._of_now())
+        return self._differ(self._of_now())
+
+    def change_within(
+        self, start: float, end: float, go_to: Callable[[float], None]
+    ) -> float | None:
+        """Time within a step at which one has passed zero, even if it is back at the end; None where none has.
+
+        Parameters
+        ----------
+        start, end : float
+            The step. [s]
+        go_to : callable
+            Brings the FMU to a time within it.
+        """
+        times = np.linspace(start, end, PARTS + 1)
+        values = np.zeros((PARTS + 1, len(self._now)))
+        for k, time in enumerate(times if len(self._now) else ()):
+            go_to(time)
+            values[k] = self._of_now()
+            if 0 < k < PARTS and self._differ(values[k]):
+                return time
+        # A shorter way past zero and back has a peak between these times: the vertex of a parabola through three of them.
+        before = np.abs(values[:-2]) - np.abs(values[1:-1])
+        after = np.abs(values[2:]) - np.abs(values[1:-1])
+        is_peak = np.abs(before - after) < 2.0 * (before + after)
+        for row, column in np.argwhere(is_peak):
+            left, right = before[row, column], after[row, column]
+            time = times[row + 1] + 0.5 * (times[1] - start) * (left - right) / (left + right)
+            go_to(time)
+            if start < time < end and self._differ(self._of_now()):
+                return time
+        return None
+
+    def _differ(self, values):
+        signs = np.sign(values)
         return bool(np.any((signs != 0.0) & (signs != self._signs)))
 
     def has_come_to_zero(self) -> bool:

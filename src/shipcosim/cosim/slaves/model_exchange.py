@@ -38,6 +38,8 @@ MOST_STATES = 5000
 """Largest number of continuous states, whose Jacobian is dense."""
 CLOSE = 1e-12
 """Times that differ by less than this part of them are the same."""
+SHORTEST_LOOKED_INTO = 1e4
+"""So many of those differences a solver's step is long at least in which an indicator may pass zero and come back."""
 FARTHEST_PAST = 1e-6
 """Part of a step of the master by which a zero of an event indicator is passed at most to see its sign."""
 MOST_EVENTS_AT_ONCE = 100
@@ -279,7 +281,18 @@ class ModelExchange(LibrarySlave):
     def _solver_step(self, stop, near):
         """Make one step of the solver, at most to a time; true if there is an event where it ends."""
         assert self._solver is not None  # since the initialisation
+        before = self._solver.states.copy()
         reached, has_root = self._solver.step(stop)
+        # The solver sees an indicator only at the ends of its steps. One that has passed zero and come back since has
+        # two events in between: make the step again, up to a time between them.
+        # In the shortest steps, just past an event, rounding decides the sign.
+        between = None
+        if reached - self._time > SHORTEST_LOOKED_INTO * near:
+            between = self._events.change_within(self._time, reached, self._go_back_to)
+        if between is not None:
+            self._solver.states[:] = before
+            self._solver.start(self._time, self._nominals)
+            return self._solver_step(between, near)
         # Snap to the stop time, so that the master's time and the FMU's are equal.
         self._time = stop if abs(reached - stop) <= near else reached
         # The FMU's last evaluation may lie elsewhere, at a trial point of the solver.
@@ -317,6 +330,10 @@ class ModelExchange(LibrarySlave):
         self._set_time_and_states(start, self._states)
         return self._events.has_come_to_zero()
 
+    def _go_back_to(self, time):
+        assert self._solver is not None  # since the initialisation
+        self._set_time_and_states(time, self._solver.states_at(time))
+
     def _get_indicators(self, values):
         """Fill an (n_indicators,) array with the event indicators at the present time and states."""
         pointer = values.ctypes.data_as(POINTER(c_double))
@@ -338,11 +355,11 @@ class ModelExchange(LibrarySlave):
     def _enter_continuous_time(self):
         """Continue in continuous time, from the FMU's present states and nominal values."""
         assert self._solver is not None  # since the initialisation
-        nominals = np.ones(self.n_states)
-        self.enter_continuous(self._time, self._solver.states, nominals)
+        self._nominals = np.ones(self.n_states)
+        self.enter_continuous(self._time, self._solver.states, self._nominals)
         # A zero gets its sign when time goes on.
         self._events.keep()
-        self._solver.start(self._time, nominals)
+        self._solver.start(self._time, self._nominals)
 
     def _enter_event_mode(self):
         self.call("EnterEventMode")

@@ -12,7 +12,7 @@ from shipcosim.ssp.osp.functions import Function, Wiring
 from shipcosim.ssp.osp.groups import Group, file_names, read_groups
 from shipcosim.ssp.osp.simulators import Simulators
 from shipcosim.ssp.xml.document import Document, Findings, local
-from shipcosim.units import find_unit, relation
+from shipcosim.units import find_unit, relation, told_apart
 
 SOURCES = ("output", "calculatedParameter")
 """Causalities of variables that a connection can start from."""
@@ -155,7 +155,8 @@ class ConnectionReader:
             fmu = self._fmu(name)
             units.append(find_unit(fmu.variables[variable].unit, fmu.units))
         if None not in units and relation(units[0], units[1]) in ("convertible", "incompatible"):
-            found = f"{names[0]} is in {units[0].name}, {names[1]} in {units[1].name}: OSP converts no units."
+            source, target = told_apart(units[0], units[1])
+            found = f"{names[0]} is in {source}, {names[1]} in {target}: OSP converts no units."
             self.findings.remark(
                 connection.place, found, "Put a LinearTransformation between them."
             )

@@ -22,6 +22,7 @@ from shipcosim.ssp.xml.document import (
 from shipcosim.temporary import temporary_folder
 
 SYSTEM_STRUCTURE = "SystemStructure.ssd"
+LOGS = (".csv", ".csv.gz", ".nc", ".parquet", ".xlsx")
 OSP_STRUCTURE = "OspSystemStructure.xml"
 INSIDE = "Put the file beside the SSD, in resources/, and name it so."
 
@@ -218,6 +219,12 @@ def open_package(
     fmus = tuple(Path(folder) for folder in fmus)
     # A folder, a single SSD, or an archive that is unpacked for as long as the package lives.
     if path.is_dir():
+        tables = sorted(file for file in path.iterdir() if file.name.endswith(LOGS))
+        if tables and not variant and not any(path.glob("*.ssd")):
+            # Someone means the logs in it.
+            found = f"This folder has no system, but logs or tables, such as {tables[0].name}."
+            findings.error(shown, found, f"Give one of them: {Path(shown) / tables[0].name}.")
+            return None
         remark_others(path, shown, variant or SYSTEM_STRUCTURE, variant, findings)
         return Package(path, shown, variant or SYSTEM_STRUCTURE, fmus)
     if not path.is_file():

@@ -55,6 +55,13 @@ def test_a_channel_file_is_right_or_its_mistakes_are_said(root, tmp_path, call):
     assert done.code == 1 and "Did you mean 'heading'?" in done.out and "time" in done.out
 
 
+def test_a_folder_of_logs_is_named_as_such(tmp_path, call):
+    (tmp_path / "b.csv").write_text("time,a\n0,1\n1,2\n")
+    done = call("check", tmp_path)
+    assert "This folder has no system, but logs or tables, such as b.csv." in done.out
+    assert f"Give one of them: {tmp_path / 'b.csv'}." in " ".join(done.out.split())
+
+
 def test_a_file_that_is_missing_keeps_no_other_from_being_checked(root, call):
     scenario = root / "scenarios/gust.toml"
     done = call("check", scenario, "absent", root / "scenarios/held.toml")

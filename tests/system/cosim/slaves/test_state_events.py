@@ -52,6 +52,26 @@ static void equations(M* m) { m->r[1] = m->r[2]; }
 static void indicators(M* m, double* z) { z[0] = m->r[0] - m->r[3]; z[1] = m->r[4] - m->r[0]; }
 static void event(M* m) { m->i[0] = m->r[0] > m->r[3]; m->i[1] = m->r[0] > m->r[4]; }
 """,
+    # x goes with the time; two windows of it, each entered and left: i[0], i[1] count how often that was seen.
+    "windows": """
+#define NX 1
+#define NZ 3
+#define STATES {0}
+static double window(M* m, double middle) { return m->r[2] * m->r[2] - pow(m->r[0] - middle, 2); }
+static void start(M* m) {}
+static void equations(M* m) { m->r[1] = 1; }
+static void indicators(M* m, double* z) {
+  z[0] = window(m, m->r[3]); z[1] = -window(m, m->r[4]); z[2] = m->r[0] - m->r[5];
+}
+static void event(M* m) {
+  for (int k = 0; k < 2; k++) {
+    int inside = window(m, m->r[3 + k]) > 0;
+    if (inside != m->i[4 + k]) m->i[k]++;
+    m->i[4 + k] = inside;
+  }
+  m->i[2] = m->r[0] > m->r[5];
+}
+""",
     # A block under a force r[4] + r[5] t: it sticks up to a force of 2 and slides against one of 1. i[0] is its direction.
     "block": """
 #define NX 2
@@ -106,6 +126,7 @@ VARIABLES = {
     "thermostat": X + RATE + _parameters(2, high=21.0, low=19.0, up=1.0, down=1.0) + COUNTS[:1],
     "levels": X + RATE + _parameters(2, slope=1.0, level=0.5, sign=1.0) + COUNTS,
     "pair": X + RATE + _parameters(2, slope=1.0, a=0.5, b=0.5) + COUNTS[:2],
+    "windows": X + RATE + _parameters(2, half=0.01, middle=0.4, later=0.7, level=0.9) + COUNTS[:3],
     "block": X
     + [("v", 1, "output", "Real", None)]
     + [("der(x)", 2, "local", "Real", None), ("der(v)", 3, "local", "Real", None)]
@@ -115,6 +136,7 @@ VARIABLES = {
     "undefined": X + RATE + _parameters(2, until=0.5),
 }
 SIZES = {"thermostat": (1, 2), "levels": (1, 1), "pair": (1, 2), "block": (2, 3), "relay": (1, 1)}
+SIZES["windows"] = (1, 3)
 SIZES["undefined"] = (1, 2)
 STEP_SIZES = st.sampled_from([0.01, 0.05, 0.1, 0.25, 1.0])
 
@@ -198,6 +220,24 @@ def test_two_indicators_at_once_are_both_seen(run_of, version, slope, a, b, step
     for k, level in enumerate((a, b)):
         away = np.abs(x - level) > 1e-8
         assert np.array_equal(table[f"m.n{k}"].values[away], (x > level).astype(int)[away]), k
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@given(
+    half=st.sampled_from([1e-5, 0.003, 0.01, 0.1]),
+    first=st.sampled_from([0.15, 0.401, 0.7, 0.93]),
+    second=st.sampled_from([0.4, 0.7, 0.703, 1.6]),
+    level=st.sampled_from([0.4, 0.7001, 1.2]),
+    step_size=st.sampled_from([0.05, 0.25, 1.0, 2.0]),
+)
+@settings(max_examples=30, deadline=None)
+def test_an_indicator_that_comes_back_within_a_step_is_seen(
+    run_of, version, half, first, second, level, step_size
+):
+    values = {"half": half, "middle": first, "later": second, "level": level}
+    table = run_of("windows", version, 2.0, step_size, **values)
+    assert [int(table[f"m.n{k}"][-1]) for k in range(3)] == [2, 2, 1]
+    assert np.allclose(table["m.x"], table["time"], atol=1e-6)
 
 
 @pytest.mark.parametrize("version", VERSIONS)

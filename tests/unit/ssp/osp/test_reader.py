@@ -196,6 +196,20 @@ def test_a_fault_is_refused_with_file_and_line(osp, change, message):
         read_system(path)
 
 
+def test_one_unit_name_with_two_definitions_is_shown_with_both(osp, shop):
+    shop.fmu("two", "input u Real deg")
+    path = shop.folder / "resources" / "two.fmu"
+    with zipfile.ZipFile(path) as archive:
+        text = archive.read("modelDescription.xml").decode()
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("modelDescription.xml", text.replace("0.017453292519943295", "57.3"))
+    shop.fmu("one", "output y Real deg")
+    simulators = SIMULATORS.replace('one.fmu">', 'two.fmu">')
+    structure = osp(connections=joined("a.y", "b.u"), simulators=simulators)
+    found = text_of(remarks_of(structure), "remark")
+    assert "a.y is in deg (0.0174533 rad), b.u in deg (57.3 rad): OSP converts no units." in found
+
+
 def test_what_libcosim_would_do_otherwise_is_remarked(osp):
     head = "<Algorithm>ecco</Algorithm>"
     connections = joined("a.z", "b.u", ' powerBond="p"')
