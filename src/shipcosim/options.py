@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
+from numbers import Real
 from typing import TYPE_CHECKING, TypedDict
 
 from shipcosim.errors import error_at
@@ -90,8 +91,9 @@ class RunOptions:
     profile: bool = False
 
     def __post_init__(self):
-        if self.realtime is not None and not 0.0 < self.realtime < float("inf"):
-            found = f"{self.realtime:g} is no pace."
+        pace = self.realtime
+        if pace is not None and not (isinstance(pace, Real) and 0.0 < pace < float("inf")):
+            found = f"{pace!r:.60} is no pace."
             raise error_at(
                 "realtime", found, "Give a positive number: 1.0 is as fast as the clock."
             )

@@ -141,7 +141,7 @@ def as_written(record):
     }
 
 
-@pytest.mark.parametrize("wrong", [float("nan"), [1.0], {"s": 1}])
+@pytest.mark.parametrize("wrong", [float("nan"), float("inf"), [1.0], {"s": 1}])
 @pytest.mark.parametrize("name", ["start_time", "until", "max_gap", "timeout"])
 def test_a_time_that_is_none_is_refused_by_name(name, wrong):
     more = {
@@ -158,3 +158,18 @@ def test_a_time_that_is_none_is_refused_by_name(name, wrong):
 def test_inputs_that_are_no_table_are_refused(wrong):
     with pytest.raises(sc.ShipcosimError, match="is no table.*read_table"):
         sc.simulate("gunnerus_open", stop_time=1.0, step_size=0.1, inputs=wrong)
+
+
+@pytest.mark.parametrize(
+    ("argument", "wrong", "message"),
+    [
+        ("engine", 3, "There is no engine '3'"),
+        ("order", None, "There is no order of exchange 'None'"),
+        ("parameters", [3], "parameters: 3 is neither a path nor a name"),
+        ("record", 3.5, "record: 3.5 is neither a path nor a name"),
+        ("realtime", "fast", "'fast' is no pace"),
+    ],
+)
+def test_an_argument_of_a_wrong_type_is_refused_by_name(argument, wrong, message):
+    with pytest.raises(sc.ShipcosimError, match=message):
+        sc.simulate("gunnerus_open", stop_time=1.0, step_size=0.1, **{argument: wrong})

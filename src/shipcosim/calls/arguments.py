@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import isfinite
 from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -72,16 +73,23 @@ _OPTIONS = {"output_interval": "every", "causes": "effects"}
 
 def find(kind: str, given: Any, argument: str = "") -> Path:
     """Path of a file or name, as `library.find`; errors name the argument."""
+    return library.find(kind, path_or_name(kind, given), named(argument) if argument else "")
+
+
+def path_or_name(what: str, given: Any) -> AnyPath:
+    """The same value; raises ShipcosimError where it is of another type, as a number is."""
     if not isinstance(given, (str, os.PathLike)):
-        raise error_at(kind, f"{given!r:.60} is neither a path nor a name.", "Give one of them.")
-    return library.find(kind, given, named(argument) if argument else "")
+        raise error_at(what, f"{given!r:.60} is neither a path nor a name.", "Give one of them.")
+    return given
 
 
-def listed(given: AnyPath | Iterable[AnyPath] | None) -> list[AnyPath]:
-    """Paths as a list, also for a single path."""
+def listed(given: AnyPath | Iterable[AnyPath] | None, what: str = "") -> list[AnyPath]:
+    """Paths or names as a list, also for a single one; errors name the argument."""
     if given is None:
         return []
-    return [given] if isinstance(given, (str, os.PathLike)) else list(given)
+    if isinstance(given, (str, os.PathLike)) or not isinstance(given, Iterable):
+        given = [given]
+    return [path_or_name(what, one) for one in given]
 
 
 def mapping(argument: str, given: Any) -> dict[str, Any]:
@@ -107,9 +115,9 @@ def in_seconds(arguments: Mapping[str, Any], names: Iterable[str]) -> dict[str, 
             except UnitError as error:
                 problems.append(Problem(name, error.found, error.remedy))
                 continue
-        # NaN compares with nothing, so no later check would see it.
+        # NaN compares with nothing, so no later check would see it; and no run ends that has no end.
         value = found.get(name)
-        if value is not None and (not isinstance(value, Real) or value != value):
+        if value is not None and not (isinstance(value, Real) and isfinite(value)):
             wrong = f"{name} = {value!r:.60} is no time."
             problems.append(Problem(named(name), wrong, "Give a number of seconds."))
     raise_errors(problems)
@@ -161,7 +169,7 @@ class Reading:
             Where it was given, for errors.
         """
         swapped = fmus_of(self.components)
-        parameters = listed(self.parameters)
+        parameters = listed(self.parameters, "parameters")
         if isinstance(given, System):
             if swapped:
                 found = "A system that is read keeps its FMUs."
@@ -363,7 +371,7 @@ def values_of_sets(
     """Start values of parameter sets as far as the system has what they are for, and remarks on the rest."""
     values: dict[str, Any] = {}
     remarks: list[Problem] = []
-    for file in listed(parameters):
+    for file in listed(parameters, "parameters"):
         fitting, left_out = fitting_values(file, system)
         values |= fitting
         remarks += left_out
@@ -386,9 +394,7 @@ def source_of(
         return log.table, channels
     if hasattr(log, "data_vars"):
         return log, channels
-    if not isinstance(log, (str, os.PathLike)):
-        raise error_at("log", f"{log!r:.60} is neither a path nor a name.", "Give one of them.")
-    return path_of_log(log), channels
+    return path_of_log(path_or_name("log", log)), channels
 
 
 def sources_of(logs: Any, channels: AnyPath | None) -> tuple[list[Any], AnyPath | None]:

@@ -211,7 +211,7 @@ def with_record(
         If the system has no such signal.
     """
     signals: list[str] = []
-    for one in [os.fspath(one) for one in listed(record)]:
+    for one in [os.fspath(one) for one in listed(record, "record")]:
         if not one.lower().endswith(".xml"):
             signals.append(one)
             continue
@@ -538,7 +538,7 @@ def system_for(
         assert system is not None
         return Reading(parameters=parameters, components=components, strict=strict).system(system)
     swapped = {**scenario.component_paths(), **(components or {})}
-    sets = [*scenario.parameter_paths, *listed(parameters)]
+    sets = [*scenario.parameter_paths, *listed(parameters, "parameters")]
     reading = Reading(parameters=sets, components=swapped, strict=strict)
     return reading.system(scenario.system_path if system is None else system)
 

@@ -23,6 +23,7 @@ from shipcosim.calls.arguments import (
     listed,
     mapping,
     named,
+    path_or_name,
     system_and_scenario,
     without_none,
 )
@@ -120,7 +121,7 @@ def check(
     table = None if channels is None else Path(channels)
     paths = {}
     found: dict[str, list[Problem]] = {}
-    for file in listed(files):
+    for file in listed(files, "files"):
         name = os.fspath(file)
         try:
             paths[name] = library.find_any(name)
@@ -318,7 +319,8 @@ def capability(
     if out is not None:
         check_targets(Path(out))
     groups = [(one,) if isinstance(one, str) else tuple(one) for one in failures]
-    vessel = vessel_of(os.fspath(system), [Path(one) for one in listed(parameters)], ship)
+    sets = [Path(one) for one in listed(parameters, "parameters")]
+    vessel = vessel_of(os.fspath(path_or_name("system", system)), sets, ship)
     result = CapabilityOfShip(**parts_of(capability_of(vessel, groups)))
     if out is not None:
         result.save(out, force=force)
