@@ -1,6 +1,7 @@
 """Start values of an edited system, as a mapping of names to values in the FMUs' units."""
 
 from collections.abc import Iterator, Mapping, MutableMapping
+from dataclasses import replace
 from math import isfinite
 from typing import Any
 
@@ -76,6 +77,11 @@ class StartValues(MutableMapping[str, Value]):
     def __repr__(self) -> str:
         return repr(dict(self))
 
+    def update(self, *values: Any, **named: Value) -> None:
+        """Set several values and check them together, which is sooner done than one by one; as `dict.update`."""
+        with self._draft.changes():
+            self._put([self._given(name, value) for name, value in dict(*values, **named).items()])
+
     def put(
         self,
         name: str,
@@ -85,7 +91,11 @@ class StartValues(MutableMapping[str, Value]):
         tolerance: float | None = None,
     ) -> None:
         """Set a value in place or, without effect there, over all; see `SystemStructure.set`."""
-        # Convert to the type and unit of the variable.
+        given = self._given(name, value, unit)
+        self._put([replace(given, description=description, tolerance=tolerance)])
+
+    def _given(self, name: str, value: Any, unit: str | None = None) -> ParameterValue:
+        """A value in the type and unit of its variable, items of enumerations by name."""
         kind, own, items = _target(self._system(), name)
         value = getattr(value, "item", lambda: value)()  # NumPy's scalars
         if kind == "Enumeration" and type(value) is int:
@@ -93,25 +103,27 @@ class StartValues(MutableMapping[str, Value]):
         value = self._converted(name, value, unit, own)
         kind = self._kind(name, value, kind)
         value = float(value) if kind == "Real" else value
-        given = ParameterValue(
-            name, kind, value, own if kind == "Real" else None, description, tolerance=tolerance
-        )
-        # Put it in place, and look whether the system now has this value.
+        return ParameterValue(name, kind, value, own if kind == "Real" else None)
+
+    def _put(self, values: list[ParameterValue]) -> None:
         before = len(self._draft.assembled()[1].errors)
-        self._draft.sets.put(name, given)
+        for given in values:
+            self._draft.sets.put(given.name, given)
+        # Look whether the system now has these values: a mapping or a connector of a system has the last word.
         system, findings = self._draft.reassembled()
-        wanted = items.get(value, value) if kind == "Enumeration" else value
-        if system is not None and len(findings.errors) <= before and _value(system, name) != wanted:
-            self._draft.sets.append(
-                "", name, given
-            )  # a mapping or a connector of a system has the last word
+        if system is None or len(findings.errors) > before:
+            return
+        for given in values:
+            wanted = _target(system, given.name)[2].get(given.value, given.value)
+            if _value(system, given.name) != wanted:
+                self._draft.sets.append("", given.name, given)
 
     def bind_to_components(self) -> None:
         """See `SystemStructure.bind_to_components`."""
         # Collect all values before the bindings go: they may come from anywhere.
         system = self._system()
         bound = self._draft.sets.bound
-        values = {name: _given(system, bound, name) for name in self}
+        values = {name: _described(system, bound, name) for name in self}
         for binding in list(self._draft.root.iter(qualified("ssd:ParameterBinding"))):
             drop(binding)
         for name, value in values.items():
@@ -164,7 +176,7 @@ def _target(system: System, name: str) -> tuple[str | None, Unit | None, Mapping
     return variable.kind, find_unit(variable.unit, fmu.units), variable.items
 
 
-def _given(system: System, bound: list[Bound], name: str) -> ParameterValue:
+def _described(system: System, bound: list[Bound], name: str) -> ParameterValue:
     """Start value of a signal for a parameter set, with description and tolerance of its origin."""
     kind, unit, items = _target(system, name)
     value = _value(system, name)

@@ -107,6 +107,19 @@ def test_a_new_value_goes_to_its_components_own_set(system, tmp_path):
     assert ssd.count("<ssv:ParameterSet ") == 2
 
 
+def test_several_values_at_once_end_as_one_by_one_or_none_of_them(system, tmp_path):
+    values = {"thruster.gain": 2.0, "hull.seed": 5, "hull.mode": 2, "hull.mass": 3}
+    one_by_one = system.copy()
+    for name, value in values.items():
+        one_by_one.parameters[name] = value
+    system.parameters.update(values)
+    assert written(system, tmp_path / "a")[1] == written(one_by_one, tmp_path / "b")[1]
+    assert dict(system.parameters) == dict(one_by_one.parameters)
+    wrong = {"hull.mass": 4.0, "hull.sed": 1}
+    assert "no variable 'sed'" in refused(system.parameters.update, wrong)
+    assert system.parameters["hull.mass"] == 3.0
+
+
 def test_a_value_with_a_unit_is_converted_and_keeps_what_is_said_of_it(system, tmp_path):
     system.set("hull.mass", 5e3, "m", description="weighed", tolerance=0.1)
     assert system.parameters["hull.mass"] == 5.0
