@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 from shipcosim.scenario.model import Event, Expectation, Scenario
@@ -81,8 +82,8 @@ def _number(value: Any, signal: str, unit_of: UnitOf, difference: bool = False) 
     return number_in(value, unit_of(signal), difference=difference)
 
 
-def unit_complaints(expect: Expectation, unit_of: UnitOf) -> Iterator[tuple[str, str, str]]:
-    """Problems with the units of an expectation: (key, found, remedy).
+def amount_complaints(expect: Expectation, unit_of: UnitOf) -> Iterator[tuple[str, str, str]]:
+    """Problems with the amounts of an expectation and their units: (key, found, remedy).
 
     Parameters
     ----------
@@ -91,6 +92,7 @@ def unit_complaints(expect: Expectation, unit_of: UnitOf) -> Iterator[tuple[str,
     unit_of : callable
         Unit of a signal.
     """
+    numbers: dict[str, Any] = {}
     # Signals of one distance must have one kind of unit.
     first = expect.signal[0]
     for other in expect.signal[1:]:
@@ -106,9 +108,13 @@ def unit_complaints(expect: Expectation, unit_of: UnitOf) -> Iterator[tuple[str,
             yield key, found, f"Compare {signal} with a signal of its unit."
         # Amounts must be convertible to the unit of their signal.
         try:
-            _number(value, signal, unit_of, key == "within")
+            numbers[key] = _number(value, signal, unit_of, key == "within")
         except UnitError as error:
             yield key, f"{key} of {signal}: {error.found}", error.remedy
+    # Limits may have units of their own: as numbers they show which one is higher.
+    if numbers.get("at_least", -inf) > numbers.get("at_most", inf):
+        found = f"at_least = {expect.at_least} lies above at_most = {expect.at_most}."
+        yield "at_least", found, "No value is between them. Exchange the two."
 
 
 def _differ(one: str, other: str, unit_of: UnitOf) -> bool:

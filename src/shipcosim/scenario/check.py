@@ -10,7 +10,7 @@ import numpy as np
 
 from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.scenario.amounts import unit_complaints, units_of
+from shipcosim.scenario.amounts import amount_complaints, units_of
 from shipcosim.scenario.locations import Keys, problem_at
 from shipcosim.scenario.model import Event, Expectation, Scenario, Value
 from shipcosim.scenario.plausible import odd_values
@@ -231,7 +231,7 @@ def expectation_complaints(
         c for signal in expect.signals if (c := _expect_complaint(system, signal, changed))
     ]
     return [("signal", *complaint) for complaint in complaints] or list(
-        unit_complaints(expect, units_of(system))
+        amount_complaints(expect, units_of(system))
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from shipcosim.angles import TURN, wrap_series
 from shipcosim.errors import Problem, raise_errors, suggestion
-from shipcosim.scenario.amounts import UnitOf, expectation_in_numbers, unit_complaints
+from shipcosim.scenario.amounts import UnitOf, amount_complaints, expectation_in_numbers
 from shipcosim.scenario.locations import problem_at
 from shipcosim.scenario.model import Expectation, Scenario
 from shipcosim.units import RADIAN, conversion, find_unit, relation
@@ -105,7 +105,7 @@ def judge(table: xarray.Dataset, scenario: Scenario) -> list[Verdict]:
     wrong = [
         problem_at(scenario, ("expect", number, key), *complaint)
         for number, expect in enumerate(scenario.expect)
-        for key, *complaint in unit_complaints(expect, unit_of)
+        for key, *complaint in amount_complaints(expect, unit_of)
     ]
     raise_errors(wrong)
     return [

@@ -70,7 +70,7 @@ def test_it_has_no_relative_link_in_a_package_with_an_address(readme, hook):
     assert len(targets) > 20 and all(
         target.startswith("https://host/owner/shipcosim/") for target in targets
     )
-    assert "![" in text and "/raw/main/docs/images/four_corner.png" in text
+    assert "![" in text and "/raw/main/docs/images/live.png" in text
 
 
 def test_it_has_no_link_in_a_package_without_an_address(readme, hook):

@@ -190,9 +190,11 @@ def test_expectations_take_units(table, expect, passed, worst):
             "at_most of a.psi: '1 m' is in m, where rad is wanted",
         ),
         ({"signal": "plain", "at_most": "1 m"}, "where no unit is wanted"),
+        ({"signal": "a.x", "at_least": 5.0, "at_most": 1.0}, "at_least = 5.0 lies above at_most"),
+        ({"signal": "a.x", "at_least": "1 km", "at_most": 2.0}, "at_least = 1 km lies above"),
     ],
 )
-def test_metres_and_radians_are_not_added(table, expect, said):
+def test_what_cannot_be_compared_is_refused(table, expect, said):
     scenario = Scenario.model_validate(TIMES | {"expect": [expect]})
     with pytest.raises(ShipcosimError, match=said) as error:
         judge(table, scenario)
