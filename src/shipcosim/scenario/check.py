@@ -202,7 +202,7 @@ def check_scenario(scenario: Scenario, system: System, start_time: float = 0.0) 
         for verb, signal, *complaint in event_complaints(event, system)
     ]
     # Odd values are only checked once the events themselves are right.
-    problems += wrong_changes or odd_values(scenario, system)
+    problems += wrong_changes or [*odd_values(scenario, system), *_replaced_changes(scenario)]
     changed = {signal for event in scenario.events for _, signal, _ in event.changes}
     for number, expect in enumerate(scenario.expect):
         complaints = expectation_complaints(expect, system, changed)
@@ -233,6 +233,21 @@ def expectation_complaints(
     return [("signal", *complaint) for complaint in complaints] or list(
         amount_complaints(expect, units_of(system))
     )
+
+
+def _replaced_changes(scenario: Scenario) -> Iterator[Problem]:
+    """Remarks on changes of a signal in whose place another one comes at the same time."""
+    by_time = sorted(enumerate(scenario.events), key=lambda numbered: numbered[1].time)
+    earlier: dict[str, tuple[float, Keys]] = {}
+    for number, event in by_time:
+        for verb, signal, _ in event.changes:
+            before = earlier.get(signal)
+            if before is not None and before[0] == event.time:
+                time, keys = before
+                found = f"the {keys[2]} of {signal} at {time:g} s has no effect."
+                remedy = f"A later {verb} at the same time takes its place. Keep one of them."
+                yield problem_at(scenario, keys, found, remedy, "remark")
+            earlier[signal] = event.time, ("events", number, verb, signal)
 
 
 def event_complaints(event: Event, system: System) -> Iterator[tuple[str, str, str, str]]:

@@ -131,6 +131,8 @@ def _odd(
             continue
         size = value * unit.factor / bounds.factor
         if re.fullmatch(known.name, name) and not known.low <= size <= known.high:
+            if size < 0.0:
+                return f"{value:g} {unit.name} is negative.", "Check its sign."
             few = "little" if size < known.low else "much"
             return f"{value:g} {unit.name} is very {few}: {known.reason}.", "Check number and unit."
     return None

@@ -255,6 +255,33 @@ def test_a_bare_angle_in_an_event_earns_a_remark_and_degrees_none(dp):
     assert problems(dp, events=[with_unit]) == []
 
 
+def test_a_negative_wind_speed_of_an_event_earns_a_remark(dp):
+    (said,) = problems(dp, events=[{"time": 1.0, "override": {"environment.wind_speed": -5.0}}])
+    assert "environment.wind_speed: -5 m/s is negative." in said
+
+
+WIND = {"environment.wind_speed": 5.0}
+
+
+@pytest.mark.parametrize(
+    ("events", "replaced"),
+    [
+        ([(1.0, "override"), (1.0, "override")], ["the override of environment.wind_speed at 1 s"]),
+        ([(2.0, "bias"), (1.0, "override"), (2.0, "override")], ["the bias of"]),
+        ([(1.0, "override"), (2.0, "override"), (3.0, "bias")], []),
+    ],
+)
+def test_a_change_in_whose_place_another_comes_at_the_same_time_is_named(dp, events, replaced):
+    found = problems(dp, events=[{"time": time, verb: WIND} for time, verb in events])
+    assert [any(text in one for one in found) for text in replaced] == [True] * len(found)
+
+
+def test_a_bias_beside_an_override_in_one_event_is_named(dp):
+    (said,) = problems(dp, events=[{"time": 1.0, "override": WIND, "bias": WIND}])
+    assert "the override of environment.wind_speed at 1 s has no effect" in said
+    assert "A later bias at the same time takes its place" in said
+
+
 def test_nothing_of_what_is_shipped_is_odd(root, fmus):
     """The bounds hold for four craft of 15 kg to 300 000 t."""
     for structure in sorted((root / "ssp").glob("*/SystemStructure.ssd")):
