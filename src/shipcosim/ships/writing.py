@@ -88,16 +88,25 @@ def usual(answers: Answers, key: str) -> str:
 
 def _form(answers: Answers) -> HullDimensions:
     """Hull of usual proportions for the numbers that are not given."""
-    L = number_in(answers.length, "m")
-    B = number_in(answers.breadth, "m") if answers.breadth else 1.55 * L**0.54
-    T = number_in(answers.draught, "m") if answers.draught else B / 3.0
+    L = _given(answers, "length", "m") or 30.0  # as `usual` has it
+    B = _given(answers, "breadth", "m") or 1.55 * L**0.54
+    T = _given(answers, "draught", "m") or B / 3.0
     # Displacement by a usual block coefficient, speed by Froude number 0.25.
-    given = number_in(answers.displacement, "kg") if answers.displacement else 0.0
-    block = min(max(given / (1025.0 * L * B * T), 0.2), 1.0) if given else USUAL_BLOCK
-    speed = number_in(answers.speed, "m/s") if answers.speed else 0.25 * sqrt(GRAVITY * L)
+    mass = _given(answers, "displacement", "kg")
+    block = min(max(mass / (1025.0 * L * B * T), 0.2), 1.0) if mass else USUAL_BLOCK
+    speed = _given(answers, "speed", "m/s") or 0.25 * sqrt(GRAVITY * L)
     return HullDimensions(
         length=L, breadth=B, draught=T, block=block, hulls=1, density=1025.0, speed=speed
     )
+
+
+def _given(answers: Answers, key: str, unit: str) -> float | None:
+    """An answer as a number, or None. Raises ValueError where it is not above 0."""
+    text = getattr(answers, key)
+    value = number_in(text, unit) if text else None
+    if value is not None and not value > 0.0:
+        raise ValueError(f"{key} = {text}. It must be greater than 0.")
+    return value
 
 
 def ship_text(answers: Answers) -> str:
@@ -124,8 +133,11 @@ def ship_text(answers: Answers) -> str:
         raise error_at(
             "new ship", found, 'Give --length "60 m" and so on, or --from with a ship file.'
         )
-    # Given thrusters, else usual ones for the layout.
+    # Given thrusters, else usual ones for the layout; and her hull, for the estimates.
     try:
+        weight = answers.displacement or usual(answers, "displacement")
+        speed = answers.speed or usual(answers, "speed")
+        form = _form(replace(answers, displacement=weight, speed=speed))
         thrusters = answers.thrusters or _thrusters(answers)
     except ValueError as error:
         raise error_at("new ship", f"{error}") from None
@@ -133,9 +145,6 @@ def ship_text(answers: Answers) -> str:
         "[[thrusters]]\n" + "\n".join(_line(k, v) for k, v in one.items()) for one in thrusters
     )
     # Numbers that are estimated stand in comments, ready to be replaced.
-    weight = answers.displacement or usual(answers, "displacement")
-    speed = answers.speed or usual(answers, "speed")
-    form = _form(replace(answers, displacement=weight, speed=speed))
     estimates = {
         "mass": weight,
         "gyradius": _m(sqrt(float(inertia_yaw(1.0, form.length, form.breadth, 0.0).value))),
@@ -185,7 +194,8 @@ def _thrusters(answers: Answers) -> list[dict[str, str]]:
         raise ValueError(f"propulsion is {answers.layout!r}. {suggestion(answers.layout, LAYOUTS)}")
     # Places and diameters in proportion to the dimensions.
     L, B, T = (number_in(getattr(answers, key), "m") for key in ("length", "breadth", "draught"))
-    power = number_in(answers.power or usual(answers, "power"), "W") / 1000.0
+    power = _given(answers, "power", "W") or number_in(usual(answers, "power"), "W")
+    power /= 1000.0  # kW
     aft = _m(-0.45 * L)
     side = 0.25 * B
     wheel = _m(0.55 * T)

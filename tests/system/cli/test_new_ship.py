@@ -42,6 +42,18 @@ def test_a_few_options_make_a_ship_that_is_found_checked_and_runs(project):
     assert "Traceback" not in ran.output and (project / "results/tern").is_dir(), ran.output
 
 
+@pytest.mark.parametrize("wrong", ["-60", "0", "-0.0", "nan", "4 degC"])
+@pytest.mark.parametrize(
+    "option", ["--length", "--breadth", "--draught", "--displacement", "--speed", "--power"]
+)
+def test_a_size_that_no_ship_has_is_refused_by_name(project, option, wrong):
+    given = dict(zip(ASKED[::2], ASKED[1::2], strict=True)) | {option: wrong}
+    made = told("new", "ship", "tern", *(part for pair in given.items() for part in pair), "--yes")
+    assert made.exit_code == 2 and not (project / "ships").exists()
+    assert "fault of shipcosim" not in made.output and "domain" not in made.output
+    assert ("greater than 0" in made.output) == (wrong in ("-60", "0", "-0.0"))
+
+
 def test_nothing_is_written_over_without_being_told(project):
     assert told("new", "ship", "tern", *ASKED, "--propulsion", "rudder", "--yes").exit_code == 0
     before = (project / "ships/tern/ship.toml").read_bytes()

@@ -236,6 +236,10 @@ def open_package(
         return None
     if path.suffix.lower() == ".ssd":
         return Package(path.parent, str(Path(shown).parent), path.name, fmus)
+    if path.name.endswith(LOGS):
+        remedy = "`shipcosim check` looks at one, `shipcosim report` compares two."
+        findings.error(shown, "This is a table, no system.", remedy)
+        return None
     unpacked = temporary_folder()
     try:
         unpack(path, unpacked.name, shown)

@@ -62,6 +62,13 @@ def test_a_folder_of_logs_is_named_as_such(tmp_path, call):
     assert f"Give one of them: {tmp_path / 'b.csv'}." in " ".join(done.out.split())
 
 
+def test_a_table_is_no_system(tmp_path, call):
+    (tmp_path / "b.csv").write_text("time,a\n0,1\n1,2\n")
+    for command in ("simulate", "compare"):
+        done = call(command, tmp_path / "b.csv")
+        assert done.code == 2 and "This is a table, no system." in done.err
+
+
 def test_a_file_that_is_missing_keeps_no_other_from_being_checked(root, call):
     scenario = root / "scenarios/gust.toml"
     done = call("check", scenario, "absent", root / "scenarios/held.toml")

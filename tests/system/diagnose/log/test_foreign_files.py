@@ -39,6 +39,9 @@ CASES = {
     "table.h5": (b"\x89HDF\r\n\x1a\n", "HDF5"),
     "table.pkl": (b"\x80\x04", "pickle"),
     "table.json": (b"\x00\x01", "zero bytes"),
+    "report.html": (b"<!DOCTYPE html><title>a run</title>", "page in HTML.*as .csv"),
+    "saved.csv": (b"<html><body>Please log in</body></html>", "page in HTML"),
+    "report.pdf": (b"%PDF-1.7 ...", "PDF"),
 }
 
 

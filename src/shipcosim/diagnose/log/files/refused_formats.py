@@ -38,6 +38,8 @@ _BY_NAME = {
     ".h5": ("a file of HDF5", _HDF5),
     ".hdf5": ("a file of HDF5", _HDF5),
     ".pkl": ("a pickle of Python, which could run code", "Write the table as .csv or .nc."),
+    ".html": ("a page in HTML", "Save the table that it shows as .csv."),
+    ".pdf": ("a document in PDF", "Save the table in it as .csv."),
     ".zip": ("an archive", "Unpack it, and name the log in it."),
 }
 _BY_CONTENT = (
@@ -49,6 +51,10 @@ _BY_CONTENT = (
     (b"TDSm", ".tdms"),
     (b"SQLite format 3\x00", ".sqlite"),
     (b"ARROW1", ".feather"),
+    (b"<!DOCTYPE html", ".html"),
+    (b"<!doctype html", ".html"),
+    (b"<html", ".html"),
+    (b"%PDF-", ".pdf"),
 )
 _SPREADSHEET = b"application/vnd.oasis.opendocument"
 
