@@ -188,13 +188,13 @@ def worth_showing(problems: Iterable[Problem]) -> list[Problem]:
     return [*listed[:MOST_SHOWN], more]
 
 
-def suggestion(name: str, known: Iterable[str]) -> str:
+def suggestion(name: object, known: Iterable[str]) -> str:
     """Remedy for an unknown name: what there is, and the nearest of it.
 
     Parameters
     ----------
     name : str
-        That was not found.
+        That was not found. Python callers may give anything, such as a number: it is taken as its text.
     known : iterable of str
         Names that there are.
 
@@ -203,7 +203,7 @@ def suggestion(name: str, known: Iterable[str]) -> str:
     >>> suggestion("thrust_comand", ["thrust_cmd"])
     "There is: thrust_cmd. Did you mean 'thrust_cmd'?"
     """
-    names = sorted(filter(None, known))
+    name, names = str(name), sorted(filter(None, known))
     if not names:
         return "There is none."
     shown = ", ".join(names[:12]) + (f", ... ({len(names)} in all)" if len(names) > 12 else "")

@@ -63,7 +63,7 @@ def simulate(
     options = options or RunOptions()
     if options.engine not in ENGINES:
         raise ShipcosimError(
-            f"There is no engine '{options.engine}'. {suggestion(str(options.engine), ENGINES)}"
+            f"There is no engine '{options.engine}'. {suggestion(options.engine, ENGINES)}"
         )
     # Order: read the system, set the scenario's values, check, convert units. The checks need names
     # and values as written.

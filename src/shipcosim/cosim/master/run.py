@@ -152,7 +152,7 @@ class Simulation:
         self._profile = Profile() if options.profile else None
         if order not in ORDERS:
             raise ShipcosimError(
-                f"There is no order of exchange '{order}'. {suggestion(str(order), ORDERS)}"
+                f"There is no order of exchange '{order}'. {suggestion(order, ORDERS)}"
             )
         self._scenario = scenario
         self._grid = grid

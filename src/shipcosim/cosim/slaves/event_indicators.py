@@ -57,9 +57,12 @@ class EventIndicators:
         go_to : callable
             Brings the FMU to a time within it.
         """
+        # Most FMUs have no indicator, and this is asked after every step of the solver.
+        if not len(self._now):
+            return None
         times = np.linspace(start, end, PARTS + 1)
         values = np.zeros((PARTS + 1, len(self._now)))
-        for k, time in enumerate(times if len(self._now) else ()):
+        for k, time in enumerate(times):
             go_to(time)
             values[k] = self._of_now()
             if 0 < k < PARTS and self._differ(values[k]):

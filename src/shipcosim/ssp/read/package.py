@@ -22,7 +22,7 @@ from shipcosim.ssp.xml.document import (
 from shipcosim.temporary import temporary_folder
 
 SYSTEM_STRUCTURE = "SystemStructure.ssd"
-LOGS = (".csv", ".csv.gz", ".nc", ".parquet", ".xlsx")
+TABLES = (".csv", ".csv.gz", ".nc", ".parquet", ".xlsx")
 OSP_STRUCTURE = "OspSystemStructure.xml"
 INSIDE = "Put the file beside the SSD, in resources/, and name it so."
 
@@ -219,7 +219,7 @@ def open_package(
     fmus = tuple(Path(folder) for folder in fmus)
     # A folder, a single SSD, or an archive that is unpacked for as long as the package lives.
     if path.is_dir():
-        tables = sorted(file for file in path.iterdir() if file.name.endswith(LOGS))
+        tables = sorted(file for file in path.iterdir() if file.name.endswith(TABLES))
         if tables and not variant and not any(path.glob("*.ssd")):
             # Someone means the logs in it.
             found = f"This folder has no system, but logs or tables, such as {tables[0].name}."
@@ -236,7 +236,7 @@ def open_package(
         return None
     if path.suffix.lower() == ".ssd":
         return Package(path.parent, str(Path(shown).parent), path.name, fmus)
-    if path.name.endswith(LOGS):
+    if path.name.endswith(TABLES):
         remedy = "`shipcosim check` looks at one, `shipcosim report` compares two."
         findings.error(shown, "This is a table, no system.", remedy)
         return None
