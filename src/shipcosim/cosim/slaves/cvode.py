@@ -78,6 +78,7 @@ class Cvode:
         self.states = np.ctypeslib.as_array(NV_DATA_S(self._x), (max(n, 1),))
         self._tolerances = np.ctypeslib.as_array(NV_DATA_S(self._absolute), (max(n, 1),))
         self.states[:], self._tolerances[:] = 0.0, 1.0
+        self._states_between = NV_DATA_S(self._between)
         self._matrix = SUNDenseMatrix(max(n, 1), max(n, 1), *context)
         self._solver = SUNLinSol_Dense(self._x, self._matrix, *context)
         # Keep references to the callbacks: C holds only their addresses.
@@ -118,7 +119,7 @@ class Cvode:
     def states_at(self, time: float):
         """Pointer to the states at a time within the last step, from the solver's own polynomial."""
         self._check(_interpolate(self._memory, time, 0, self._between))
-        return NV_DATA_S(self._between)
+        return self._states_between
 
     def close(self) -> None:
         """Free the solver's memory."""

@@ -12,6 +12,8 @@ from shipcosim.cosim.slaves.slave import SlaveError
 
 PARTS = 8
 """Parts of a step at whose ends the signs are looked at, besides the vertices of parabolas between them."""
+ENDS = np.linspace(0.0, 1.0, PARTS + 1)
+"""Where these parts end, from 0 at the start of the step to 1."""
 
 
 class EventIndicators:
@@ -21,8 +23,8 @@ class EventIndicators:
     ----------
     n : int
         Number of indicators.
-    values : callable
-        Fills an (n,) array with their values at the present time and states.
+    getter : callable
+        Takes an (n,) array and returns a call that fills it with their values at the present time and states.
 
     Attributes
     ----------
@@ -30,9 +32,12 @@ class EventIndicators:
         Whether one may be zero now, so that its sign is seen only a little later.
     """
 
-    def __init__(self, n: int, values: Callable[[np.ndarray], None]):
+    def __init__(self, n: int, getter: Callable[[np.ndarray], Callable[[], None]]):
         self._now = np.zeros(n)
-        self._values = values
+        self._get_now = getter(self._now)
+        # Values at the ends of the parts of a step, with a prepared call for each row.
+        self._within = np.zeros((PARTS + 1, n))
+        self._get_within = [getter(row) for row in self._within]
         self._signs = np.zeros(n)
         self.may_be_zero = False
 
@@ -43,7 +48,7 @@ class EventIndicators:
 
     def has_changed(self) -> bool:
         """Whether one is past zero, on another side than at the last event."""
-        return self._differ(self._of_now())
+        return bool(self._differ(self._of_now()).any())
 
     def change_within(
         self, start: float, end: float, go_to: Callable[[float], None]
@@ -60,13 +65,17 @@ class EventIndicators:
         # Most FMUs have no indicator, and this is asked after every step of the solver.
         if not len(self._now):
             return None
-        times = np.linspace(start, end, PARTS + 1)
-        values = np.zeros((PARTS + 1, len(self._now)))
-        for k, time in enumerate(times):
+        times = start + (end - start) * ENDS
+        values = self._within
+        # The values at the start are those of the last question.
+        values[0] = self._now
+        for time, get in zip(times[1:].tolist(), self._get_within[1:], strict=True):
             go_to(time)
-            values[k] = self._of_now()
-            if 0 < k < PARTS and self._differ(values[k]):
-                return time
+            get()
+        _refuse_undefined(values)
+        is_past = self._differ(values[1:-1]).any(axis=1)
+        if is_past.any():
+            return float(times[1 + is_past.argmax()])
         # A shorter way past zero and back has a peak between these times: the vertex of a parabola through three of them.
         before = np.abs(values[:-2]) - np.abs(values[1:-1])
         after = np.abs(values[2:]) - np.abs(values[1:-1])
@@ -75,13 +84,14 @@ class EventIndicators:
             left, right = before[row, column], after[row, column]
             time = times[row + 1] + 0.5 * (times[1] - start) * (left - right) / (left + right)
             go_to(time)
-            if start < time < end and self._differ(self._of_now()):
-                return time
+            if start < time < end and self._differ(self._of_now()).any():
+                return float(time)
         return None
 
     def _differ(self, values):
+        """Which values are past zero, on another side than at the last event."""
         signs = np.sign(values)
-        return bool(np.any((signs != 0.0) & (signs != self._signs)))
+        return (signs != 0.0) & (signs != self._signs)
 
     def has_come_to_zero(self) -> bool:
         """Whether a positive indicator has become zero: that is an event too, because FMI counts zero as negative."""
@@ -89,10 +99,14 @@ class EventIndicators:
 
     def _of_now(self):
         if len(self._now):
-            self._values(self._now)
-            # Without a sign it would be an event in every step.
-            undefined = np.isnan(self._now)
-            if undefined.any():
-                number = undefined.argmax() + 1
-                raise SlaveError(f"Its event indicator {number} is no number (NaN).")
+            self._get_now()
+            _refuse_undefined(self._now)
         return self._now
+
+
+def _refuse_undefined(values):
+    """Raise SlaveError for a NaN: it has no sign, and would be an event in every step."""
+    undefined = np.isnan(values)
+    if undefined.any():
+        number = np.argwhere(undefined)[0, -1] + 1
+        raise SlaveError(f"Its event indicator {number} is no number (NaN).")

@@ -167,7 +167,7 @@ class ModelExchange(LibrarySlave):
             self.n_states, self._derivatives, self._n_indicators, self._indicators, self.tolerance
         )
         self._states = solver.states.ctypes.data_as(POINTER(c_double))
-        self._events = EventIndicators(self._n_indicators, self._get_indicators)
+        self._events = EventIndicators(self._n_indicators, self._indicator_getter)
         # Discrete states must settle before continuous time begins (FMI, event iteration).
         self._iterate_event()
 
@@ -334,10 +334,15 @@ class ModelExchange(LibrarySlave):
         assert self._solver is not None  # since the initialisation
         self._set_time_and_states(time, self._solver.states_at(time))
 
-    def _get_indicators(self, values):
-        """Fill an (n_indicators,) array with the event indicators at the present time and states."""
-        pointer = values.ctypes.data_as(POINTER(c_double))
-        self.call("GetEventIndicators", pointer, self._n_indicators)
+    def _indicator_getter(self, values):
+        """Prepared call that fills an (n_indicators,) array with the event indicators of now."""
+        function, component = self._function("GetEventIndicators"), self.component
+        pointer, n = values.ctypes.data_as(POINTER(c_double)), self._n_indicators
+
+        def get():
+            self.check("GetEventIndicators", function(component, pointer, n))
+
+        return get
 
     def _iterate_event(self):
         """Event iteration: update the discrete states until they no longer change."""
