@@ -21,6 +21,8 @@ _WORDS = (
 )
 NOTHING = frozenset(("", "no data", "no value", *_WORDS.split()))
 """Words that loggers write where they have no value, in lower case."""
+LFS_POINTER = b"version https://git-lfs.github.com/spec/"
+"""Start of the file that a clone without Git LFS has instead of a large one."""
 _NUMBER = r"[+-]?(?:\d[\d.,' ]*|[.,]\d+)(?:[eEdD][+-]?\d+)?"
 _STAMP = r"[+-]?\d[\d:./\-+TZ ,]*(?:[AaPp]\.?[Mm]\.?)?"
 WITH_UNIT = r"(?P<number>[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*(?P<unit>[A-Za-zµ°º%][A-Za-z0-9µ°º%/^.·-]{0,7})"

@@ -136,7 +136,7 @@ class Package:
             remedy = "Addresses are relative to the SSD, e.g. resources/name.fmu."
             findings.error(place, f"'{uri}' is no address within the package.", remedy)
             return None
-        if not inside:
+        if not inside and (self.unpacked is not None or any(path.exists() for path in paths)):
             findings.error(
                 place,
                 f"'{uri}' lies outside the package.",

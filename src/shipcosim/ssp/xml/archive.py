@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 
+from shipcosim.dialects import LFS_POINTER
 from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.ssp.xml.document import AnyPath
 from shipcosim.temporary import temporary_folder
@@ -105,11 +106,14 @@ def _opened(path: AnyPath, shown: str) -> zipfile.ZipFile:
     try:
         # zipfile calls a file on a broken disk no archive.
         with Path(path).open("rb") as file:
-            file.read(1)
+            is_pointer = file.read(len(LFS_POINTER)) == LFS_POINTER
         archive = zipfile.ZipFile(path)
     except OSError as error:
         raise error_at(shown, f"Cannot be read: {error.strerror}.") from None
     except Exception as error:
+        if is_pointer:
+            remedy = "Get the file: `git lfs pull` in its repository."
+            raise error_at(shown, "This is a pointer of Git LFS, not the file.", remedy) from None
         raise _damaged(shown, error) from None
     # The first entry must start at 0: otherwise this is the tail of another archive.
     if min((entry.header_offset for entry in archive.infolist()), default=0) > 0:

@@ -341,6 +341,17 @@ TABLES = {
         propulsion.starboard.revolutions (Hz) | starboard_rpm:Hz | starboard_rpm""",
         {},
     ),
+    "Signal K without units": (
+        """timestamp | iso | time
+        navigation.headingTrue | heading:rad | heading
+        navigation.position.latitude | latitude | latitude
+        navigation.position.longitude | longitude | longitude
+        navigation.speedOverGround | speed_over_ground | speed_over_ground
+        navigation.courseOverGroundTrue | course_over_ground:rad | ?course_over_ground
+        propulsion.port.revolutions | port_rpm:Hz | ?port_rpm
+        propulsion.starboard.revolutions | starboard_rpm:Hz | ?starboard_rpm""",
+        {},
+    ),
     "wind over ground named with its frame": (
         """time | time | time
         heading | heading | heading
@@ -358,7 +369,11 @@ TABLES = {
         positioningsystem_cog_deg_1 | course_over_ground | course_over_ground
         gyro_heading_deg_1 | heading | heading
         anemometer_aws_mps | wind_speed | wind_speed
-        anemometer_awa_deg | wind_from | wind_from""",
+        anemometer_awa_deg | wind_from | wind_from
+        azimuththruster_speed_rpm_1 | port_rpm | ?port_rpm
+        azimuththruster_angle_deg_1 | port_azimuth | ?port_azimuth
+        azimuththruster_speed_rpm_2 | starboard_rpm | ?starboard_rpm
+        tunnelthruster_power_kw_1 | port_rpm |""",
         {},
     ),
     "a vessel's own report": (

@@ -1,8 +1,10 @@
 """Tables that tools of ships export open with the right channels; a doubt is asked, and no channel is wrong."""
 
+import json
+
 import numpy as np
 import pytest
-from diagnose.log.exports import SHIP, TABLES, _plain, motion, table
+from diagnose.log.exports import SHIP, TABLES, _plain, motion, table, texts_of
 
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.names.proposal import propose
@@ -53,3 +55,53 @@ def test_an_exported_table_has_its_channels(kind, tmp_path):
     asked = {role.removeprefix("?") for role in roles if role.startswith("?")}
     expected = {role for role in roles if not role.startswith("?")}
     assert wrong_channels(path, expected, asked - expected) == []
+
+
+CHANNELS = ("latitude", "longitude", "heading", "yaw_rate", "port_rpm")
+
+
+def lines_of(form):
+    """A long table of the motion: one value a row, by the names that databases give to the columns."""
+    truth = motion()
+    for row, stamp in enumerate(texts_of("iso")):
+        for number, name in enumerate(CHANNELS):
+            yield form.format(t=stamp, n=name, v=truth[name][row], k=number)
+
+
+@pytest.mark.parametrize(
+    "head, form",
+    [
+        ("time,vessel_id,parameter_id,value", "{t},ferry,{n},{v}"),
+        ("time,tag_name,value", "{t},{n},{v}"),
+        (
+            "#datatype,string,long,dateTime:RFC3339,double,string,string\n"
+            "#default,_result,,,,,\n,result,table,_time,_value,_field,_measurement",
+            ",,{k},{t},{v},{n},ship",
+        ),
+    ],
+)
+def test_a_table_of_a_database_with_one_value_a_row_has_its_channels(head, form, tmp_path):
+    path = tmp_path / "log.csv"
+    path.write_text("\n".join([head, *lines_of(form)]) + "\n", encoding="utf-8")
+    assert wrong_channels(path, {"time", *CHANNELS}, set()) == []
+
+
+def deltas():
+    """The motion as deltas of Signal K."""
+    truth = motion()
+    for row, stamp in enumerate(texts_of("iso")):
+        place = {name: truth[name][row] for name in ("latitude", "longitude")}
+        values = [
+            {"path": "navigation.position", "value": place},
+            {"path": "navigation.headingTrue", "value": np.radians(truth["heading"][row])},
+        ]
+        updates = [{"source": {"label": "n2k"}, "timestamp": stamp, "values": values}]
+        yield json.dumps({"context": "vessels.self", "updates": updates})
+
+
+@pytest.mark.parametrize("is_list", [False, True])
+def test_deltas_of_signal_k_are_read(is_list, tmp_path):
+    path = tmp_path / "log.json"
+    text = f"[{','.join(deltas())}]" if is_list else "\n".join(deltas())
+    path.write_text(text, encoding="utf-8")
+    assert wrong_channels(path, {"time", "latitude", "longitude", "heading"}, set()) == []

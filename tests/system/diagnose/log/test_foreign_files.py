@@ -42,6 +42,11 @@ CASES = {
     "report.html": (b"<!DOCTYPE html><title>a run</title>", "page in HTML.*as .csv"),
     "saved.csv": (b"<html><body>Please log in</body></html>", "page in HTML"),
     "report.pdf": (b"%PDF-1.7 ...", "PDF"),
+    "large.csv": (
+        b"version https://git-lfs.github.com/spec/v1\noid sha256:2b5c5d4c\n",
+        "git lfs pull",
+    ),
+    "large.nc": (b"version https://git-lfs.github.com/spec/v1\noid sha256:2b5c5d4c\n", "Git LFS"),
 }
 
 

@@ -31,9 +31,26 @@ def text_of_records(path: Path) -> tuple[str, list[str]]:
     except ValueError:
         # One record a line.
         content = [json.loads(line) for line in text.splitlines() if line.strip()]
+    # Deltas of Signal K: each has values by their paths.
+    if isinstance(content, list) and any("updates" in record for record in content):
+        content = [row for record in content for row in _rows_of_delta(record)]
     # One record of lists is a table by its columns.
     is_by_column = isinstance(content, dict) and any(
         isinstance(values, (list, dict)) for values in content.values()
     )
     frame = pandas.DataFrame(content) if is_by_column else pandas.json_normalize(content)
     return frame.to_csv(sep="\t", index=False), said
+
+
+def _rows_of_delta(record):
+    """Rows of time, path and value of a delta; values with parts, such as a position, have a path for each.
+
+    Reference: Signal K specification 1.7, delta format.
+    """
+    for update in record.get("updates", ()):
+        for entry in update.get("values", ()):
+            value = entry["value"]
+            parts = value if isinstance(value, dict) else {"": value}
+            for name, number in parts.items():
+                path = f"{entry['path']}.{name}".strip(".")
+                yield {"time": update.get("timestamp"), "path": path, "value": number}

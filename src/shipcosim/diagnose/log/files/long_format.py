@@ -26,7 +26,7 @@ _NAMES = (
     "item",
     "field",
 )
-_NAMES += ("sensor", "message", "msg", "label", "source", "id", "measurement", "type")
+_NAMES += ("sensor", "message", "msg", "label", "source", "id", "measurement", "type", "path")
 _VALUES = ("value", "val", "reading", "data", "measurement", "number", "v", "y")
 _MOST_NAMES = 500
 _ALONE = 0.1  # share of rows with most channels, below which rows are messages of single sensors. Assumed.
@@ -72,7 +72,7 @@ def _long(log, form):
     if form.name is not None and form.value is not None:
         return [form.name], form.value
     # Usual names of such columns, where the values look like names.
-    lower = {column.strip().lower(): column for column in log.values}
+    lower = {_plain(column): column for column in log.values}
     value = next((lower[word] for word in _VALUES if word in lower), None)
     names = [
         lower[word] for word in _NAMES if word in lower and _is_of_names(log.values[lower[word]])
@@ -80,6 +80,12 @@ def _long(log, form):
     if form.name is not None:
         names = [form.name]
     return [name for name in names if name != value], form.value or value
+
+
+def _plain(column):
+    """Name of a column as the lists have it: databases write ``_field`` and ``parameter_id``."""
+    name = column.strip().lower().strip("_")
+    return name.removesuffix("_id").removesuffix("_name")
 
 
 def _is_of_names(values):

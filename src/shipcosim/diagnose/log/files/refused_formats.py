@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from shipcosim.diagnose.log.files.excel import is_workbook
-from shipcosim.dialects import is_text
+from shipcosim.dialects import LFS_POINTER, is_text
 from shipcosim.errors import error_at
 
 _SHEET = "Save it as .xlsx or .csv, or convert it: `libreoffice --headless --convert-to xlsx FILE`."
@@ -41,6 +41,7 @@ _BY_NAME = {
     ".html": ("a page in HTML", "Save the table that it shows as .csv."),
     ".pdf": ("a document in PDF", "Save the table in it as .csv."),
     ".zip": ("an archive", "Unpack it, and name the log in it."),
+    ".lfs": ("a pointer of Git LFS", "Get the file: `git lfs pull` in its repository."),
 }
 _BY_CONTENT = (
     (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", ".xls"),
@@ -55,6 +56,7 @@ _BY_CONTENT = (
     (b"<!doctype html", ".html"),
     (b"<html", ".html"),
     (b"%PDF-", ".pdf"),
+    (LFS_POINTER, ".lfs"),
 )
 _SPREADSHEET = b"application/vnd.oasis.opendocument"
 

@@ -104,9 +104,10 @@ def guesses_of(column: str, log: LogColumns, thrusters: Thrusters | None) -> lis
         found = _of_thruster(column, drive, stated, thrusters)
         if found[0].role or meaning_of(words).role is None:
             return found
-    # A name of a thruster may end in a unit.
+    # A name of a thruster may end in a unit, with the thruster's number behind it.
+    number = words[-1:] if words[-1].isdigit() else ()
     for target in () if stated else _THRUSTER_UNITS.values():
-        rest, suffix = unit_after(words, target)
+        rest, suffix = unit_after((*number, *words[: len(words) - len(number)]), target)
         if suffix and (drive := drive_of(rest, suffix, values)):
             found = _of_thruster(column, drive, suffix, thrusters)
             if found[0].role:
@@ -181,7 +182,10 @@ def _of_thruster(
         names = [name]
         doubt = ""
     else:
-        names, doubt = thrusters_named(drive.place, thrusters)
+        # A number of an azimuth thruster counts these alone.
+        turning = {name: by for name, by in thrusters.items() if "azimuth" in by}
+        is_turning = turning and "azimuth" in words_of(column)
+        names, doubt = thrusters_named(drive.place, turning if is_turning else thrusters)
     there = ", ".join(thrusters) if thrusters else ""
     if not names and not there:
         why = "the system has no thruster that it can be; a channel file can name an input of the system"

@@ -15,6 +15,7 @@ OF_A_MAP = {"%": "percent", "pct": "percent", "percent": "percent"}
 OF_A_MAP |= {"us": "pwm", "µs": "pwm", "pwm": "pwm"}
 """Units that become a speed by a map only, and what they are of."""
 _SURE = {"rpm", "azimuth", "thrust", "rudder", "force"}  # words that hardly say anything else
+_FASTEST = 100.0  # 1/s, no shaft turns faster: larger numbers of revolutions are those of a minute
 _ENGINES = {"engine", "me"}
 _ELSEWHERE = {"bow", "port", "starboard", "stern", "centre"}
 
@@ -190,5 +191,11 @@ def _by_values(quantity, word, unit, values):
         return "pwm", ""
     if quantity == "" and len(known) and np.abs(known).max() <= 100.0:
         return "percent", ""
+    if word == "revolutions" and not unit:
+        is_fast = len(known) and np.abs(known).max() > _FASTEST
+        return (
+            quantity,
+            "" if is_fast else "revolutions a second, as Signal K has them, or a minute",
+        )
     is_sure = word in _SURE or unit or quantity in ("", "pwm", "percent")
     return quantity, "" if is_sure else f"'{word}' may be something else"
