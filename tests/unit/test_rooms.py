@@ -19,7 +19,7 @@ MAY_IMPORT = {
     "fmi": {"models", "errors", "temporary", "units"},
     "interfaces": {"fmi", "models", "angles"},
     "library": {"fmi", "errors", "temporary"},
-    "ssp": {"library", "series", "errors", "temporary", "units"},
+    "ssp": {"dialects", "library", "series", "errors", "temporary", "units"},
     "scenario": {"library", "series", "ssp", "errors", "units", "angles"},
     "learn": {"library", "angles", "models", "series", "ssp", "scenario", "cosim"},
     "native": {"library", "fmi", "errors", "temporary"},

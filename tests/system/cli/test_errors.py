@@ -414,6 +414,7 @@ def test_parameter_set(call, gunnerus, old, new, said):
         (SSV, b"<a/>", ["Its outermost element is <a>. Right would be <ParameterSet "]),
         (FMU, NOISE, ["Damaged or incomplete archive", "Build, copy or export it again."]),
         (FMU, b"", ["Damaged or incomplete archive"]),
+        (FMU, b"version https://git-lfs.github.com/spec/v1\n", ["Git LFS", "git lfs pull"]),
         ("build/ssp/garbage.ssp", NOISE, ["Damaged or incomplete archive"]),
         ("build/ssp/garbage.ssp", b"", ["Damaged or incomplete archive"]),
     ],

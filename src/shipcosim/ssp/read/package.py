@@ -136,10 +136,12 @@ class Package:
             remedy = "Addresses are relative to the SSD, e.g. resources/name.fmu."
             findings.error(place, f"'{uri}' is no address within the package.", remedy)
             return None
-        if not inside and (self.unpacked is not None or any(path.exists() for path in paths)):
+        if not inside:
+            # Of an archive nothing outside is looked at.
+            is_missing = self.unpacked is None and not any(path.exists() for path in paths)
             findings.error(
                 place,
-                f"'{uri}' lies outside the package.",
+                f"'{uri}' lies outside the package{', and there is no such file' if is_missing else ''}.",
                 "Put the file beside the SSD, in resources/.",
             )
             return None
