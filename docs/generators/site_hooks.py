@@ -50,6 +50,7 @@ BELOW = {
     "reports/prediction.md": ["prediction", "dp_prediction", "drift_prediction"],
     "reports/docking.md": ["docking"],
     "reports/dead-reckoning.md": ["dead-reckoning"],
+    "reports/thesis.md": ["thesis"],
     "reports/diagnosis-trial.md": ["diagnosis-trial"],
     "reports/case-gunnerus-2022.md": ["sea-trials-2022"],
 }
