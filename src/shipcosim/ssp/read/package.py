@@ -23,6 +23,7 @@ from shipcosim.temporary import temporary_folder
 
 SYSTEM_STRUCTURE = "SystemStructure.ssd"
 TABLES = (".csv", ".csv.gz", ".nc", ".parquet", ".xlsx")
+PARTS = {".ssv": "parameter set", ".ssm": "parameter mapping", ".ssb": "signal dictionary"}
 OSP_STRUCTURE = "OspSystemStructure.xml"
 INSIDE = "Put the file beside the SSD, in resources/, and name it so."
 
@@ -241,6 +242,10 @@ def open_package(
     if path.name.endswith(TABLES):
         remedy = "`shipcosim check` looks at one, `shipcosim report` compares two."
         findings.error(shown, "This is a table, no system.", remedy)
+        return None
+    if kind := PARTS.get(path.suffix.lower()):
+        remedy = "Give the system; `--parameters` gives it a parameter set."
+        findings.error(shown, f"This is a {kind}, no system.", remedy)
         return None
     unpacked = temporary_folder()
     try:

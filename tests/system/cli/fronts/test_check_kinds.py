@@ -88,3 +88,15 @@ def test_a_file_of_matlab_is_checked_as_a_log(tmp_path, call, content):
     (tmp_path / "log.mat").write_bytes(content)
     done = call("check", tmp_path / "log.mat")
     assert done.code == 1 and "log.mat: " in done.out and "are not known" not in done.out
+
+
+@pytest.mark.parametrize(
+    "ending, kind",
+    [("ssv", "parameter set"), ("ssm", "parameter mapping"), ("ssb", "signal dictionary")],
+)
+@pytest.mark.parametrize("command", ["simulate", "compare", "capability"])
+def test_a_part_of_a_system_is_no_system(call, command, ending, kind, tmp_path):
+    path = tmp_path / f"a.{ending}"
+    path.write_text("<a/>")
+    done = call(command, path)
+    assert done.code == 2 and f"This is a {kind}, no system." in done.err
