@@ -168,6 +168,7 @@ def test_inputs_that_are_no_table_are_refused(wrong):
         ("parameters", [3], "parameters: 3 is neither a path nor a name"),
         ("record", 3.5, "record: 3.5 is neither a path nor a name"),
         ("realtime", "fast", "'fast' is no pace"),
+        ("out", 3, "out: 3 is neither a path nor a name"),
     ],
 )
 def test_an_argument_of_a_wrong_type_is_refused_by_name(argument, wrong, message):

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Any, TypeVar, cast
 
+from shipcosim.calls.arguments import path_or_name
 from shipcosim.errors import Problem, error_at, raise_errors, suggestion
 from shipcosim.options import RunKeywords
 
@@ -44,11 +45,13 @@ def with_known_keywords(function: Function) -> Function:
         ]
         raise_errors(unknown)
         try:
-            signature.bind(*arguments, **keywords)
+            given = signature.bind(*arguments, **keywords).arguments
         except TypeError as error:
             text = str(error)
             remedy = f"Its form is {function.__name__}({', '.join(known)})."
             raise error_at(where, f"{text[:1].upper()}{text[1:]}.", remedy) from None
+        if given.get("out") is not None:
+            path_or_name("out", given["out"])
         return function(*arguments, **keywords)
 
     return cast(Function, call)
