@@ -367,7 +367,7 @@ def table(head, rows=300):
         (HEAD + "\n", ["log.csv:", "no row below its header"]),
         (
             table(HEAD.replace("north [m],east [m],", "")),
-            ["log.csv:", "no channel north, east", "needs north, east"],
+            ["log.csv:", "no channel north, east", "needs north, east", "shipcosim channels"],
         ),
         (
             table(HEAD.replace("time [s]", "number")),

@@ -198,8 +198,12 @@ def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     missing = [role for role in ("north", "east", "heading") if role not in log]
     if missing:
         found = f"no channel {', '.join(missing)}."
-        right = "A diagnosis needs north, east and heading."
-        raise error_at(source_of(log), found, right)
+        source = source_of(log)
+        right = (
+            "A diagnosis needs north, east and heading. "
+            f"`shipcosim channels {source}` shows which columns may be them."
+        )
+        raise error_at(source, found, right)
     # Measurements in SI units, with the heading unwrapped.
     measured = np.stack(
         [_column(log, role, rows) * si for role, si in zip(CHANNELS, _TO_SI, strict=True)], axis=-1

@@ -81,7 +81,7 @@ def summary(diagnosis: Diagnosis) -> tuple[Block, ...]:
     visible = Table(visible_rows(diagnosis.smallest_visible))
     columns = diagnosis.log.measured.attrs.get("column_remarks", ()) if diagnosis.log else ()
     return (
-        Block("Wrong, largest first", Table(discrepancy_rows(diagnosis))),
+        Block("Differences, largest first", Table(discrepancy_rows(diagnosis))),
         Block("Found", found),
         Block("Learned of the craft", craft_table(diagnosis.craft)),
         Block(f"{logs} cannot tell apart", Table(alike)),

@@ -247,11 +247,12 @@ def _better_predictor(diagnosis: Diagnosis) -> str:
 def _unknown(diagnosis: Diagnosis, physics: Sequence[str]) -> str:
     """What is certain without a named cause: why none was tried, the largest discrepancy and sure findings."""
     said = f" Certain is: {listed(physics)}." if physics else ""
-    wrong = [
-        f" The simulation is wrong, first of all: {d.what}." for d in diagnosis.discrepancies[:1]
-    ]
+    largest = [d.what for d in diagnosis.discrepancies[:1]]
     if diagnosis.obstacles:
-        return f"No cause was tried. {diagnosis.obstacles[0]}{''.join(wrong)}{said}"
+        # What differs may be what the log lacks: nothing is known to be wrong.
+        differs = "".join(f" Simulation and log differ most in this: {what}." for what in largest)
+        return f"No cause was tried. {diagnosis.obstacles[0]}{differs}{said}"
+    wrong = [f" The simulation is wrong, first of all: {what}." for what in largest]
     likely = [one for one in diagnosis.candidates if one.probability >= LIKELY]
     if likely:
         names = [title_of(one).lower() for one in likely]
@@ -359,7 +360,7 @@ def next_steps(diagnosis: Diagnosis, extended: str | None = None) -> list[str]:
     if extended and 2 * better < judged:
         steps.append(
             f"Do not use {extended} yet: with it {judged - better} of {judged} logs are predicted no better. There are "
-            "other errors: correct those listed under what is wrong first, the largest first."
+            "other errors: correct the listed differences first, the largest first."
         )
     elif extended:
         steps.append(f"Simulate with it in the system: shipcosim simulate {extended}")

@@ -341,6 +341,17 @@ TABLES = {
         propulsion.starboard.revolutions (Hz) | starboard_rpm:Hz | starboard_rpm""",
         {},
     ),
+    "a DP system's own log": (
+        """time [s] | time | time
+        DP Pos North (m) | north | north
+        DP Pos East (m) | east | east
+        Gyro 1 (deg) | heading | heading
+        Surge Speed (kn) | surge:kn | surge
+        Sway Speed (kn) | sway:kn | sway
+        Azi Port RPM FB (rpm) | port_rpm | port_rpm
+        Azi Port Dir FB (deg) | port_azimuth | port_azimuth""",
+        {},
+    ),
     "Signal K without units": (
         """timestamp | iso | time
         navigation.headingTrue | heading:rad | heading

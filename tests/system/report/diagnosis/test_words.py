@@ -6,7 +6,7 @@ import pytest
 
 from shipcosim.diagnose.experiment.design import ExperimentDesign
 from shipcosim.diagnose.explanation.summary import LoadForm
-from shipcosim.diagnose.finding import Candidate, Finding, ParameterEstimate
+from shipcosim.diagnose.finding import Candidate, Discrepancy, Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.estimates import plus_minus, vector
@@ -182,6 +182,16 @@ def test_every_cause_of_the_catalogue_has_advice():
 def test_verdict_is_one_sentence_on_model_and_log(diagnosis, word, said):
     found = outcome(diagnosis)
     assert found.word == word and all(text in found.sentence for text in said)
+
+
+def test_a_difference_is_no_fault_where_the_log_lacks_what_could_explain_it():
+    """Without a thruster's channels the force that is missing may be the thruster's."""
+    difference = Discrepancy("side force: 3 kN are missing", None, "sway", 3e3, 500.0, "N", 1.0)
+    lacking = ("No port_rpm in the log.",)
+    said = outcome(Diagnosis("unknown", (), obstacles=lacking, discrepancies=(difference,)))
+    assert "differ most in this: side force" in said.sentence and "wrong" not in said.sentence
+    said = outcome(Diagnosis("unknown", (), discrepancies=(difference,)))
+    assert "wrong, first of all: side force" in said.sentence
 
 
 def test_next_steps_name_what_to_inspect_what_to_run_and_what_stays_open():
