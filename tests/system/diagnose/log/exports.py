@@ -352,6 +352,28 @@ TABLES = {
         Azi Port Dir FB (deg) | port_azimuth | port_azimuth""",
         {},
     ),
+    "SAMOS": (
+        """time [s] | time | time
+        lat [degrees (+N)] | latitude | latitude
+        lon [degrees (+E)] | longitude | longitude
+        PL_HD [degrees (clockwise from true north)] | heading | heading
+        PL_CRS [degrees (clockwise towards true north)] | course_over_ground | course_over_ground
+        PL_SPD [meters/second] | speed_over_ground | speed_over_ground
+        PL_WDIR [degrees (clockwise from bow)] | wind_from | wind_from
+        PL_WSPD [meters/second] | wind_speed | wind_speed""",
+        {},
+    ),
+    "one name in two units": (
+        """Date/Time (UTC) | slashes | time
+        Lat [°N] | latitude | latitude
+        Lon [°E] | longitude | longitude
+        Hdg [°T] | heading | heading
+        Port Azi [rpm] | port_rpm | port_rpm
+        Port Azi [°] | port_azimuth | port_azimuth
+        Stbd Azi [rpm] | starboard_rpm | starboard_rpm
+        Stbd Azi [°] | starboard_azimuth | starboard_azimuth""",
+        {},
+    ),
     "Signal K without units": (
         """timestamp | iso | time
         navigation.headingTrue | heading:rad | heading

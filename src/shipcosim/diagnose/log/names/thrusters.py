@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 
-from shipcosim.diagnose.log.names.units import converts
+from shipcosim.diagnose.log.names.units import converts, unit_for
 from shipcosim.diagnose.log.names.vocabulary import vocabulary, words_of
 from shipcosim.diagnose.numerics import finite
 
@@ -184,7 +184,9 @@ def _by_values(quantity, word, unit, values):
     known = finite(values) if values.dtype.kind == "f" else np.empty(0)
     if unit in OF_A_MAP:
         return OF_A_MAP[unit], ""
-    if quantity == "" and unit and converts(unit, "rpm"):
+    # In rpm the word azimuth is the kind of thruster.
+    is_kind = word == "azimuth" and unit_for(unit, "rpm") == "rpm"
+    if is_kind or (quantity == "" and unit and converts(unit, "rpm")):
         return "rpm", ""
     inside = len(known) and known.min() >= _PWM[0] and known.max() <= _PWM[1]
     if quantity == "" and inside:

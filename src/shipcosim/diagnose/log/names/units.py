@@ -11,6 +11,7 @@ _BRACKETS = re.compile(r"^(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]\s*$")
 _OTHERS = re.compile(
     r"^(?P<name>.*?)\s*(?:\((?P<a>[^()]*)\)|\{(?P<b>[^{}]*)\}|<(?P<c>[^<>]*)>|[,/:;]\s+(?P<d>[^,/\s]\S*))\s*$"
 )
+_COUNTED = r"\((?:\+[NE]|clockwise (?:from (?:bow|true north)|towards true north))\)"
 _LONGEST_SUFFIX = 3  # words
 _NO_SUFFIX = set("n rpm 1 none raw date utc local iso text h d int grad flag".split())
 """Spellings of units that at the end of a name, after an underscore, mean something else."""
@@ -124,7 +125,8 @@ def unit_after(words: tuple[str, ...], target: str) -> tuple[tuple[str, ...], st
 def _plain(text: str) -> str:
     # Times by CF say since when after their unit. "Grad" is German for a degree; "grad" can be a gon as well.
     text = re.sub(r"\bGrad\b", "deg", text)
-    return re.sub(r"\s+since\s.*|\s+", "", text).lower()
+    # What stands in brackets behind it agrees with our roles: SAMOS writes how angles are counted.
+    return re.sub(_COUNTED + r"|\s+since\s.*|\s+", "", text).lower()
 
 
 @cache
