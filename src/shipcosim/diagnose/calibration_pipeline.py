@@ -341,7 +341,8 @@ def _reasons_not_to_trust(
     A wide enough tolerance makes a number of the ship out of every cause, so the logs are diagnosed as any others.
     """
     found = [
-        f"{name}: a diagnosis of it names {finding.label} ({100.0 * finding.probability:.0f} %): the ship was not well. "
+        f"{name}: a diagnosis of it names {finding.label.replace('_', ' ')} ({100.0 * finding.probability:.0f} %): "
+        "the ship was not well. "
         "Diagnose the log, mend the ship or the system, and calibrate on logs without it."
         for name, findings in named.items()
         for finding in findings
@@ -369,7 +370,7 @@ def _judged(reference, found, suspects):
     moved = dict(zip(names, by, strict=True))
     # Causes that still gain beside the calibrated ship.
     for label, gain in suspects.items():
-        text = f"The logs still look like {label} beside the calibrated ship ({gain:.0f} nats)"
+        text = f"The logs still look like {label.replace('_', ' ')} beside the calibrated ship ({gain:.0f} nats)"
         if gain > NOT_WELL:
             refusals.append(
                 f"{text}: she is not well, or the system is wrong there. Diagnose these logs first."

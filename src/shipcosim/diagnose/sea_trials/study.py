@@ -275,8 +275,9 @@ def study(
     drives = {name: ship.drives(name) for name in ship.thrusters}
     read = checked(ReadLog(read_log(log, channels, drives), ship, read_catalogue(causes)))
     if read.ship.third_party:
-        found = f"{', '.join(read.ship.third_party)}: third-party FMUs, which are only known where a log has been."
-        raise error_at(system.file, found, "Sea trials need thruster FMUs of shipcosim.")
+        found = f"{', '.join(read.ship.third_party)}: what such an FMU gives is only known where a log has been."
+        right = "Sea trials need the FMUs azimuth_thruster and tunnel_thruster."
+        raise error_at(system.file, found, right)
     # Gaps must not fall within a trial.
     lost = [segment for fault in read.faults if fault.cause == "gap" for segment in fault.segments]
     record = record_of(read.repaired, read.ship)

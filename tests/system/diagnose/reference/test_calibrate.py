@@ -85,7 +85,7 @@ def test_a_ship_that_a_diagnosis_calls_ill_makes_no_reference(tmp_path):
     """Wide tolerances would make a number of her own of every cause."""
     ill = twin.sailed({"ill": {"port.thrust_loss": 0.34}}, minutes=12.0, seed=6)["ill"]
     ship = calibrate([ill], twin.system(), out=tmp_path)
-    assert "names thrust_loss of port" in ship.refusals[0]
+    assert "names thrust loss of port" in ship.refusals[0]
     assert list(tmp_path.iterdir()) == []
 
 
