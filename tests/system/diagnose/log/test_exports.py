@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from diagnose.log.exports import SHIP, TABLES, _plain, motion, table, texts_of
+from diagnose.log.exports import COUNT, SHIP, TABLES, _plain, motion, table, texts_of
 
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.names.proposal import propose
@@ -105,3 +105,14 @@ def test_deltas_of_signal_k_are_read(is_list, tmp_path):
     text = f"[{','.join(deltas())}]" if is_list else "\n".join(deltas())
     path.write_text(text, encoding="utf-8")
     assert wrong_channels(path, {"time", "latitude", "longitude", "heading"}, set()) == []
+
+
+@pytest.mark.parametrize("label", ["label", "path", "source", "type", "message"])
+def test_a_text_in_each_row_of_a_wide_table_is_a_label_and_names_no_channel(label, tmp_path):
+    """Beside a position y it was taken for the name of a channel, and y for its value."""
+    columns = [("time [s]", "time"), ("x [m]", "north"), ("y [m]", "east"), ("heading", "heading")]
+    head, *rows = table([*columns, ("port_rpm", "port_rpm")]).splitlines()
+    lines = [f"{row},{'transit' if k < COUNT // 2 else 'hold'}" for k, row in enumerate(rows)]
+    path = tmp_path / "log.csv"
+    path.write_text("\n".join([f"{head},{label}", *lines]) + "\n", encoding="utf-8")
+    assert wrong_channels(path, {"time", "heading", "port_rpm"}, {"north", "east"}) == []

@@ -9,6 +9,7 @@ import numpy as np
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.interpolation import at_times
 from shipcosim.diagnose.log.files.table import LogColumns
+from shipcosim.diagnose.log.names.vocabulary import meaning_of, words_of
 from shipcosim.diagnose.log.rows import usable_rows
 from shipcosim.diagnose.numerics import finite
 from shipcosim.errors import error_at, suggestion
@@ -56,6 +57,10 @@ def spread(log: LogColumns, form: FileLayout) -> LogColumns:
         return log
     # Among the other columns find one of units, and one of times.
     rest = [column for column in log.values if column not in (*names, value)]
+    # A column with a role of its own beside them: the row is of all channels, and the text a label of it.
+    is_wide = any(meaning_of(words_of(column)).role not in (None, "time") for column in rest)
+    if is_wide and form.name is None:
+        return log
     unit = next((column for column in rest if column.strip().lower() in ("unit", "units")), None)
     clocks = [column for column in rest if column != unit and _is_clock(log.values[column])]
     if not clocks:
