@@ -16,7 +16,7 @@ from truth import draw
 SEED = 702
 DRAWN = {STEP: True, RAMP: "ramp", SWITCHING: "switching"}
 """A single spell is tried at night: it is found as several are."""
-MINUTES = {SWITCHING: 30}
+MINUTES = {STEP: 20, RAMP: 14, SWITCHING: 24}
 """What comes and goes takes a longer log to be told from a fault of the log."""
 
 
