@@ -211,7 +211,7 @@ def test_command_and_call_leave_the_same_files(name, tank, call):
 
 def write_trials(folder):
     planted = {"heavy to turn": {"vessel.inertia_yaw": 2.0 * 43e6}}
-    log = trials.logs(planted, seed=3)["heavy to turn"]
+    log = trials.logs(planted, seed=3, until=480.0)["heavy to turn"]
     # Its first circle is enough for a study.
     sc.write_table(log.isel(time=slice(0, 365)), folder / "trials.csv")
 
