@@ -164,12 +164,12 @@ def test_without_what_drives_a_thruster_nothing_is_said_of_sides_signs_and_sizes
 def test_thrusters_that_answer_weather_which_nobody_knows_are_not_said_to_run_the_wrong_way(
     tmp_path,
 ):
-    check_unknown_weather(704, tmp_path)
+    check_unknown_weather(705, tmp_path, minutes=20)
 
 
-def check_unknown_weather(seed, tmp_path):
+def check_unknown_weather(seed, tmp_path, minutes=40):
     """In stationkeeping what is commanded goes against what is felt, and most of what is felt is not the thrusters'."""
-    draw("hold", seed, causes="unknown").save(tmp_path / "log.csv")
+    draw("hold", seed, causes="unknown", minutes=minutes).save(tmp_path / "log.csv")
     ship = ship_model_of(twin.system())
     found = compared(checked(ReadLog(read_log(tmp_path / "log.csv"), ship, read_catalogue())))
     assert found.comparison.labels.best.changes and not found.comparison.labels.is_wrong
