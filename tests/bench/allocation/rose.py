@@ -8,7 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path[:0] = [str(Path(__file__).resolve().parents[1]), str(Path(__file__).resolve().parents[2])]
+HERE = Path(__file__).resolve()
+if __name__ == "__main__":  # as a test its folders are on the path already
+    sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]
 
 from ships import parameters  # noqa: E402
 

@@ -3,9 +3,11 @@
 import pytest
 from fmi.test_c_host import (
     FMUS,
+    FMUS_IN_CI,
     NATIVE,
     NATIVE_IN_CI,
     check_native,
+    check_reference,
     check_state,
     host,
     loaded,
@@ -14,6 +16,11 @@ from fmi.test_c_host import (
 )
 
 from shipcosim.library import build_stale
+
+
+@pytest.mark.parametrize("name", [name for name in FMUS if name not in FMUS_IN_CI])
+def test_every_fmu_of_the_project_gives_its_reference_result(name, root, loaded, host):
+    check_reference(name, root, loaded, host)
 
 
 @pytest.mark.parametrize("name", [name for name in NATIVE if name not in NATIVE_IN_CI])

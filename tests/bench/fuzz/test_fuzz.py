@@ -10,6 +10,7 @@ from fuzz.test_fuzz import (
     TYPED_AT_ONCE,
     TYPED_IN_CI,
     TYPED_NUMBER,
+    check_noticed,
     shown,
 )
 
@@ -35,3 +36,14 @@ def test_an_input_that_takes_too_long_is_noticed(monkeypatch):
     monkeypatch.setenv("SHIPCOSIM_FUZZ_SABOTAGE", ENDLESS)
     failures, _ = survive(SEED, 0, 1)
     assert "took" in failures[0]["ended"]
+
+
+@pytest.mark.parametrize(
+    ("sabotage", "said"),
+    [
+        ("open(os.path.join(os.getcwd(), '..', 'x'), 'w')", "wrote"),
+        ("x = bytearray(2**31)", "MemoryError"),
+    ],
+)
+def test_what_else_should_not_happen_is_noticed(sabotage, said, monkeypatch):
+    check_noticed(sabotage, said, monkeypatch)

@@ -2,7 +2,14 @@
 
 import pytest
 from measured.logs import FOLDERS, files
-from measured.test_measured import MEASURED, diagnosed, fmus, has_figures, log
+from measured.test_measured import (
+    MEASURED,
+    check_exchanged,
+    diagnosed,
+    fmus,
+    has_figures,
+    log,
+)
 
 from shipcosim.diagnose.joint_pipeline import diagnose_jointly
 from shipcosim.ssp import read_system
@@ -41,3 +48,8 @@ def test_logs_together_teach_a_craft_that_predicts_each_from_the_others(log, fmu
     found = diagnose_jointly([table for table, *_ in tables], system, tables[0][1])
     gain = found.as_json()["gain"]
     assert gain["after_m"] < 0.55 * gain["before_m"] and found.craft.logs == 3
+
+
+@pytest.mark.parametrize("name", ["run_218.csv.gz", "run_232.csv.gz"])
+def test_thrusters_that_would_brake_the_craft_are_found_exchanged(name, log, fmus, tmp_path):
+    check_exchanged(name, 2, log, fmus, tmp_path)

@@ -1,9 +1,12 @@
 """Two projects: one as small as one can be, with one FMU, one system, one scenario; and a copy of the real one."""
 
+import os
 import shutil
+from functools import cache
 from types import SimpleNamespace
 
 import pytest
+from typer.main import get_command
 from typer.testing import CliRunner
 
 import shipcosim as sc
@@ -123,17 +126,39 @@ def built(root):
     return build_stale(root)
 
 
+@pytest.fixture(scope="session")
+def linked(built, tmp_path_factory):
+    """Copy of the project's FMUs, to which `gunnerus` has links: they are 30 MB."""
+    return shutil.copytree(built, tmp_path_factory.mktemp("linked") / "fmus")
+
+
+def stamps(folder):
+    """What changes with the content or the rights of files, by name."""
+    found = {path.name: path.stat() for path in folder.iterdir()}
+    return {name: (stat.st_mode, stat.st_size, stat.st_mtime_ns) for name, stat in found.items()}
+
+
 @pytest.fixture
-def gunnerus(root, built, tmp_path, monkeypatch):
-    """Copy of the project to break things in, with the scenario `short`; it is the working folder of the test."""
+def gunnerus(root, linked, tmp_path, monkeypatch):
+    """Copy of the project to break things in, with the scenario `short`; it is the working folder of the test.
+
+    The FMUs in build/fmus are links to files of other tests: who changes one removes it first.
+    """
     left_out = shutil.ignore_patterns("__pycache__")
-    for name, source in {"fmus": root / "fmus", "ssp": root / "ssp", "build/fmus": built}.items():
-        shutil.copytree(source, tmp_path / name, ignore=left_out)
+    for name in ("fmus", "ssp"):
+        shutil.copytree(root / name, tmp_path / name, ignore=left_out)
+    before = stamps(linked)
+    shutil.copytree(linked, tmp_path / "build" / "fmus", copy_function=os.link)
     (tmp_path / "scenarios").mkdir()
     (tmp_path / "scenarios" / "short.toml").write_text(SHORT, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "200")
-    return tmp_path
+    yield tmp_path
+    assert stamps(linked) == before, "a test has changed an FMU of the others"
+
+
+put_together = cache(get_command)
+"""Our command as the runner calls it: to put it together takes longer than most calls."""
 
 
 @pytest.fixture
@@ -141,7 +166,9 @@ def call():
     """Function that calls the command: its exit code, stdout and stderr."""
 
     def call(*arguments):
-        result = CliRunner().invoke(app, [str(a) for a in arguments], prog_name="shipcosim")
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("typer.testing._get_command", put_together, raising=False)
+            result = CliRunner().invoke(app, [str(a) for a in arguments], prog_name="shipcosim")
         assert result.exception is None or isinstance(result.exception, SystemExit), (
             result.exception
         )

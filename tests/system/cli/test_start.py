@@ -137,8 +137,16 @@ def test_new_scenario_of_a_controlled_ship_runs_by_name(call, empty):
     assert done.code == 0 and (empty / "out" / "report.html").is_file()
 
 
-@pytest.mark.parametrize("system", sorted(names("system")))
-def test_new_scenario_and_copy_of_every_system_have_no_fault(call, empty, system):
+SYSTEMS = ("gunnerus_dp", "kvlcc2_open", "otter_open")
+"""In a closed loop, with a rudder, and of a small craft; the others at night."""
+
+
+@pytest.mark.parametrize("system", SYSTEMS)
+def test_new_scenario_and_copy_of_a_system_have_no_fault(call, empty, system):
+    check_copy(call, empty, system)
+
+
+def check_copy(call, empty, system):
     assert call("new", "system", "copy", "--from", system).code == 0
     assert call("new", "scenario", "first").code == 0  # of the project's own system
     assert 'system          = "copy"' in (empty / "scenarios" / "first.toml").read_text(
@@ -147,8 +155,12 @@ def test_new_scenario_and_copy_of_every_system_have_no_fault(call, empty, system
     assert call("check", "copy", "first").code == 0
 
 
-@pytest.mark.parametrize("system", sorted(names("system")))
-def test_parameters_of_every_system_are_written_as_they_are(call, empty, system):
+@pytest.mark.parametrize("system", SYSTEMS)
+def test_parameters_of_a_system_are_written_as_they_are(call, empty, system):
+    check_parameters(call, empty, system)
+
+
+def check_parameters(call, empty, system):
     assert call("new", "parameters", "own", "--from", system).code == 0
     assert call("check", "own.ssv", "own.ssm").code == 0
     before = Reading().system(system)
@@ -156,11 +168,19 @@ def test_parameters_of_every_system_are_written_as_they_are(call, empty, system)
     assert values_of(after) == values_of(before)
 
 
-def test_parameters_of_every_fmu_are_written_as_they_are_and_taken_by_their_own_names(
-    call, empty, root
-):
+def test_parameters_of_fmus_are_written_as_they_are_and_taken_by_their_own_names(call, empty, root):
+    """Of each third FMU; of all at night."""
+    assert check_fmus(call, empty, all_fmus(root)[::3]) > 6
+
+
+def all_fmus(root):
     fmus = sorted((root / "build" / "fmus").glob("*.fmu"))
     assert len(fmus) > 30
+    return fmus
+
+
+def check_fmus(call, empty, fmus):
+    """How many took a value by their own name for it."""
     taken = 0
     for path in fmus:
         assert call("new", "parameters", path.stem, "--from", str(path)).code == 0
@@ -182,7 +202,7 @@ def test_parameters_of_every_fmu_are_written_as_they_are_and_taken_by_their_own_
         write_ssv(ssv, "plain", [parameter(free[0], 12.5, unit)])
         assert values_of(read_system(path, parameters=ssv)) == changed
         taken += 1
-    assert taken > 20
+    return taken
 
 
 def with_parameters(file, ssv):

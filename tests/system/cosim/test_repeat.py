@@ -22,7 +22,7 @@ from shipcosim.scenario import read_scenario
 from shipcosim.series import write_table
 from shipcosim.ssp import read_system
 root, out = map(Path, sys.argv[1:])
-scenario = read_scenario(root / "scenarios" / "four_corner_rough.toml").model_copy(update={"stop_time": 20.0})
+scenario = read_scenario(root / "scenarios" / "four_corner_rough.toml").model_copy(update={"stop_time": 6.0})
 system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[root / "build" / "fmus"])
 table = simulate(system, scenario)
 for suffix in (".nc", ".csv"):

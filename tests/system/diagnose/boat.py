@@ -128,6 +128,7 @@ def log(minutes=20.0, seed=0, boat=None, rate=1.0, off=None):
         stop_time=float(time[-1]),
         step_size=STEP,
         inputs=make_table(time, columns),
+        engine="native",  # a tenth of the time of Python
     )
     rows = slice(None, None, round(rate / STEP))
     seen = np.stack([run[f"boat.{name}"].values[rows] for name in ("x", "y", "psi", "u", "v", "r")])

@@ -11,10 +11,14 @@ from shipcosim.ssp import read_system
 from truth import draw
 
 
-@pytest.fixture(scope="module", params=("trial", "hold"))
-def found(request, tmp_path_factory):
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    return found_in("trial", tmp_path_factory)  # a ship that holds her place: at night
+
+
+def found_in(kind, tmp_path_factory, minutes=20):
     folder = tmp_path_factory.mktemp("form")
-    draw(request.param, 703, causes=0, form=1.0, minutes=30).save(folder / "log.csv")
+    draw(kind, 703, causes=0, form=1.0, minutes=minutes).save(folder / "log.csv")
     open_sea = str(twin.ROOT / "ssp" / "gunnerus_open")
     return folder, shipcosim.diagnose(str(folder / "log.csv"), open_sea, out=str(folder / "found"))
 

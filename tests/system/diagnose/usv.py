@@ -124,6 +124,7 @@ def log(minutes=20.0, seed=0, usv=None, rate=1.0, errors=None, current=(0.0, 0.0
         stop_time=float(time[-1]),
         step_size=STEP,
         inputs=make_table(time, columns),
+        engine="native",  # a tenth of the time of Python
     )
     rows = slice(None, None, round(rate / STEP))
     seen = twin.seen(run, "hull", rows, errors)

@@ -31,8 +31,10 @@ NATIVE = (
     "tunnel_thruster varying_current vessel"
 ).split()
 """FMUs that `shipcosim build --native` writes in C."""
-NATIVE_IN_CI = ("reference", "tunnel_thruster", "vessel")
-"""Those that CI compiles; the others are compiled at night."""
+NATIVE_IN_CI = ("reference", "tunnel_thruster")
+"""Those that CI compiles; the others are compiled at night, as the vessel, which takes longest."""
+FMUS_IN_CI = FMUS[::4]
+"""Those whose reference result CI asks for here; through FMPy it does of all."""
 
 
 @pytest.fixture(scope="session")
@@ -191,9 +193,13 @@ class Reference:
         return self.fmu.set(**{name: kinds[name](value) for name, value in given.items()})
 
 
-@pytest.mark.parametrize("name", FMUS)
-def test_every_fmu_of_the_project_gives_its_reference_result(name, root, loaded, host):
+@pytest.mark.parametrize("name", FMUS_IN_CI)
+def test_an_fmu_of_the_project_gives_its_reference_result(name, root, loaded, host):
     """As closely as through FMPy."""
+    check_reference(name, root, loaded, host)
+
+
+def check_reference(name, root, loaded, host):
     fmu = loaded(build_stale(root) / f"{name}.fmu")
     reference = Reference(name, fmu, root)
     reference.check(host(reference.start(), reference.rows(1, len(reference.times)), fmus=[fmu]))

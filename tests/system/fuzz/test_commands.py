@@ -7,7 +7,7 @@ import pytest
 from cli.conftest import built, call  # noqa: F401  (fixtures)
 from fuzz.commands import write_command
 
-IN_CI = 120
+IN_CI = 50
 
 
 @pytest.fixture(scope="module")

@@ -12,8 +12,8 @@ from fuzz.survive import survive
 pytestmark = pytest.mark.skipif(
     sys.platform != "linux", reason="memory is limited and measured as Linux does it"
 )
-SEED, NUMBER, IN_CI = 0, 10_000, 300
-TYPED, TYPED_NUMBER, TYPED_IN_CI, TYPED_AT_ONCE = "typed-0", 2900, 100, 200
+SEED, NUMBER, IN_CI = 0, 10_000, 120
+TYPED, TYPED_NUMBER, TYPED_IN_CI, TYPED_AT_ONCE = "typed-0", 2850, 50, 200
 """Seed and numbers of well-formed files whose types and sizes are not those meant: `fuzz.typed`.
 
 So many in one process, since what loads FMUs again and again does not give all memory back.
@@ -24,7 +24,7 @@ def shown(failures):
     return "\n".join(f"{one['number']} ({one['how']}): {one['ended']}" for one in failures)
 
 
-def test_a_few_hundred_damaged_files_end_in_a_clear_error_or_are_harmless():
+def test_some_hundred_damaged_files_end_in_a_clear_error_or_are_harmless():
     failures, counts = survive(SEED, 0, IN_CI)
     assert failures == [], shown(failures)
     assert sum(counts.values()) == IN_CI
@@ -33,7 +33,7 @@ def test_a_few_hundred_damaged_files_end_in_a_clear_error_or_are_harmless():
     )  # neither everything nor nothing is refused
 
 
-def test_a_hundred_files_of_wrong_types_and_sizes_end_in_a_clear_error_or_are_harmless():
+def test_some_files_of_wrong_types_and_sizes_end_in_a_clear_error_or_are_harmless():
     failures, counts = survive(TYPED, 0, TYPED_IN_CI)
     assert failures == [], shown(failures)
     assert counts["clear error"] > TYPED_IN_CI / 3 and counts["success"] > 0
@@ -63,11 +63,13 @@ def test_inputs_of_every_kind_are_made(tmp_path):
     [
         ("raise KeyError('x')", "KeyError"),
         ("import os; os.abort()", "died"),
-        ("open(os.path.join(os.getcwd(), '..', 'x'), 'w')", "wrote"),
-        ("x = bytearray(2**31)", "MemoryError"),
     ],
 )
 def test_what_should_not_happen_is_noticed(sabotage, said, monkeypatch):
+    check_noticed(sabotage, said, monkeypatch)  # further ways at night
+
+
+def check_noticed(sabotage, said, monkeypatch):
     monkeypatch.setenv("SHIPCOSIM_FUZZ_SABOTAGE", f"import os, time; {sabotage}")
     failures, _ = survive(SEED, 0, 1)
     assert said in failures[0]["ended"]

@@ -1,6 +1,6 @@
 """Wrong labels planted in logs of real craft are named, in all rows, in every fifth and in a part; right ones never.
 
-The log of a spin here in all rows, that of a straight way in every fifth; `tests/bench` has all three by both.
+The log of a spin here in all rows, that of a straight way in every fifth with some labels; `tests/bench` has all.
 """
 
 from pathlib import Path
@@ -47,12 +47,22 @@ PLANTED = {
 }
 
 
-@pytest.mark.parametrize(("craft", "name", "stride"), [(*LOGS[0], 1), (*LOGS[2], 5)])
-def test_planted_labels_are_named_and_nothing_else(craft, name, stride, tmp_path):
-    check_planted(craft, name, stride, tmp_path)
+SOME = [
+    ("sign", "surge"),
+    ("channel_swap", "east", "north"),
+    ("frame", "surge", "sway"),
+    ("frame", "heading"),
+]
 
 
-def check_planted(craft, name, stride, folder):
+@pytest.mark.parametrize(
+    ("craft", "name", "stride", "labels"), [(*LOGS[0], 1, list(PLANTED)), (*LOGS[2], 5, SOME)]
+)
+def test_planted_labels_are_named_and_nothing_else(craft, name, stride, labels, tmp_path):
+    check_planted(craft, name, stride, tmp_path, labels)
+
+
+def check_planted(craft, name, stride, folder, labels=tuple(PLANTED)):
     path = MEASURED / FOLDERS[craft] / name
     if not path.is_file():
         pytest.skip("needs the logs in ../shared/measured, which are not here")
@@ -61,15 +71,17 @@ def check_planted(craft, name, stride, folder):
     log = read_log(thinned, channels=CHANNELS / f"{craft}.toml")
     assert not _labels(log)
     found = {}
-    for planted, change in PLANTED.items():
+    for planted in labels:
         wrong = log.copy(deep=True)
-        for role, values in change({str(n): v.values for n, v in log.data_vars.items()}).items():
+        for role, values in PLANTED[planted](
+            {str(n): v.values for n, v in log.data_vars.items()}
+        ).items():
             wrong[role] = (log[role].dims, values, log[role].attrs)
         found[planted] = _labels(wrong)
     others = {key: one for key, one in found.items() if one - {(key[0], frozenset(key[1:]), False)}}
     assert not others
-    # One of ten may be silent: little sway, or a boat that hardly turns.
-    assert sum(bool(one) for one in found.values()) >= len(PLANTED) - 1
+    # One may be silent: little sway, or a boat that hardly turns.
+    assert sum(bool(one) for one in found.values()) >= len(found) - 1
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import time as clock
+from functools import cache
 
 import numpy as np
 import pytest
@@ -119,28 +120,30 @@ def weather(time, generator):
     }
 
 
+@cache
+def made_up_run(interval):
+    """Table of 1100 s. [s]"""
+    time = np.arange(int(round(1100 / interval)) + 1) * interval
+    generator = np.random.default_rng(3)
+    signals = {**poses(time, generator), **loads(time, generator), **weather(time, generator)}
+    for name in "uvr":
+        signals[f"vessel.{name}"] = (
+            0.05 * smooth_noise(generator, len(time), 40),
+            "rad/s" if name == "r" else "m/s",
+        )
+    return xr.Dataset(
+        {
+            k: ("time", v, {"units": unit, "long_name": f"made-up {k}"})
+            for k, (v, unit) in signals.items()
+        },
+        coords={"time": ("time", time, {"units": "s"})},
+    )
+
+
 @pytest.fixture(scope="session")
 def four_corner():
-    """Function from the output interval to a table of 1100 s. [s]"""
-
-    def table(interval=0.5):
-        time = np.arange(int(round(1100 / interval)) + 1) * interval
-        generator = np.random.default_rng(3)
-        signals = {**poses(time, generator), **loads(time, generator), **weather(time, generator)}
-        for name in "uvr":
-            signals[f"vessel.{name}"] = (
-                0.05 * smooth_noise(generator, len(time), 40),
-                "rad/s" if name == "r" else "m/s",
-            )
-        return xr.Dataset(
-            {
-                k: ("time", v, {"units": unit, "long_name": f"made-up {k}"})
-                for k, (v, unit) in signals.items()
-            },
-            coords={"time": ("time", time, {"units": "s"})},
-        )
-
-    return table
+    """Function from the output interval to a table of 1100 s, which whoever asks may change. [s]"""
+    return lambda interval=0.5: made_up_run(interval).copy(deep=True)
 
 
 @pytest.fixture(scope="session")

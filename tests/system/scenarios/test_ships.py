@@ -15,7 +15,9 @@ def test_each_ship_is_held_by_her_dp(name, root):
     system = root / "ssp" / "gunnerus_dp"
     dp = read_system(system, system / "resources" / f"{name}.ssv", fmus=[build_stale(root)])
     weather = {"environment.wind_speed": 5.0, "environment.wind_from": 0.785}
-    run = sc.simulate(dp, stop_time=120.0, step_size=0.05, output_interval=0.5, set=weather)
+    run = sc.simulate(
+        dp, stop_time=120.0, step_size=0.05, output_interval=0.5, set=weather, engine="native"
+    )
     late = run.sel(time=slice(90.0, None))
     assert np.hypot(late["vessel.x"], late["vessel.y"]).max() < 0.7
     assert np.abs(np.degrees(late["vessel.psi"])).max() < 1.5

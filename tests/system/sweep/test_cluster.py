@@ -20,7 +20,7 @@ def cluster():
         yield found
 
 
-SLOW = 'extends = "levels"\n[set]\n"lag.pause" = 0.4\n'
+SLOW = 'extends = "levels"\n[set]\n"lag.pause" = 0.2\n'
 
 
 def test_a_cluster_gives_the_same_table_also_where_a_worker_is_killed(project, study, cluster):
@@ -56,6 +56,13 @@ def test_a_killed_process_of_this_machine_costs_no_run(project, study):
     pandas.testing.assert_frame_equal(found.runs, whole.runs)
 
 
-def test_a_scheduler_that_is_not_there_is_said(project):
+def test_a_scheduler_that_is_not_there_is_said(project, monkeypatch):
+    import distributed
+
+    # One second of waiting shows it as well as ten.
+    real = distributed.Client
+    monkeypatch.setattr(
+        distributed, "Client", lambda address, **options: real(address, **options | {"timeout": 1})
+    )
     with pytest.raises(ShipcosimError, match="No scheduler of Dask answers"):
         shipcosim.sweep("levels", out="out", engine="fmpy", scheduler="tcp://127.0.0.1:9")

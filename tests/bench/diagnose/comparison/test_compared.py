@@ -8,4 +8,4 @@ def test_nothing_is_said_of_another_healthy_craft():
 
 
 def test_thrusters_that_answer_other_weather_are_not_said_to_run_the_wrong_way(tmp_path):
-    check_unknown_weather(705, tmp_path)
+    check_unknown_weather(704, tmp_path)

@@ -1,8 +1,16 @@
-"""At night: mistakes throughout a log show on a ship that keeps her station too."""
+"""At night: mistakes throughout a log show on a ship that keeps her station too; and further mistakes and seeds."""
 
 import numpy as np
 import pytest
-from diagnose.log.test_readings import check_mistake
+from diagnose.log.test_readings import (
+    CHANGES,
+    check_left_open,
+    check_mistake,
+    check_rows_far_apart,
+    check_signs_that_agree,
+    check_turned_axes,
+    check_turned_grid,
+)
 from diagnose.logs import smooth, table
 
 from shipcosim.diagnose.log.checks.examine import examine
@@ -48,7 +56,9 @@ def test_what_is_wrong_shows_on_a_ship_that_keeps_her_station_too(said, change):
     assert finding.alternatives or finding.probability > 0.95
 
 
-OTHER_UNITS = {
+OTHERS = {
+    "heading has the other sign": CHANGES["heading has the other sign"],
+    "time is in tenths of a second, not s": lambda log: {"time": 10.0 * log["time"]},
     "time is in min, not s": lambda log: {"time": log["time"] / 60.0},
     "2 s pass in each logged second": lambda log: {"time": 0.5 * log["time"]},
     "surge and sway are in ft/s, not m/s": lambda log: {
@@ -60,6 +70,28 @@ OTHER_UNITS = {
 }
 
 
-@pytest.mark.parametrize("said", OTHER_UNITS)
-def test_other_units_throughout_are_named_alone_and_put_right(said):
-    check_mistake(said, OTHER_UNITS[said])
+@pytest.mark.parametrize("said", OTHERS)
+def test_other_mistakes_throughout_are_named_alone_and_put_right(said):
+    check_mistake(said, OTHERS[said])
+
+
+def test_another_grid_that_is_turned_is_named_with_its_angle():
+    check_turned_grid(35.0)
+
+
+@pytest.mark.parametrize(("degrees", "seed"), [(90.0, 26), (-135.0, 1005)])
+def test_other_axes_of_the_velocity_are_named_with_their_angle(degrees, seed):
+    check_turned_axes(degrees, seed)
+
+
+def test_signs_of_heading_and_yaw_rate_that_agree_are_named_in_another_log():
+    check_signs_that_agree(1005)
+
+
+def test_a_mistake_that_too_little_motion_shows_is_left_open_in_another_channel():
+    check_left_open(201, "north", "north has the other sign")
+
+
+@pytest.mark.parametrize("every", [5, 10])
+def test_a_right_log_with_rows_less_far_apart_is_right(every):
+    check_rows_far_apart(every)

@@ -184,10 +184,11 @@ def test_signal_that_differs_between_engines_is_a_failed_testcase(call, project,
 
 
 def test_findings_of_a_diagnosis_are_failed_testcases_and_json_is_diagnosis_json(
-    call, tmp_path, monkeypatch
+    call, tmp_path, monkeypatch, six_minutes
 ):
     monkeypatch.chdir(tmp_path)
-    done = call("diagnose", "gunnerus_log", "--json", "--junit", "j.xml", "--out", "out")
+    six_minutes("log.csv")
+    done = call("diagnose", "log.csv", "--json", "--junit", "j.xml", "--out", "out")
     assert done.out == Path("out/diagnosis.json").read_text(encoding="utf-8")
     found = json.loads(done.out)
     cases, _ = cases_in("j.xml")

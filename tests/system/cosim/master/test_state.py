@@ -168,8 +168,12 @@ def system(make_system):
 
 
 @pytest.mark.parametrize("order", ["jacobi", "gauss-seidel"])
-@pytest.mark.parametrize("until", [0.1, 0.4, 0.7, 0.8, 1.0, 1.3, 1.6, 2.0])
+@pytest.mark.parametrize("until", [0.4, 0.7, 1.0])
 def test_a_stored_run_goes_on_bit_for_bit(system, make_scenario, tmp_path, until, order):
+    check_goes_on(system, make_scenario, tmp_path, until, order)  # at other times: at night
+
+
+def check_goes_on(system, make_scenario, tmp_path, until, order):
     scenario, file = make_scenario(2.4, 0.1, events=EVENTS), tmp_path / "half.state"
     whole = simulate(system, scenario, RunOptions(order=order))
     first = simulate(system, scenario, RunOptions(order=order, until=until, store=file))
@@ -375,22 +379,22 @@ def test_the_dp_ship_goes_on_in_another_process_bit_for_bit(root, built, tmp_pat
     scenario = read_scenario(root / "scenarios" / "four_corner.toml")
     events = [
         Event(time=0.0, override={"reference.x_set": 20.0}),
-        Event(time=20.05, bias={"vessel.tau_Y_4": 1e4}),
+        Event(time=4.05, bias={"vessel.tau_Y_4": 1e4}),
     ]
     events += [
         Event(
-            time=30.0,
+            time=9.0,
             override={"port.failed": True, "reference.y_set": -20.0},
             reset=["vessel.tau_Y_4"],
         )
     ]
     scenario = scenario.model_copy(
-        update={"stop_time": 45.0, "output_interval": None, "events": events, "expect": []}
+        update={"stop_time": 14.0, "output_interval": None, "events": events, "expect": []}
     )
     ssv = scenario.parameter_paths[0]
     system = read_system(scenario.system_path, [ssv], fmus=[built])
     whole = simulate(system, scenario)
-    first = simulate(system, scenario, RunOptions(until=25.35, store=tmp_path / "half.state"))
+    first = simulate(system, scenario, RunOptions(until=6.35, store=tmp_path / "half.state"))
     (tmp_path / "scenario.json").write_text(scenario.model_dump_json())
     files = map(str, (tmp_path, scenario.system_path, ssv, built))
     subprocess.run([sys.executable, "-c", CONTINUE, *files], check=True, timeout=600)

@@ -188,9 +188,12 @@ LINKS += ["clock.odd -> meter.flag", "clock.text -> meter.text", "push -> meter.
 EVENTS = [{"time": 0.4, "override": {"law.y": 0.5, "push": 2.0}}, {"time": 1.2, "reset": ["law.y"]}]
 
 
-@pytest.mark.parametrize("order", ["jacobi", "gauss-seidel"])
-def test_results_are_the_same_to_the_last_digit(make_system, make_scenario, order):
-    """All types, a loop, a slow component, events."""
+def test_results_are_the_same_to_the_last_digit(make_system, make_scenario):
+    """All types, a loop, a slow component, events; in the other order, and the DP ship, at night."""
+    check_same_digits(make_system, make_scenario, "gauss-seidel")
+
+
+def check_same_digits(make_system, make_scenario, order):
     system, scenario = (
         make_system(PARTS, LINKS, {"push": ("input", "Real", "")}),
         make_scenario(2.4, 0.1, events=EVENTS),
@@ -202,8 +205,10 @@ def test_results_are_the_same_to_the_last_digit(make_system, make_scenario, orde
 
 
 def test_a_stored_run_goes_on_from_processes_to_processes_and_back(make_system, make_scenario):
+    few = {name: PARTS[name] for name in ("plant", "law", "meter")}
+    links = ["plant.y -> law.u", "law.y -> plant.u", "push -> meter.real"]
     system, scenario = (
-        make_system(PARTS, LINKS, {"push": ("input", "Real", "")}),
+        make_system(few, links, {"push": ("input", "Real", "")}),
         make_scenario(2.4, 0.1, events=EVENTS),
     )
     whole, stored = simulate(system, scenario), []
@@ -217,30 +222,16 @@ def test_a_stored_run_goes_on_from_processes_to_processes_and_back(make_system, 
         )
 
 
-def test_the_dp_ship_gives_the_same_digits(root):
-    from shipcosim.library import build_stale
-    from shipcosim.scenario import read_scenario
-    from shipcosim.ssp import read_system
-
-    scenario = read_scenario(root / "scenarios" / "gust.toml")
-    scenario = scenario.model_copy(
-        update={"stop_time": 1.0, "events": [], "expect": [], "output_interval": None}
-    )
-    system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[build_stale(root)])
-    same(simulate(system, scenario), simulate(system, scenario, RunOptions(isolate=True)))
-
-
 # crashes
 
 
+# A signal and the C library's exit in place of a wrong address and Python's: at night.
 @pytest.mark.parametrize(
     "how, said",
     [
-        ("signal", "Its process was ended in DoStep by signal 11, Segmentation fault."),
         ("read", "Its process was ended in DoStep by signal 11, Segmentation fault."),
         ("abort", "by signal 6, Aborted. It printed last:\nsomething is badly wrong"),
         ("leave", "Its process ended itself in DoStep, with exit code 3."),
-        ("exit", "Its process ended itself in DoStep, with exit code 0."),
         ("pipes", "the FMU writes into files that it did not open. It was ended."),
         ("close", "Its process ended itself in DoStep, with exit code 1."),
         ("fork", "Its process ended itself in DoStep, with exit code 4."),
@@ -250,6 +241,10 @@ def test_the_dp_ship_gives_the_same_digits(root):
 def test_a_component_that_goes_down_is_named_and_the_rows_before_are_there(
     system, make_scenario, how, said
 ):
+    check_fallen(system, make_scenario, how, said)
+
+
+def check_fallen(system, make_scenario, how, said):
     with pytest.raises(RunError) as error:
         simulate(system(how), make_scenario(1.0, 0.1), RunOptions(isolate=True, timeout=LIMIT))
     assert str(error.value).startswith("engine: failed in the step from t = 0.5 s. ")
@@ -277,16 +272,13 @@ def test_one_that_goes_down_at_the_start_is_named_too(system, make_scenario):
     assert error.value.table.sizes["time"] == 0
 
 
-@pytest.mark.parametrize(
-    "how, said",
-    [
-        (1, "signal 11, Segmentation fault. It printed last:\nit was nice"),
-        (2, "gave no answer"),
-        (3, "signal 6"),
-    ],
-)
-def test_the_same_holds_for_an_fmu_made_from_c(falling, make_system, make_scenario, how, said):
+def test_the_same_holds_for_an_fmu_made_from_c(falling, make_system, make_scenario):
     """What it has printed into the buffer of C in the steps before does not go down with it."""
+    said = "signal 11, Segmentation fault. It printed last:\nit was nice"
+    check_fallen_in_c(make_system, make_scenario, 1, said)
+
+
+def check_fallen_in_c(make_system, make_scenario, how, said):
     system = make_system({"clock": "clock", "stone": ("falling", {"how": how})})
     with pytest.raises(RunError, match="stone: failed in the step from t = 0.4 s.*") as error:
         simulate(system, make_scenario(1.0, 0.1), RunOptions(isolate=True, timeout=LIMIT))
@@ -329,7 +321,7 @@ def test_what_goes_wrong_without_a_crash_is_said_in_the_same_words(system, make_
     assert said[0] == said[1] and "50%s of it is wrong" in said[0] and "dangerous.py" in said[0]
 
 
-@pytest.mark.parametrize("how", ["garbage", "warn", "interrupt", ""])
+@pytest.mark.parametrize("how", ["garbage", "warn", "interrupt"])
 def test_what_would_confuse_a_run_does_not(system, make_scenario, how):
     table = simulate(system(how), make_scenario(1.0, 0.1), RunOptions(isolate=True))
     assert table["engine.count"].values.tolist() == list(range(11))
@@ -380,7 +372,7 @@ def test_bytes_before_an_answer_are_never_taken_for_one(noise):
     assert receive(io.BytesIO(answer)) == (True, None, [])
 
 
-@pytest.mark.parametrize("how", ["read", "", "raise", "pipes"])
+@pytest.mark.parametrize("how", ["read", "", "pipes"])
 def test_nothing_is_left_behind(system, make_scenario, how, tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
     (tmp_path / "temporary").mkdir()

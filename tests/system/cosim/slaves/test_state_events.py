@@ -139,6 +139,8 @@ SIZES = {"thermostat": (1, 2), "levels": (1, 1), "pair": (1, 2), "block": (2, 3)
 SIZES["windows"] = (1, 3)
 SIZES["undefined"] = (1, 2)
 STEP_SIZES = st.sampled_from([0.01, 0.05, 0.1, 0.25, 1.0])
+SOME = settings(max_examples=6, deadline=None)
+"""Several times as many at night."""
 
 
 @pytest.fixture(scope="session")
@@ -163,15 +165,18 @@ def run_of(tmp_path_factory, needs):
     return run
 
 
-@pytest.mark.parametrize("version", VERSIONS)
-@given(
+THERMOSTATS = given(
     width=st.sampled_from([0.5, 1.0, 2.0, 3.3]),
     start=st.sampled_from([0.0, 0.7, 1.0]),
     up=st.sampled_from([0.5, 1.0, 3.0]),
     down=st.sampled_from([0.25, 1.0, 2.0]),
     step_size=STEP_SIZES,
 )
-@settings(max_examples=15, deadline=None)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@SOME
+@THERMOSTATS
 def test_a_thermostat_stays_between_its_levels(run_of, version, width, start, up, down, step_size):
     # It starts at 0, heats to `high` and then goes to and fro: a triangle of known corners.
     high = start + width
@@ -185,14 +190,17 @@ def test_a_thermostat_stays_between_its_levels(run_of, version, width, start, up
     assert np.allclose(table["m.x"], exact, atol=1e-6)
 
 
-@pytest.mark.parametrize("version", VERSIONS)
-@given(
+LEVELS = given(
     slope=st.sampled_from([-2.0, -1.0, -0.1, 0.1, 1.0, 3.0]),
     share=st.sampled_from([0.0, 0.1, 0.25, 1 / 3, 0.5, 0.99, 1.0]),
     sign=st.sampled_from([-1.0, 1.0, 1e-6, -1e6]),
     step_size=STEP_SIZES,
 )
-@settings(max_examples=20, deadline=None)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@SOME
+@LEVELS
 def test_every_comparison_changes_where_the_level_is_passed(
     run_of, version, slope, share, sign, step_size
 ):
@@ -205,14 +213,17 @@ def test_every_comparison_changes_where_the_level_is_passed(
         assert np.array_equal(table[f"m.n{k}"].values[~near], holds[~near].astype(int)), k
 
 
-@pytest.mark.parametrize("version", VERSIONS)
-@given(
+PAIRS = given(
     slope=st.sampled_from([-1.0, 0.5, 1.0]),
     a=st.sampled_from([0.25, 0.5, 0.500000001]),
     b=st.sampled_from([0.25, 0.5, 0.75]),
     step_size=STEP_SIZES,
 )
-@settings(max_examples=15, deadline=None)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@SOME
+@PAIRS
 def test_two_indicators_at_once_are_both_seen(run_of, version, slope, a, b, step_size):
     a, b = np.sign(slope) * a, np.sign(slope) * b
     table = run_of("pair", version, 2.0, step_size, slope=slope, a=a, b=b)
@@ -222,15 +233,18 @@ def test_two_indicators_at_once_are_both_seen(run_of, version, slope, a, b, step
         assert np.array_equal(table[f"m.n{k}"].values[away], (x > level).astype(int)[away]), k
 
 
-@pytest.mark.parametrize("version", VERSIONS)
-@given(
+WINDOWS = given(
     half=st.sampled_from([1e-5, 0.003, 0.01, 0.1]),
     first=st.sampled_from([0.15, 0.401, 0.7, 0.93]),
     second=st.sampled_from([0.4, 0.7, 0.703, 1.6]),
     level=st.sampled_from([0.4, 0.7001, 1.2]),
     step_size=st.sampled_from([0.05, 0.25, 1.0, 2.0]),
 )
-@settings(max_examples=30, deadline=None)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@SOME
+@WINDOWS
 def test_an_indicator_that_comes_back_within_a_step_is_seen(
     run_of, version, half, first, second, level, step_size
 ):
@@ -240,13 +254,16 @@ def test_an_indicator_that_comes_back_within_a_step_is_seen(
     assert np.allclose(table["m.x"], table["time"], atol=1e-6)
 
 
-@pytest.mark.parametrize("version", VERSIONS)
-@given(
+BLOCKS = given(
     force=st.sampled_from([-3.0, -1.0, 0.0, 2.0, 2.5, 3.0]),
     rate=st.sampled_from([-2.0, -1.0, -0.5, 0.5, 1.0]),
     step_size=STEP_SIZES,
 )
-@settings(max_examples=20, deadline=None)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@SOME
+@BLOCKS
 def test_a_block_sticks_and_slips_as_its_equations_say(run_of, version, force, rate, step_size):
     table = run_of("block", version, 6.0, step_size, force=force, rate=rate)
     exact = _velocity_of_the_block(force, rate, table["time"].values)

@@ -46,6 +46,7 @@ def to_learn(seed, part, is_other=True):
     return craft_log(record, ship(), found.comparison.errors["horizon_s"], part, whole=True)
 
 
+@cache
 def learned(seed, is_other=True):
     found = compared_log(seed, is_other)
     return with_learned_craft(found.comparison, found.repaired, found.comparison.given(found.ship))

@@ -4,9 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from diagnose import twin
 
 from shipcosim.calls import logs
-from shipcosim.calls.arguments import SYSTEM_OF_LOGS, Reading, source_of
 from shipcosim.cli.channel_files import print_isolability
 from shipcosim.diagnose.experiment.isolability import Isolability, isolability
 from shipcosim.diagnose.experiment.testability import Excitation, excitation_of, not_testable
@@ -57,8 +57,7 @@ def test_a_known_number_hides_what_has_its_shape_as_far_as_it_may_be_off():
 
 
 def test_what_is_not_seen_in_a_log_is_what_a_diagnosis_calls_not_testable():
-    source, _ = source_of("gunnerus_log", None)
-    basis = find_causes(source, Reading().system(SYSTEM_OF_LOGS, "system")).basis
+    basis = find_causes(twin.logs()["current"], twin.system()).basis
     seen = excitation_of(basis)
     found = isolability(seen)
     assert len({one.label for one in found}) == len(found)

@@ -58,7 +58,7 @@ def duration(slow=1.0):
     return slow * (sum(STRAIGHT + ROUND[abs(angle)] for angle, _ in LEGS) + STRAIGHT + 8 * SWING)
 
 
-def logs(problems, seed=0, model=None, slow=1.0):
+def logs(problems, seed=0, model=None, slow=1.0, until=None):
     """Logs of ships with numbers changed, each also drawn within the tolerances of hull and thrusters.
 
     Parameters
@@ -70,6 +70,8 @@ def logs(problems, seed=0, model=None, slow=1.0):
         The lengthened Gunnerus without.
     slow : float
         Factor on all durations.
+    until : float, optional
+        End of the logs, that of the trials without. [s]
 
     Returns
     -------
@@ -79,7 +81,8 @@ def logs(problems, seed=0, model=None, slow=1.0):
     model = model or twin.model()
     steered = [name for name in model.azimuths if model.parts[name].x < 0.0]
     ship = model.with_values(drawn(problems, random, model))
-    time = np.arange(0.0, duration(slow), FINE)
+    lasts = duration(slow) if until is None else until
+    time = np.arange(0.0, lasts, FINE)
     azimuth, rpm = orders(time, slow)
     lags = np.array([values.get("lag", 0.0) for values in problems.values()])
     zero = np.zeros(many)
@@ -97,9 +100,7 @@ def logs(problems, seed=0, model=None, slow=1.0):
         }
         units = {name: (zero, zero) for name in model.thrusters} | units
         state = _stepped(state, Inputs(now, units, None, None), ship)
-    rate = 1.0 - 0.2 * np.sin(
-        np.cumsum(random.normal(0.0, 0.05, int(duration(slow))))
-    )  # true seconds a row
+    rate = 1.0 - 0.2 * np.sin(np.cumsum(random.normal(0.0, 0.05, int(lasts))))  # true seconds a row
     rows = np.minimum((np.cumsum(rate) / FINE).astype(int), time.size - 1)
     rows = rows[: np.argmax(rows >= time.size - 1) or None]
     found = np.stack(shown)[rows] + WHITE * random.standard_normal((rows.size, many, 6))

@@ -14,11 +14,15 @@ from truth import draw
 SEED = 709
 
 
-@pytest.fixture(scope="module", params=("trial", "hold"))
-def agreed(request, tmp_path_factory):
+@pytest.fixture(scope="module")
+def agreed(tmp_path_factory):
+    return agreed_on("trial", tmp_path_factory)  # a ship that holds her place: at night
+
+
+def agreed_on(kind, tmp_path_factory):
     """A diagnosis of a healthy log, with its predictions."""
     log = tmp_path_factory.mktemp("log") / "log.csv"
-    draw(request.param, SEED, causes=0, minutes=25).save(log)
+    draw(kind, SEED, causes=0, minutes=15).save(log)
     found = find_causes(str(log), twin.system())
     return found, with_predictions(found.basis, False)
 

@@ -54,6 +54,19 @@ def file(table, tmp_path_factory):
     return path
 
 
+@pytest.fixture(scope="module")
+def opened():
+    return []
+
+
+@pytest.fixture
+def page(browse, chromium, file, opened):
+    """The page as the test before left it: these look at it at times of their own."""
+    if not opened or chromium.current_url.partition("#")[0] != file.as_uri():
+        opened[:] = [browse(file)]
+    return opened[0]
+
+
 def drawn(page, t):
     """What the diagram draws at a time, by unit."""
     page.ask("document.getElementById('diagram').scrollIntoView()")
@@ -64,8 +77,8 @@ def drawn(page, t):
     return {item["unit"]: item for item in items if item["what"] == "diagram"}
 
 
-def test_arrow_is_the_force_of_the_unit_bow_up_on_one_scale(browse, file, table):
-    units = drawn(browse(file), 700.0)
+def test_arrow_is_the_force_of_the_unit_bow_up_on_one_scale(page, table):
+    units = drawn(page, 700.0)
     assert set(units) == {"port", "starboard"}  # the tunnel of this table says no direction
     row = table.sel(time=700.0)
     for name, item in units.items():
@@ -76,6 +89,33 @@ def test_arrow_is_the_force_of_the_unit_bow_up_on_one_scale(browse, file, table)
             scale * thrust * np.array([np.sin(azimuth), np.cos(azimuth)]), abs=0.3
         )
         assert item["sectors"] == SECTORS[name]
+
+
+def test_limits_of_thrust_and_sectors_are_shaded_in_the_plots(page):
+    page.ask("document.querySelectorAll('.panel').forEach(p => p.scrollIntoView())")
+    zones = page.ask("return Object.fromEntries(report.data.panels.map(p => [p.title, p.zones]))")
+    assert [zone["lower"] for zone in zones["Thrust, port"]] == [8.0]
+    assert zones["Thrust, starboard"] == [] and zones["North"] == []
+    (zone,) = zones["Azimuth, port"]
+    assert zone["upper"] == pytest.approx(-80.0) and -100.0 < zone["lower"] < -80.0
+    assert not zones["Azimuth, starboard"]
+    script = (
+        "return [...document.querySelectorAll('.panel')]"
+        ".filter(p => p._fullLayout?.title.text.includes('Azimuth, port'))"
+        ".flatMap(p => p._fullLayout.shapes.filter(s => s.type === 'rect').map(s => s.fillcolor))"
+    )
+    page.wait(f"return (() => {{ {script} }})().length === 1")
+    (fill,) = page.ask(script)
+    assert fill.startswith("rgb") or fill.startswith("#"), "a colour that the browser knows"
+
+
+def test_losses_and_power_of_the_allocator_have_their_panels(page):
+    titles = page.ask("return report.data.panels.map(p => p.title)")
+    assert (
+        "Force missed by the allocator" in titles and "Yaw moment missed by the allocator" in titles
+    )
+    assert "Power of the thrusters, estimated by the allocator" in titles
+    assert "Time of an allocation" not in titles  # it was not measured
 
 
 def test_units_without_a_shaft_are_drawn_by_the_force_that_they_give(browse, table, tmp_path):
@@ -118,34 +158,6 @@ def test_forbidden_sectors_are_shaded_and_the_rest_is_not(shown_at, file, scheme
     ]
     assert min(shaded) > 15
     assert np.abs(painted(page, -0.53, 0.53) - ground).max() <= 3
-
-
-def test_limits_of_thrust_and_sectors_are_shaded_in_the_plots(browse, file):
-    page = browse(file)
-    page.ask("document.querySelectorAll('.panel').forEach(p => p.scrollIntoView())")
-    zones = page.ask("return Object.fromEntries(report.data.panels.map(p => [p.title, p.zones]))")
-    assert [zone["lower"] for zone in zones["Thrust, port"]] == [8.0]
-    assert zones["Thrust, starboard"] == [] and zones["North"] == []
-    (zone,) = zones["Azimuth, port"]
-    assert zone["upper"] == pytest.approx(-80.0) and -100.0 < zone["lower"] < -80.0
-    assert not zones["Azimuth, starboard"]
-    script = (
-        "return [...document.querySelectorAll('.panel')]"
-        ".filter(p => p._fullLayout?.title.text.includes('Azimuth, port'))"
-        ".flatMap(p => p._fullLayout.shapes.filter(s => s.type === 'rect').map(s => s.fillcolor))"
-    )
-    page.wait(f"return (() => {{ {script} }})().length === 1")
-    (fill,) = page.ask(script)
-    assert fill.startswith("rgb") or fill.startswith("#"), "a colour that the browser knows"
-
-
-def test_losses_and_power_of_the_allocator_have_their_panels(browse, file):
-    titles = browse(file).ask("return report.data.panels.map(p => p.title)")
-    assert (
-        "Force missed by the allocator" in titles and "Yaw moment missed by the allocator" in titles
-    )
-    assert "Power of the thrusters, estimated by the allocator" in titles
-    assert "Time of an allocation" not in titles  # it was not measured
 
 
 def test_two_allocators_lie_over_each_other(browse, table, tmp_path):

@@ -76,9 +76,24 @@ def page(browse, file):
     found.ask("localStorage.removeItem('shipcosim-palette')")
 
 
+@pytest.fixture(scope="module")
+def opened():
+    return []
+
+
+@pytest.fixture
+def seen(browse, chromium, file, opened):
+    """The page as the test before left it, for those that choose time and palette themselves."""
+    if not opened or chromium.current_url.partition("#")[0] != file.as_uri():
+        opened[:] = [browse(file)]
+    yield opened[0]
+    opened[0].ask("localStorage.removeItem('shipcosim-palette')")
+
+
 @pytest.mark.parametrize("palette", PALETTES)
 @pytest.mark.parametrize("t", [120.0, 700.0])
-def test_instruments_show_the_signals(page, table, palette, t):
+def test_instruments_show_the_signals(seen, table, palette, t):
+    page = seen
     page.ask("scene.time = arguments[0]; scene.paint()", t)
     shown, row = instruments(page, palette), table.sel(time=t)
     heading, wanted = (
@@ -105,7 +120,8 @@ def test_instruments_show_the_signals(page, table, palette, t):
     assert page.errors() == [] and page.requests() == []
 
 
-def test_thrust_and_its_set_point_are_shares_of_the_largest(page, table):
+def test_thrust_and_its_set_point_are_shares_of_the_largest(seen, table):
+    page = seen
     page.ask("scene.time = 500; scene.paint()")
     port, row = instruments(page)["port"], table.sel(time=500.0)
     for shown, signal in {
@@ -118,7 +134,8 @@ def test_thrust_and_its_set_point_are_shares_of_the_largest(page, table):
     assert port["angleSetpoint"] == pytest.approx(angle, abs=0.06)
 
 
-def test_wind_and_current_come_from_where_the_table_says(page, table):
+def test_wind_and_current_come_from_where_the_table_says(seen, table):
+    page = seen
     page.ask("scene.time = 400; scene.paint()")
     compass = instruments(page)["compass"]
     north, east = (

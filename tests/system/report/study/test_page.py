@@ -417,7 +417,7 @@ def served(file):
         (folder / "report.html").write_text(f"<title>Page of run {run}</title>")
 
     server = study_server(file.parent, range(1, 649), simulate)
-    thread = threading.Thread(target=server.serve_forever, daemon=True)
+    thread = threading.Thread(target=server.serve_forever, args=(0.02,), daemon=True)
     thread.start()
     yield server
     server.shutdown()

@@ -53,7 +53,8 @@ def simulations(tmp_path):
 @pytest.fixture
 def server(simulations):
     made = study_server(simulations.folder, [1, 2, 3, 4, 5, 6], simulations)
-    thread = threading.Thread(target=made.serve_forever, daemon=True)
+    # It looks often whether it is to end: by itself it would every half a second, for each of seventy tests.
+    thread = threading.Thread(target=made.serve_forever, args=(0.02,), daemon=True)
     thread.start()
     yield made
     made.shutdown()

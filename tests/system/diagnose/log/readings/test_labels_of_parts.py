@@ -27,9 +27,16 @@ def agile(minutes):
     return log | {role: 10.0 * log[role] for role in (*VELOCITY, "yaw_rate")}
 
 
-@pytest.mark.parametrize("note", PLANTED)
+IN_CI = [note for note in PLANTED if "heading has" in note or "km/h" in note or "rad/s" in note]
+
+
+@pytest.mark.parametrize("note", IN_CI)
 def test_a_wrong_label_in_a_part_of_a_minute_and_a_half_is_named_with_it(note):
-    """Parts below 60 s, and headings and km/h in parts, were never named."""
+    """Parts below 60 s, and headings and km/h in parts, were never named. The others at night."""
+    check_part(note)
+
+
+def check_part(note):
     log = agile(minutes=1.5)
     begins, ends = (0.0, 36.0) if "has" in note else (20.0, 85.0)
     here = (log["time"] >= begins) & (log["time"] <= ends)
