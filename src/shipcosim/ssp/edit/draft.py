@@ -48,7 +48,6 @@ class Draft:
         self.package = replace(package, held={}, located={})
         self.path = (package.folder / package.ssd).resolve()
         self.package.held[self.path] = document
-        self._described: dict[tuple[Path, int], FmuDescription | None] = {}
         self._assembled: tuple[System | None, Findings] | None = None
         self._assembled_from: dict[Path, bytes | Path] = {}
         self._changing = False
@@ -102,9 +101,7 @@ class Draft:
         """Assemble the present system; None or incomplete if there are errors."""
         findings = Findings()
         self.package.located.clear()
-        system = assemble_package(
-            self.package, parameters, self.file, findings, self._described, swapped
-        )
+        system = assemble_package(self.package, parameters, self.file, findings, swapped)
         return system, findings
 
     def assembled(self) -> tuple[System | None, Findings]:
@@ -140,8 +137,7 @@ class Draft:
         file = self.package.locate(element.get("source", ""), self.document.folder, "", Findings())
         if file is None:
             return None
-        key = file, file.stat().st_mtime_ns
-        return self._described.get(key) or describe_fmu(file, Findings())
+        return describe_fmu(file, Findings())
 
     # ---------------------------------------------------------------- changing
 

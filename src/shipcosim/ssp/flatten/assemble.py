@@ -26,7 +26,6 @@ def assemble_package(
     parameters: ParameterSets,
     file: str,
     findings: Findings,
-    described: dict | None = None,
     swapped: Swapped = None,
 ) -> System | None:
     """System of a package, None or incomplete where there are errors.
@@ -41,8 +40,6 @@ def assemble_package(
         The system's name for messages.
     findings : Findings
         Takes what is wrong.
-    described : dict, optional
-        Keeps descriptions of FMUs from one call to the next.
     swapped : mapping of str to Path, optional
         FMUs that components run in place of their own.
     """
@@ -56,7 +53,7 @@ def assemble_package(
 
     # Collect the hierarchy, apply the sets over the system's own values, and flatten it.
     def flat(sizes: Mapping[str, Mapping[str, int]]) -> System:
-        tree = Hierarchy(findings, described, sizes, swapped)
+        tree = Hierarchy(findings, sizes, swapped)
         take_in(tree, structure, package)
         for values in sets:
             apply_set(tree, values)

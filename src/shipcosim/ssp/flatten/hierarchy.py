@@ -34,8 +34,6 @@ class Hierarchy:
     ----------
     findings : Findings
         Takes what is wrong.
-    described : dict, optional
-        Keeps descriptions of FMUs without fault for other hierarchies.
     sizes : mapping of str to mapping of str to int, optional
         Values of structural parameters that give the sizes of arrays, by component, where they are not the FMU's own.
     swapped : mapping of str to Path, optional
@@ -64,7 +62,6 @@ class Hierarchy:
     def __init__(
         self,
         findings: Findings,
-        described: dict | None = None,
         sizes: Mapping[str, Mapping[str, int]] | None = None,
         swapped: Swapped = None,
     ):
@@ -76,7 +73,7 @@ class Hierarchy:
         self.settings: list[Setting] = []
         self.arrays: dict[ElementPath, dict[str, tuple[int, ...]]] = {}
         self.references: dict[Key, Key] = {}
-        self.library = Library(findings, described)
+        self.library = Library(findings)
         self.sizes = sizes or {}
         self.swapped = swapped or {}
 

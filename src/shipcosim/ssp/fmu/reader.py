@@ -3,12 +3,13 @@
 Reference: FMI 1.0 for co-simulation and for model exchange, FMI 2.0.4 and FMI 3.0.1, section 2 of each.
 """
 
+from functools import lru_cache
 from math import inf, isfinite
 from pathlib import Path
 
 import lxml.etree as etree
 
-from shipcosim.errors import ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.fmu.fmi1 import interfaces_of
 from shipcosim.ssp.fmu.variables import read_variables
@@ -24,6 +25,9 @@ from shipcosim.ssp.xml.document import (
     parts_of,
 )
 from shipcosim.ssp.xml.validation import validate
+
+MOST_KEPT = 64
+"""FMUs whose descriptions are kept: systems are read again and again while they are edited."""
 
 
 def read_fmu(path: AnyPath) -> FmuDescription:
@@ -65,6 +69,27 @@ def describe_fmu(
         Its name in messages, where it is not `path`.
     """
     shown = shown or str(path)
+    try:
+        stat = Path(path).stat()
+    except OSError:
+        return _described(path, findings, shown)
+    stamp = stat.st_dev, stat.st_ino, stat.st_mtime_ns, stat.st_size
+    described, problems = _kept(str(path), shown, stamp)
+    findings.problems += problems
+    return described
+
+
+@lru_cache(MOST_KEPT)
+def _kept(
+    path: str, shown: str, stamp: tuple[int, ...]
+) -> tuple[FmuDescription | None, tuple[Problem, ...]]:
+    """Description of a file that has not changed since, and what is wrong with it."""
+    findings = Findings()
+    described = _described(path, findings, shown)
+    return described, tuple(findings.problems)
+
+
+def _described(path: AnyPath, findings: Findings, shown: str) -> FmuDescription | None:
     # The archive, and the description in it.
     try:
         data = read_entry(path, "modelDescription.xml", LARGEST_FILE, shown)

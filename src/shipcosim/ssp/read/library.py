@@ -36,8 +36,6 @@ class Library:
     ----------
     findings : Findings
         Takes what is wrong.
-    described : dict, optional
-        Keeps descriptions of FMUs without fault for other libraries.
 
     Attributes
     ----------
@@ -45,10 +43,9 @@ class Library:
         Opened on the way.
     """
 
-    def __init__(self, findings: Findings, described: dict | None = None):
+    def __init__(self, findings: Findings):
         self.findings = findings
         self.packages = list[Package]()
-        self._described = {} if described is None else described
         self._kept: dict[Hashable, Any] = {}
 
     def _once(self, key: Hashable, make: Callable[[], Any]) -> Any:
@@ -149,16 +146,6 @@ class Library:
 
     def fmu(self, file: Path, package: Package) -> FmuDescription | None:
         """Description of an FMU, or None."""
-        return self._once(("fmu", file), lambda: self._description(file, package))
-
-    def _description(self, file: Path, package: Package) -> FmuDescription | None:
-        # Cached by file and time of change; faulty descriptions are
-        # read again, so their faults are reported.
-        key = file, file.stat().st_mtime_ns
-        if key not in self._described:
-            before = len(self.findings.problems)
-            fmu = describe_fmu(file, self.findings, package.show(file))
-            if len(self.findings.problems) > before:
-                return fmu  # not kept: the next tree has to hear of its faults too
-            self._described[key] = fmu
-        return self._described[key]
+        return self._once(
+            ("fmu", file), lambda: describe_fmu(file, self.findings, package.show(file))
+        )
