@@ -7,13 +7,15 @@ import sys
 from pathlib import Path
 
 import pytest
+from cosim.slaves import test_fmi_elsewhere
 from cosim.slaves.test_fmi_elsewhere import CASES, ENGINES, packages
 
 
 def verdict(engine, path, right):
     """What becomes of an SSP in an engine, in a word of docs/interoperability.md."""
-    command = [sys.executable, __file__, engine, str(path)]
-    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parents[3])}
+    command = [sys.executable, str(test_fmi_elsewhere.__file__), engine, str(path)]
+    tests = Path(__file__).resolve().parents[3]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join((str(tests / "system"), str(tests)))}
     try:
         run = subprocess.run(command, capture_output=True, text=True, timeout=60, env=environment)
     except subprocess.TimeoutExpired:
