@@ -73,8 +73,12 @@ def describe_fmu(
         stat = Path(path).stat()
     except OSError:
         return _described(path, findings, shown)
-    stamp = stat.st_dev, stat.st_ino, stat.st_mtime_ns, stat.st_size
-    described, problems = _kept(str(path), shown, stamp)
+    stamp = stat.st_dev, stat.st_ino, stat.st_mtime_ns, stat.st_ctime_ns, stat.st_size
+    try:
+        described, problems = _kept(str(path), shown, stamp)
+    except ShipcosimError as error:
+        findings.problems += error.problems
+        return None
     findings.problems += problems
     return described
 
@@ -82,10 +86,12 @@ def describe_fmu(
 @lru_cache(MOST_KEPT)
 def _kept(
     path: str, shown: str, stamp: tuple[int, ...]
-) -> tuple[FmuDescription | None, tuple[Problem, ...]]:
-    """Description of a file that has not changed since, and what is wrong with it."""
+) -> tuple[FmuDescription, tuple[Problem, ...]]:
+    """Description of a file that has not changed since, and remarks; an error is not kept, as it may pass."""
     findings = Findings()
     described = _described(path, findings, shown)
+    if described is None:
+        raise ShipcosimError(findings.problems)
     return described, tuple(findings.problems)
 
 

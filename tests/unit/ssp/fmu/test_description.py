@@ -229,3 +229,19 @@ def test_of_a_default_experiment_only_what_a_run_can_have_is_kept(
         assert described.experiment == left
         (remark,) = findings.problems
         assert f"has {unusable}=" in remark.found and remark.flaw
+
+
+def test_a_description_is_kept_until_its_file_changes_and_an_error_is_not(tmp_path, monkeypatch):
+    path = fmu(tmp_path / "first.fmu", FIRST.replace("MORE", SLAVE))
+    first = read_fmu(path)
+    assert read_fmu(path) is first
+    # Another content of the same name.
+    fmu(path, FIRST.replace("MORE", SLAVE).replace('"gear"', '"lever"'))
+    assert "lever" in read_fmu(path).variables and "gear" in first.variables
+    # What cannot be read at the moment, such as without a free file handle, can be read later.
+    with monkeypatch.context() as patch:
+        patch.setattr(zipfile, "ZipFile", None)
+        path.touch()
+        with pytest.raises(ShipcosimError):
+            read_fmu(path)
+    assert "lever" in read_fmu(path).variables
