@@ -65,10 +65,12 @@ def gaps(log: dict) -> list[Finding]:
     # Rows in which the whole navigation is empty, held or interpolated; other channels may follow.
     everywhere = list(_flat_runs(log, tuple(role for role in NAVIGATION if role in log)))
     found += [_with_followers(log, run) for run in everywhere]
-    # The same for single groups of channels, where the navigation as a whole is not lost.
-    for group in GROUPS:
+    # The same for groups of channels and for single ones, where what they belong to is not lost as a whole.
+    singles = tuple((role,) for group in GROUPS if len(group) > 1 for role in group)
+    for group in GROUPS + singles:
+        known = [*everywhere, *(run for run in found if group[0] in run.channels)]
         for run in _flat_runs(log, tuple(role for role in group if role in log)):
-            if not any(_overlap(run, known) for known in everywhere):
+            if not any(_overlap(run, one) for one in known):
                 found.append(run)
     # Leaps of the position, which lost rows leave when a logger closes the gap.
     found += _leaps(log)
@@ -193,26 +195,38 @@ def _flat_runs(log, roles):
     # Only runs longer than chance makes them, and long enough in time, are lost data. They are
     # unusual only where noise is seen: a channel too coarse to show it is straight in calm water.
     held = np.r_[(values[1:] == values[:-1]).all(axis=1), False]
+    # Held values end exactly where they change, and tell where a coarse channel is mostly straight.
     flat = list(_long_runs(straight | held, least))
+    stuck = list(_long_runs(held, least))
     others = np.ones(len(time), bool)
-    for first, last in flat:
+    for first, last in [*stuck, *flat]:
         others[first:last] = False
-    if not any(_shows_noise(log[role][others], role) for role in roles):
+    noise = {role: _noise(log[role][others], role) for role in roles}
+    if not any(noise[role] > NOISE_SEEN * quantum(log[role][others]) for role in roles):
         return
-    for first, last in flat:
+    # Where a channel has few digits, its resolution at the value that is held counts.
+    stuck = [
+        (first, last)
+        for first, last in stuck
+        if any(noise[r] > NOISE_SEEN * _to_next_level(log[r], log[r][first]) for r in roles)
+    ]
+    found = []
+    for first, last in [*stuck, *flat]:
         kind = _kind(values[first:last])
         last = min(last + (kind == STRAIGHT), len(time) - 1)  # rows of the line, both ends included
-        if time[last] - time[first] >= SHORTEST_GAP and (
-            len(roles) > 2 or _is_line(log, roles, first, last)
-        ):
-            yield _Run(first + 1, last - (kind == STRAIGHT), roles, kind)
+        run = _Run(first + 1, last - (kind == STRAIGHT), roles, kind)
+        is_long = time[last] - time[first] >= SHORTEST_GAP
+        if is_long and not any(_overlap(run, one) for one in found):
+            if len(roles) > 2 or _is_line(log, roles, first, last):
+                found.append(run)
+    yield from found
 
 
-def _shows_noise(values, role):
-    """Whether a channel is noisy beyond its resolution: by differences that motion makes smaller, and noise does not."""
+def _noise(values, role):
+    """Noise of a channel by differences that motion makes smaller, and noise does not; 0 where it is motion."""
     values = finite(values)
     if len(values) < FEWEST_CONSTANT:
-        return True
+        return np.inf
     if role == "heading" or role.endswith("_from"):
         values = np.degrees(unwrap_series(np.radians(values)))
     # Second differences of white noise change their sign from row to row (correlation -2/3), those of a motion do not.
@@ -220,10 +234,15 @@ def _shows_noise(values, role):
     usual = np.median(np.abs(bends))
     tame = np.clip(bends, -3.0 * usual, 3.0 * usual)
     if np.mean(tame[1:] * tame[:-1]) > -np.mean(tame**2) / 3.0:
-        return False
+        return 0.0
     # Size of white noise with the median of second and of fourth differences.
-    noise = min(usual / 6.0**0.5, np.median(np.abs(np.diff(values, n=4))) / 70.0**0.5) / 0.6745
-    return bool(noise > NOISE_SEEN * quantum(values))
+    return min(usual / 6.0**0.5, np.median(np.abs(np.diff(values, n=4))) / 70.0**0.5) / 0.6745
+
+
+def _to_next_level(values, value):
+    """Distance of a value from the nearest other one of its channel."""
+    apart = np.abs(finite(values) - value)
+    return apart[apart > 0.0].min(initial=np.inf)
 
 
 def _kind(values):
