@@ -52,7 +52,7 @@ class Mislabel:
     Attributes
     ----------
     cause : str
-        ``"sign"``, ``"channel_swap"`` or ``"frame"``.
+        ``"sign"``, ``"channel_swap"``, ``"frame"`` or ``"channel_lag"``.
     channels : tuple of str
         Roles of the channels that it concerns.
     sentence : str
@@ -154,6 +154,26 @@ def turned_axes(angle: float) -> Mislabel:
 def _turned_back(roles, angle, log):
     along, across = roles
     return _turned_to_body(roles, log[along], log[across], angle)
+
+
+def late(channels: tuple[str, ...], others: tuple[str, ...], seconds: float) -> Mislabel:
+    """Channels that come some seconds later than others."""
+    verb = "come" if len(channels) > 1 else "comes"
+    said = f"{' and '.join(channels)} {verb} {seconds:.1f} s later than {' and '.join(others)}"
+    return Mislabel("channel_lag", channels, said, partial(_earlier, channels, seconds))
+
+
+def _earlier(roles, seconds, log):
+    """Channels as they come some seconds later; NaN beyond the end."""
+    time = log["time"]
+    moved = {}
+    for role in roles:
+        known = np.isfinite(log[role])
+        values = log[role][known]
+        values = np.unwrap(values, period=360.0) if role in ANGLES else values
+        values = np.interp(time + seconds, time[known], values, right=np.nan)
+        moved[role] = np.mod(values, 360.0) if role in ANGLES else values
+    return moved
 
 
 def _from_bow(log):

@@ -251,6 +251,20 @@ RATE_UNSURE = 0.03
 ROUGHEST = 3.5
 """Innovations that are more correlated, after all that was found, say nothing about a clock."""
 
+# Channels that come late
+
+LAG_GAIN = 30.0
+"""What a lag must gain over none, correlated rows counted less. [nats] Right logs of work, hold and trial, of both forms
+(seeds 94000 to 94019), gain 16 at most."""
+LARGEST_LAG = 15.0
+"""Largest lag that is looked for. [s] Assumed."""
+LAG_SPACING = 0.5
+"""Distance of the lags that are tried, where rows are closer. [s]"""
+SMALLEST_LAG = 1.5
+"""Smallest lag that is reported. [s] Right logs of these seeds show 1.0 s at most."""
+SMALLEST_LAG_ROWS = 1.5
+"""The same in rows. Assumed."""
+
 # Repair
 
 HOLE = 1.5

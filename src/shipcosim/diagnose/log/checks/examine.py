@@ -8,6 +8,7 @@ import xarray
 
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.checks.clock import wrong_clock
+from shipcosim.diagnose.log.checks.lag import late_channels
 from shipcosim.diagnose.log.checks.samples import gaps, lifeless, wraps
 from shipcosim.diagnose.log.checks.wind import mislabelled_wind
 from shipcosim.diagnose.log.checks.wind_jumps import jumping_wind
@@ -81,6 +82,11 @@ def _in_parts(table, stated, contradiction):
     quiet = silent_rate(right)
     labels = [*labels, *quiet]
     right = undone(right, quiet[0].mislabel, quiet[0].segments) if quiet else right
+    # Channels that are labelled right may still come late.
+    late = [] if labels else late_channels(right)
+    for label in late:
+        right = undone(right, label.mislabel, label.segments)
+    labels = [*labels, *late]
     # A wrong clock can look like a wrong label. Where both were found at
     # one place, the label is dropped and the clock is estimated again.
     clock = wrong_clock(right)
@@ -90,8 +96,8 @@ def _in_parts(table, stated, contradiction):
         for label in kept:
             right = undone(right, label.mislabel, label.segments)
         clock = wrong_clock(right)
-    # The wind is judged by headings and velocities, so not where these contradict each other.
     clock = _agreeing(clock)
+    # The wind is judged by headings and velocities, so not where these contradict each other.
     if contradiction is not None and not kept and not clock:
         return [contradiction]
     return [*kept, *(mislabelled_wind(right) or jumping_wind(right)), *clock]
