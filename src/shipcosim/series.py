@@ -33,7 +33,7 @@ from shipcosim.dialects import (
     unicode_of,
 )
 from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors, reading, shortened
-from shipcosim.temporary import temporary_folder
+from shipcosim.temporary import replacement
 from shipcosim.units import UnitError, spelled_conversion, spelled_unit
 
 if TYPE_CHECKING:
@@ -230,10 +230,8 @@ def write_file(path: str | os.PathLike, content: bytes) -> None:
     """
     path = Path(path)
     try:
-        with temporary_folder(path.parent, unfinished=True) as folder:
-            part = Path(folder, path.name)
-            part.write_bytes(content)
-            os.replace(part, path)
+        with replacement(path) as new:
+            new.write_bytes(content)
     except OSError as error:
         raise error_at(
             str(path),
