@@ -3,10 +3,14 @@
 import importlib
 import inspect
 
+import numpy as np
 import pytest
 
 import shipcosim as sc
+from shipcosim.calls.arguments import mapping
+from shipcosim.errors import ShipcosimError
 from shipcosim.options import RunKeywords
+from shipcosim.scenario import Event
 
 COMMANDS = (
     "run",
@@ -44,3 +48,16 @@ def test_every_option_of_a_command_is_an_argument_of_its_call(name):
     options = set(inspect.signature(command).parameters) - OF_THE_TERMINAL
     asked = {(OTHER_NAMES | names).get(option, option) for option in options}
     assert asked <= taken, f"{name}: the call lacks {asked - taken}"
+
+
+@pytest.mark.parametrize("value", [np.float32(2.5), np.int64(3), np.bool_(True), np.str_("a")])
+def test_numbers_of_numpy_are_those_of_python(value):
+    (taken,) = mapping("set", {"lag.u": value}).values()
+    (held,) = Event(time=0.0, override={"lag.u": value}).override.values()
+    assert type(taken) in (float, int, bool, str) and taken == held == value
+
+
+@pytest.mark.parametrize("given", [5, "a.u=1", [("a.u", 1)], {1: 2}, {None: 1}])
+def test_settings_are_a_mapping_of_names(given):
+    with pytest.raises(ShipcosimError, match="Give a dict"):
+        mapping("set", given)
