@@ -14,9 +14,9 @@ from typing import Any
 from shipcosim.errors import error_at
 from shipcosim.scenario import step_times
 from shipcosim.series import write_file
+from shipcosim.units import is_finite
 
 SCHEMA = "shipcosim-snapshot/1"
-LARGEST_VALUE = 1e300
 LARGEST = 1 << 30  # bytes of one FMU's state
 
 
@@ -164,7 +164,7 @@ def _typed(facts):
         *facts["inputs"].values(),
         *(v for two in facts["changes"].values() for v in two),
     ]
-    if not all(isinstance(value, (int, float)) and abs(value) < LARGEST_VALUE for value in held):
+    if not all(isinstance(value, (int, float)) and is_finite(value) for value in held):
         raise ValueError("it holds values that no signal has")
     return facts | {
         "changes": {signal: (scale, shift) for signal, (scale, shift) in facts["changes"].items()}
