@@ -62,6 +62,9 @@ MOST_PACKED = 100
 OWN_NAME = "own_name"
 """Attribute of a variable whose name NetCDF cannot have."""
 
+_NO_TEXT = re.compile("[\0\ud800-\udfff]")
+"""Signs that neither HDF5 nor UTF-8 can hold."""
+
 _HEADER = re.compile(r"^(?P<name>.*)\s\[(?P<unit>.*)\]\s*$", re.DOTALL)
 
 
@@ -124,6 +127,9 @@ def write_table(table: xarray.Dataset, path: str | os.PathLike) -> None:
         raise error_at(
             str(path), f"a table cannot be written as '{path.suffix}'.", "Use .nc or .csv."
         )
+    if no_text := [str(name) for name in table.variables if _NO_TEXT.search(str(name))]:
+        found = f"no file can hold the name {ascii(no_text[0])}: it has a zero byte or half a character."
+        raise error_at(str(path), found, "Rename the signal.")
     write_file(path, writers[path.suffix](table))
 
 
@@ -359,6 +365,9 @@ def _open_netcdf(path: Path) -> xarray.Dataset:
     _check_declared(path)
     with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as table:
         table = table.load()
+    for variable in table.variables.values():
+        if "units" in variable.attrs:
+            variable.attrs["units"] = str(variable.attrs["units"])  # a plain 1 is no text
     own = {
         name: variable.attrs.pop(OWN_NAME)
         for name, variable in table.variables.items()
