@@ -528,7 +528,7 @@ def whole_steps(duration: float, step_size: float) -> int | None:
     return count if abs(steps - count) <= 1e-6 else None
 
 
-def is_finite(value: float) -> bool:
+def is_finite(value: Any) -> bool:
     """Whether a number is finite as a float: whole numbers can be larger than any.
 
     Examples
