@@ -212,7 +212,7 @@ def _suffix(path: str | os.PathLike, known: Iterable[str]) -> str:
         raise error_at(str(path), "is a folder, no table.", f"Tables are {', '.join(known)}.")
     suffix = ending_of(path) if path.is_file() else path.suffix
     if suffix not in known:
-        found = f"'{path.suffix}' is no table."
+        found = f"'{path.suffix or path.name}' is no table."
         raise error_at(str(path), found, f"Tables are {', '.join(known)}.")
     if not path.is_file():
         raise error_at(str(path), "there is no such file.")
