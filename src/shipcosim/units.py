@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 import re
-import sys
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -536,7 +535,10 @@ def is_finite(value: Any) -> bool:
     >>> [is_finite(value) for value in (2, 1e308, 10**400, float("nan"))]
     [True, True, False, False]
     """
-    return abs(value) <= sys.float_info.max
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
 
 
 def steps_in(duration: float, step_size: float) -> float:

@@ -121,7 +121,11 @@ def in_seconds(arguments: Mapping[str, Any], names: Iterable[str]) -> dict[str, 
                 continue
         # NaN compares with nothing, so no later check would see it; and no run ends that has no end.
         value = found.get(name)
-        if value is not None and not (isinstance(value, Real) and is_finite(value)):
+        if value is None:
+            continue
+        if isinstance(value, Real) and not isinstance(value, bool) and is_finite(value):
+            found[name] = float(value)
+        else:
             wrong = f"{name} = {value!r:.60} is no time."
             problems.append(Problem(named(name), wrong, "Give a number of seconds."))
     raise_errors(problems)

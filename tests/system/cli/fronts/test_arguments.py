@@ -2,12 +2,13 @@
 
 import importlib
 import inspect
+import math
 
 import numpy as np
 import pytest
 
 import shipcosim as sc
-from shipcosim.calls.arguments import mapping
+from shipcosim.calls.arguments import in_seconds, mapping
 from shipcosim.errors import ShipcosimError
 from shipcosim.options import RunKeywords
 from shipcosim.scenario import Event
@@ -61,3 +62,14 @@ def test_numbers_of_numpy_are_those_of_python(value):
 def test_settings_are_a_mapping_of_names(given):
     with pytest.raises(ShipcosimError, match="Give a dict"):
         mapping("set", given)
+
+
+@pytest.mark.parametrize("value", [10**400, np.float32("inf"), math.nan, -math.inf, True])
+def test_a_time_is_a_finite_number(value):
+    with pytest.raises(ShipcosimError, match="until = .* is no time"):
+        in_seconds({"until": value}, ["until"])
+
+
+@pytest.mark.parametrize("value", [2, np.float32(2.0), np.int64(2), "2 s"])
+def test_a_time_is_a_number_of_python(value):
+    assert type(in_seconds({"until": value}, ["until"])["until"]) is float
