@@ -132,9 +132,25 @@ def reading(
     except Exception as error:
         # The system says what is wrong with the disk or the rights; a library, with the content.
         reason = error.strerror if isinstance(error, OSError) else None
-        said = reason or " ".join(str(error).split())[:200].rstrip(".") or type(error).__name__
+        said = reason or reason_of(error)
         found = f"cannot be read: {said}."
         raise error_at(str(path), found, "" if reason else remedy) from error
+
+
+def reason_of(error: Exception) -> str:
+    """What an error of a library says, in one line.
+
+    Examples
+    --------
+    >>> reason_of(ValueError("no  number.")), reason_of(KeyError("time"))
+    ('no number', "it has no 'time'")
+    >>> reason_of(TypeError("'int' object is not iterable"))
+    'its parts are of other types than they should be'
+    """
+    if isinstance(error, (AttributeError, TypeError)):
+        return "its parts are of other types than they should be"
+    text = " ".join(str(error).split())[:200].rstrip(".") or type(error).__name__
+    return f"it has no {text}" if isinstance(error, KeyError) else text
 
 
 def error_at(where: str, found: str, remedy: str = "") -> ShipcosimError:

@@ -33,7 +33,7 @@ from shipcosim.dialects import (
     unicode_of,
 )
 from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors, reading, shortened
-from shipcosim.temporary import temporary_folder
+from shipcosim.temporary import replacement
 from shipcosim.units import UnitError, spelled_conversion, spelled_unit
 
 if TYPE_CHECKING:
@@ -61,6 +61,9 @@ MOST_PACKED = 100
 
 OWN_NAME = "own_name"
 """Attribute of a variable whose name NetCDF cannot have."""
+
+_NO_TEXT = re.compile("[\0\ud800-\udfff]")
+"""Signs that neither HDF5 nor UTF-8 can hold."""
 
 _HEADER = re.compile(r"^(?P<name>.*)\s\[(?P<unit>.*)\]\s*$", re.DOTALL)
 
@@ -124,6 +127,9 @@ def write_table(table: xarray.Dataset, path: str | os.PathLike) -> None:
         raise error_at(
             str(path), f"a table cannot be written as '{path.suffix}'.", "Use .nc or .csv."
         )
+    if no_text := [str(name) for name in table.variables if _NO_TEXT.search(str(name))]:
+        found = f"no file can hold the name {ascii(no_text[0])}: it has a zero byte or half a character."
+        raise error_at(str(path), found, "Rename the signal.")
     write_file(path, writers[path.suffix](table))
 
 
@@ -206,7 +212,7 @@ def _suffix(path: str | os.PathLike, known: Iterable[str]) -> str:
         raise error_at(str(path), "is a folder, no table.", f"Tables are {', '.join(known)}.")
     suffix = ending_of(path) if path.is_file() else path.suffix
     if suffix not in known:
-        found = f"'{path.suffix}' is no table."
+        found = f"'{path.suffix or path.name}' is no table."
         raise error_at(str(path), found, f"Tables are {', '.join(known)}.")
     if not path.is_file():
         raise error_at(str(path), "there is no such file.")
@@ -230,10 +236,8 @@ def write_file(path: str | os.PathLike, content: bytes) -> None:
     """
     path = Path(path)
     try:
-        with temporary_folder(path.parent, unfinished=True) as folder:
-            part = Path(folder, path.name)
-            part.write_bytes(content)
-            os.replace(part, path)
+        with replacement(path) as new:
+            new.write_bytes(content)
     except OSError as error:
         raise error_at(
             str(path),
@@ -361,6 +365,9 @@ def _open_netcdf(path: Path) -> xarray.Dataset:
     _check_declared(path)
     with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as table:
         table = table.load()
+    for variable in table.variables.values():
+        if "units" in variable.attrs:
+            variable.attrs["units"] = str(variable.attrs["units"])  # a plain 1 is no text
     own = {
         name: variable.attrs.pop(OWN_NAME)
         for name, variable in table.variables.items()

@@ -9,14 +9,14 @@ from dataclasses import asdict, dataclass, fields
 from functools import partial
 from math import inf, isfinite
 from pathlib import Path
+from sys import float_info
 from typing import Any
 
-from shipcosim.errors import error_at
+from shipcosim.errors import error_at, reason_of
 from shipcosim.scenario import step_times
 from shipcosim.series import write_file
 
 SCHEMA = "shipcosim-snapshot/1"
-LARGEST_VALUE = 1e300
 LARGEST = 1 << 30  # bytes of one FMU's state
 
 
@@ -109,7 +109,9 @@ def read_snapshot(path: str | os.PathLike) -> Snapshot:
         raise error_at(str(path), f"cannot be read: {error.strerror or error}.") from error
     except Exception as error:  # of a damaged archive the decompressors raise anything
         remedy = "Snapshots come from --store or simulate(..., store=...)."
-        raise error_at(str(path), f"is no snapshot of a run: {error}.", remedy) from error
+        raise error_at(
+            str(path), f"is no snapshot of a run: {reason_of(error)}.", remedy
+        ) from error
 
 
 def opened(snapshot: Snapshot | str | os.PathLike[str] | None) -> Snapshot | None:
@@ -164,7 +166,7 @@ def _typed(facts):
         *facts["inputs"].values(),
         *(v for two in facts["changes"].values() for v in two),
     ]
-    if not all(isinstance(value, (int, float)) and abs(value) < LARGEST_VALUE for value in held):
+    if not all(isinstance(value, (int, float)) and abs(value) <= float_info.max for value in held):
         raise ValueError("it holds values that no signal has")
     return facts | {
         "changes": {signal: (scale, shift) for signal, (scale, shift) in facts["changes"].items()}

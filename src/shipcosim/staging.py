@@ -48,9 +48,8 @@ def check_targets(folder: Path | None, file: Path | None = None) -> None:
 
 
 def _complaints(folder: Path, must_exist: bool = False) -> list[str]:
-    there = next(
-        parent for parent in (Path(folder), *Path(folder).absolute().parents) if parent.exists()
-    )
+    above = (Path(folder), *Path(folder).absolute().parents)
+    there = next(one for one in above if one.exists() or one.is_symlink())
     if not there.is_dir():
         return [f"{there} is a file, not a folder."]
     if must_exist and there != Path(folder):

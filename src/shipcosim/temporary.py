@@ -12,8 +12,8 @@ import re
 import shutil
 import sys
 import tempfile
-from collections.abc import Iterable
-from contextlib import suppress
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 _NAME = re.compile(r"(?:\.unfinished|shipcosim)-(?P<host>.+)-(?P<process>\d+)-[^-]+")
@@ -41,14 +41,7 @@ def temporary_folder(
 
 
 def replace_file(path: Path, content: bytes) -> None:
-    """Write a file beside its place, then rename it: nobody reads half of it, and no half of it stays.
-
-    Parameters
-    ----------
-    path : Path
-        Its place; the folder is made if needed.
-    content : bytes
-        All of it.
+    """Write a file as `replacement` does; the folder is made if needed.
 
     Raises
     ------
@@ -56,11 +49,31 @@ def replace_file(path: Path, content: bytes) -> None:
         If it cannot be written.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    with temporary_folder(path.parent, unfinished=True) as folder:
-        new = Path(folder, path.name)
+    with replacement(path) as new:
         new.write_bytes(content)
         new.chmod(0o644)  # others may read it, whatever the umask is
-        os.replace(new, path)
+
+
+@contextmanager
+def replacement(path: Path) -> Iterator[Path]:
+    """Path of a file to write, which then takes its place: nobody reads half of it, and no half of it stays.
+
+    Of a link the file that it leads to is replaced. A device or a pipe is written into: it must not become a file.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    is_device = path.exists() and not (path.is_file() or path.is_dir())
+    place = path if is_device else Path(os.path.realpath(path))
+    with temporary_folder(None if is_device else place.parent, unfinished=True) as folder:
+        new = Path(folder, place.name)
+        yield new
+        if is_device:
+            place.write_bytes(new.read_bytes())
+        else:
+            os.replace(new, place)
 
 
 def exchange(stage: Path, folder: Path, names: Iterable[str], *, keep: bool) -> None:

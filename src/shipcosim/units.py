@@ -522,8 +522,38 @@ def whole_steps(duration: float, step_size: float) -> int | None:
     True
     """
     # Rounding errors of decimal step sizes are allowed, half steps are not.
-    count = round(duration / step_size)
-    return count if abs(duration / step_size - count) <= 1e-6 else None
+    steps = steps_in(duration, step_size)
+    count = round(steps)
+    return count if abs(steps - count) <= 1e-6 else None
+
+
+def is_finite(value: Any) -> bool:
+    """Whether a number is finite as a float: whole numbers can be larger than any.
+
+    Examples
+    --------
+    >>> [is_finite(value) for value in (2, 1e308, 10**400, float("nan"))]
+    [True, True, False, False]
+    """
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
+
+
+def steps_in(duration: float, step_size: float) -> float:
+    """Number of steps in a duration, whole or not, but at most `MOST_STEPS`: numbers of any size stand in files.
+
+    Examples
+    --------
+    >>> steps_in(0.3, 0.2), steps_in(-1e308, 1e-308)
+    (1.4999999999999998, -9007199254740992.0)
+    """
+    return max(-MOST_STEPS, min(duration / step_size, MOST_STEPS))
+
+
+MOST_STEPS = 2.0**53
+"""Beyond this number not every whole number is a float."""
 
 
 def _same_kind(source: Unit, target: Unit) -> bool:

@@ -5,6 +5,7 @@ import math
 import subprocess
 import sys
 
+import h5py
 import numpy as np
 import pytest
 import xarray
@@ -48,6 +49,23 @@ def test_netcdf_keeps_attributes_types_and_long_names(table, tmp_path):
     assert again.attrs == {"scenario": "a test", "step_size": 0.05}
     assert again["port.failed"].dtype == bool and again["weather.seed"].dtype == np.int32
     assert again["vessel.x"].attrs["long_name"] == "north"
+
+
+@pytest.mark.parametrize("units", [1, 1.5, np.int8(1), np.array([1.0, 2.0]), True, "", b"m"])
+def test_units_that_are_no_texts_are_read_as_texts(table, tmp_path, units):
+    write_table(table, tmp_path / "t.nc")
+    with h5py.File(tmp_path / "t.nc", "a") as file:
+        file["vessel.x"].attrs["units"] = units
+    assert type(read_table(tmp_path / "t.nc")["vessel.x"].attrs["units"]) is str
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".csv"])
+@pytest.mark.parametrize("name", ["\0", "x\0", "a\0b", "\ud800", "x\udfff"])
+def test_a_name_that_no_file_can_hold_is_refused(tmp_path, name, suffix):
+    file = tmp_path / f"t{suffix}"
+    with pytest.raises(ShipcosimError, match="no file can hold the name"):
+        write_table(make_table(np.arange(3.0), [(name, np.zeros(3), "m", "")]), file)
+    assert not file.exists()
 
 
 NAMES = some.lists(

@@ -8,11 +8,11 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import isfinite
 from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from pydantic import ValidationError
 
 from shipcosim import library
@@ -32,7 +32,7 @@ from shipcosim.ssp import (
     read_system,
     step_remarks,
 )
-from shipcosim.units import UnitError, seconds
+from shipcosim.units import UnitError, is_finite, seconds
 
 if TYPE_CHECKING:
     import xarray
@@ -93,10 +93,14 @@ def listed(given: AnyPath | Iterable[AnyPath] | None, what: str = "") -> list[An
 
 
 def mapping(argument: str, given: Any) -> dict[str, Any]:
-    """An argument that is a mapping, as a dict."""
-    if given is not None and not isinstance(given, Mapping):
+    """An argument that is a mapping of names, as a dict; numbers of NumPy become those of Python."""
+    given = {} if given is None else given
+    if not isinstance(given, Mapping) or not all(isinstance(name, str) for name in given):
         raise error_at("", f"{argument} = {given!r:.60}.", 'Give a dict: {"vessel.mass": 5e5}.')
-    return dict(given or {})
+    return {
+        name: value.item() if isinstance(value, np.generic) else value
+        for name, value in given.items()
+    }
 
 
 def without_none(values: Mapping[str, Any]) -> dict[str, Any]:
@@ -117,7 +121,11 @@ def in_seconds(arguments: Mapping[str, Any], names: Iterable[str]) -> dict[str, 
                 continue
         # NaN compares with nothing, so no later check would see it; and no run ends that has no end.
         value = found.get(name)
-        if value is not None and not (isinstance(value, Real) and isfinite(value)):
+        if value is None:
+            continue
+        if isinstance(value, Real) and not isinstance(value, bool) and is_finite(value):
+            found[name] = float(value)
+        else:
             wrong = f"{name} = {value!r:.60} is no time."
             problems.append(Problem(named(name), wrong, "Give a number of seconds."))
     raise_errors(problems)

@@ -497,11 +497,12 @@ def prepare_simulation(
     ship = system_for(system, scenario, parameters, components, strict)
 
     # A run that continues has the start time of the run before; a scenario's times are on a clock that starts at 0.
-    if start_time is None:
+    begin = start_time
+    if begin is None:
         continues = options.get("resume") is not None
-        start_time = ship.experiment.start_time if scenario is None and not continues else 0.0
+        begin = ship.experiment.start_time if scenario is None and not continues else 0.0
     inputs = fed_by(options.get("inputs"), ship, interpolate, max_gap)
-    how = options_of({"start_time": start_time, **options, "inputs": inputs})
+    how = options_of({"start_time": begin, **options, "inputs": inputs})
     start_values = settings_for(ship, mapping("set", set))
     with_values(ship, start_values, named("set"))
     times = without_none(
@@ -510,7 +511,7 @@ def prepare_simulation(
     keys = times | {"set": start_values, "events": list(events)}
     texts = changes(start_values, parameters, components, (), how)
     how = with_open_snapshot(how)
-    since = clock_start(how)
+    since = _clock_start(how, is_given=start_time is not None)
     happening = scenario_of(scenario, ship, keys, since)
     happening, remarks = with_osp_events(happening, osp_events, how.start_time)
     happening = with_record(happening, ship, record, output_interval is not None)
@@ -522,6 +523,15 @@ def prepare_simulation(
     return _prepared(
         ship, happening, how, texts, remarks, 0.0 if scenario is None else scenario.stop_time
     )
+
+
+def _clock_start(options: RunOptions, is_given: bool) -> float:
+    """Time from which the steps of a run count; one that continues takes no other one. [s]"""
+    since = clock_start(options)
+    if is_given and since != options.start_time:
+        found = f"it continues a run that started at {since:g} s."
+        raise error_at(named("start_time"), found, "Leave it out.")
+    return since
 
 
 def system_for(

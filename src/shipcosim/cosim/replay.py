@@ -21,7 +21,7 @@ from shipcosim.options import CountProgress, RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.series import conversion
 from shipcosim.ssp import System, with_values
-from shipcosim.units import whole_steps
+from shipcosim.units import steps_in, whole_steps
 
 if TYPE_CHECKING:
     import xarray
@@ -166,7 +166,7 @@ def _bad_times(starts, duration, step_size, output_interval):
             yield Problem(
                 "replay",
                 found,
-                f"The nearest would be {max(1, round(time / step_size)) * step_size:.9g} s.",
+                f"The nearest would be {max(1, round(steps_in(time, step_size))) * step_size:.9g} s.",
             )
     if len(early := starts[starts + duration <= 0.0]):
         found = f"the segment at {early[0]:g} s ends before time 0."

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from fractions import Fraction
+from math import ceil, floor
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,13 +15,15 @@ from shipcosim.scenario.amounts import amount_complaints, units_of
 from shipcosim.scenario.locations import Keys, problem_at
 from shipcosim.scenario.model import Event, Expectation, Scenario, Value
 from shipcosim.scenario.plausible import odd_values
-from shipcosim.units import UnitError, amount, number_in, whole_steps
+from shipcosim.units import UnitError, amount, number_in, steps_in, whole_steps
 
 if TYPE_CHECKING:
     from shipcosim.ssp import System
 
 MOST_STEPS = 1e8
 """Steps of a run; the times of more than these would hardly fit into memory."""
+SHORTEST_STEP = 1e-9
+"""Of a run, as in libcosim: times are whole numbers of it. [s]"""
 
 
 def check_files(scenario: Scenario) -> list[Problem]:
@@ -125,6 +128,14 @@ def time_complaints(
             "error",
         )
         return
+    if step < SHORTEST_STEP:
+        yield (
+            ("step_size",),
+            f"step_size = {step:g} s.",
+            f"Take {SHORTEST_STEP:g} s or more.",
+            "error",
+        )
+        return
     # Every time in the file must fall on a step.
     times: list[tuple[Keys, float]] = [
         (("stop_time",), stop),
@@ -137,7 +148,7 @@ def time_complaints(
         # No step at all is wrong for lengths of time, but an event may be at 0.
         if count is None or (count == 0 and keys[0] != "events"):
             found = f"{keys[-1]} = {time:g} s is no multiple of the step size {step:g} s."
-            nearest = since + max(1, round((time - since) / step)) * step
+            nearest = since + max(1, round(steps_in(time - since, step))) * step
             found = found.replace(" s.", f" s after {since:g} s.") if since else found
             yield keys, found, f"The nearest would be {nearest:g} s.", "error"
         elif keys[0] == "events" and time >= stop:
@@ -148,17 +159,39 @@ def time_complaints(
                 "",
                 "remark",
             )
+    yield from _window_complaints(scenario, start_time)
+
+
+def _window_complaints(
+    scenario: Scenario, start_time: float
+) -> Iterator[tuple[Keys, str, str, str]]:
+    """Problems with the windows of expectations, as `time_complaints`."""
+    interval = scenario.output_interval or scenario.step_size
+    stop = scenario.stop_time
     for number, expect in enumerate(scenario.expect):
         window = expect.during
+        if not window:
+            continue
         keys = ("expect", number, "during")
+        first, last = (steps_in(time - start_time, interval) for time in window)
         # A window before the start is never judged, in no run.
-        if window and window[0] < start_time:
+        if window[0] < start_time:
             found = f"during = {window} begins before the run, at {start_time:g} s."
             yield keys, found, "Let it begin there or later.", "error"
         # One beyond the end is judged only as far as the run goes.
-        elif window and window[1] > stop:
+        elif window[1] > stop:
             found = f"during = {window} reaches beyond the end of the run at {stop:g} s."
             yield keys, found, "", "remark"
+        # One between two rows has nothing to judge.
+        elif floor(last + ROUNDING) < ceil(first - ROUNDING):
+            found = (
+                f"during = {window} lies between two rows: the run has one every {interval:g} s."
+            )
+            yield keys, found, "Let it include one.", "error"
+
+
+ROUNDING = 1e-6
+"""Share of a step by which times in a file may miss it."""
 
 
 def check_parameters(scenario: Scenario, system: System) -> Iterator[Problem]:

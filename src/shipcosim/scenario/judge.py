@@ -54,7 +54,8 @@ def within_run(
 ) -> tuple[list[Expectation], list[Expectation]]:
     """Expectations of a scenario within a table's times, and the others.
 
-    An expectation on every row also holds for part of a run; a statistic of the whole run does not.
+    An expectation on every row also holds for part of a run, if more than its start; a statistic of the whole run
+    does not.
 
     Parameters
     ----------
@@ -73,7 +74,7 @@ def within_run(
         if expect.during:
             lies_within = first <= expect.during[0] and expect.during[1] <= last + 1e-9
         else:
-            lies_within = is_whole or not expect.statistic
+            lies_within = is_whole or (last > first and not expect.statistic)
         found[0 if lies_within else 1].append(expect)
     return found
 

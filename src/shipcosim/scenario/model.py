@@ -22,12 +22,13 @@ from pydantic_core import PydanticCustomError
 
 from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.units import UnitError, amount, find_unit, number_in
+from shipcosim.units import UnitError, amount, find_unit, is_finite, number_in
 
 
 def _plain(value: Any) -> bool | int | float | str:
+    value = value.item() if isinstance(value, np.generic) else value
     # NaN and infinity would spread through the simulation.
-    if isinstance(value, float) and not np.isfinite(value):
+    if isinstance(value, (int, float)) and not is_finite(value):
         raise ValueError(f"{value} is not a finite number. Give one, in the variable's unit.")
     if isinstance(value, (bool, int, float, str)):
         return value

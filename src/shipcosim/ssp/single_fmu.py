@@ -19,7 +19,7 @@ from shipcosim.ssp.read.parameters import ParameterSet, ParameterSets
 from shipcosim.ssp.xml.document import AnyPath, Document, Findings, qualified
 from shipcosim.ssp.xml.markup import add
 from shipcosim.ssp.xml.values import Value
-from shipcosim.units import UnitError, seconds, value_of, whole_steps
+from shipcosim.units import UnitError, seconds, steps_in, value_of, whole_steps
 
 IN_TABLES = ("Real", "Integer", "Boolean", "Enumeration")
 """Kinds of inputs that a table can feed; the others keep their start value, which can be set."""
@@ -213,4 +213,4 @@ def _dividing_step(asked: float | None, duration: float) -> float:
         return abs(duration or 1.0) / STEPS
     if whole_steps(duration, asked):
         return asked
-    return duration / max(1, round(duration / asked))
+    return duration / max(1, round(steps_in(duration, asked)))

@@ -20,7 +20,7 @@ from shipcosim.scenario.model import Value
 from shipcosim.ssp import fitting_values, with_values
 from shipcosim.sweep.reader import problem_of
 from shipcosim.sweep.study_model import MOST_LEVELS, Case, Factor, Study
-from shipcosim.units import RADIAN, Unit, UnitError, amount, number_in, whole_steps
+from shipcosim.units import RADIAN, Unit, UnitError, amount, number_in, steps_in, whole_steps
 
 if TYPE_CHECKING:
     from shipcosim.scenario import Scenario
@@ -261,7 +261,7 @@ class Levels:
         count = whole_steps(time, step)
         if count is None or (count == 0 and not may_be_zero):
             found = f"{keys[-1]} = {time:g} s is no multiple of the step size {step:g} s."
-            nearest = max(1, round(time / step)) * step
+            nearest = max(1, round(steps_in(time, step))) * step
             self.complain(keys, found, f"The nearest would be {nearest:g} s.")
 
     def _spaced(self, factor: Factor, signal: str, number: int) -> list[float]:

@@ -80,13 +80,13 @@ class Store:
         with _said(self.folder):
             self.folder.mkdir(parents=True, exist_ok=True)
             clear_killed(self.folder)
-            about = self._about_there()
+            digest, done = self._plan_there()
             # The same plan: go on from what is there. Another plan: set its results aside.
-            if about is not None and about.get("plan") == self._digest and not force:
+            if digest == self._digest and not force:
                 # Note which runs are done already.
                 table = self._collected()
                 self.done[table["run"].to_numpy()] = True
-                self.lost = max(about.get("runs", {}).get("done", 0) - int(self.done.sum()), 0)
+                self.lost = max(done - int(self.done.sum()), 0)
                 self.failed = sum(bool(error) for error in table["error"].to_pylist())
             else:
                 set_aside(self.folder, [*FILES, *self._pages()], force=force)
@@ -172,12 +172,13 @@ class Store:
             },
         }
 
-    def _about_there(self) -> dict[str, Any] | None:
+    def _plan_there(self) -> tuple[str, int]:
+        """Digest of the plan whose results are there, and how many of its runs are done; no digest without results."""
         try:
             found = json.loads((self.folder / "study.json").read_text(encoding="utf-8"))
-        except (OSError, ValueError):
-            return None
-        return found if isinstance(found, dict) else None
+            return str(found["plan"]), int(found["runs"]["done"])
+        except (OSError, ValueError, TypeError, LookupError):
+            return "", 0
 
     def write_about(self, **more: Any) -> dict[str, Any]:
         """Write study.json with additional facts; return its content."""
@@ -235,21 +236,38 @@ class Store:
     def _collected(self) -> pyarrow.Table:
         """Rows of all parts and of the existing table, each once, in the order of the plan."""
         import pyarrow
+        import pyarrow.compute
         import pyarrow.parquet as parquet
 
-        names = ["run", "error", *(measure.name for measure in self._plan.measures)]
-        tables = [self._part([])]
-        # A damaged part is skipped: its runs count as not done.
-        for path in [self.folder / "runs.parquet", *sorted(self._parts.glob("runs-*.parquet"))]:
+        schema = self._part([]).schema
+        number = pyarrow.compute.field("run")
+        is_planned = (number >= 0) & (number < len(self._plan))
+        tables = [schema.empty_table()]
+        files = sorted(self._parts.glob("runs-*.parquet"))
+        # A damaged table is skipped: its runs count as not done. So do runs whose tracks are lost.
+        for path in [self.folder / "runs.parquet"][: self._has_tracks()] + files:
             try:
-                tables.append(parquet.read_table(path, columns=names).select(names))
+                table = parquet.read_table(path, columns=schema.names).select(schema.names)
+                tables.append(table.cast(schema).filter(is_planned))
             except (OSError, pyarrow.ArrowException, KeyError):
-                continue  # not there, or cut off: its runs are done again
-        schema = tables[0].select(names).schema
-        table = pyarrow.concat_tables([one.select(names).cast(schema) for one in tables])
+                continue
+        table = pyarrow.concat_tables(tables)
         # A run may be in the table and in a part: take the first. `unique` also sorts by number.
         _, first = np.unique(table["run"].to_numpy(), return_index=True)
         return table.take(first)
+
+    def _has_tracks(self) -> bool:
+        """Whether the tracks of the runs in the table are there, or none are asked for."""
+        import pyarrow
+        import pyarrow.parquet as parquet
+
+        if self._plan.study.tracks is None:
+            return True
+        try:
+            names = parquet.read_schema(self.folder / "tracks.parquet").names
+        except (OSError, pyarrow.ArrowException):
+            return False
+        return {"run", "time", *self._plan.study.tracks.signals} <= set(names)
 
     def _write_runs(self, table: pyarrow.Table) -> None:
         """Write runs.parquet and runs.csv, a group of rows at a time."""

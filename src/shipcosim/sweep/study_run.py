@@ -114,8 +114,7 @@ def run_study(
     tables, remarks = _further(plan, runs, search)
     remarks = [*not_reached(plan), *remarks]
     if store.lost:
-        file = folder / "runs.parquet"
-        found = f"{file}: missing or damaged; the {store.lost} runs that only it held are to be made again."
+        found = f"{folder}: a table is missing or damaged; the {store.lost} runs that only it held are to be made again."
         remarks.insert(0, found)
     for name, table in {"summary": summary, **tables}.items():
         write_file(folder / f"{name}.csv", table.to_csv(index=False).encode())

@@ -31,6 +31,8 @@ from shipcosim.ssp import (
     step_remarks,
     with_values,
 )
+from shipcosim.ssp.flatten.own_steps import with_whole_steps
+from shipcosim.ssp.xml.document import Findings
 
 
 def test_it_runs_on_inputs_of_a_table_with_a_value_set(tmp_path, monkeypatch):
@@ -91,6 +93,19 @@ def _with_experiment(fmu, target, experiment):
                 data = data[:where] + experiment.encode() + data[where:]
             after.writestr(name, data)
     return target
+
+
+@given(
+    duration=st.sampled_from([-1.0, 0.0, 5e-324, 1e-3, 1.0, 1.7e308]),
+    step=st.sampled_from([None, 5e-324, 1e-13, 1e-3, 1.0, 1.7e308]),
+)
+def test_steps_and_runs_of_any_length_give_a_step_size(duration, step):
+    fmu = replace(read_fmu(build_part("gain")), experiment=without_none({"stepSize": step}))
+    system = System("gain", "gain.fmu", {"gain": Component("gain", fmu, step_size=step)})
+    assert default_step_size(system, 0.0, duration) >= 0.0
+    for is_libcosims in (False, True):
+        (fitted,) = with_whole_steps(system.components, 0.1, Findings(), is_libcosims).values()
+        assert fitted.step_size is None or fitted.step_size > 0.0
 
 
 @given(

@@ -2,6 +2,7 @@
 
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -10,8 +11,11 @@ from pathlib import Path
 
 import pandas
 import pytest
+from pyarrow import parquet
 
 import shipcosim
+from shipcosim.sweep import plan_of, read_study
+from shipcosim.sweep.storage import Store
 
 SWEEP = [
     str(Path(sys.executable).parent / "shipcosim"),
@@ -110,6 +114,51 @@ def check_lost_table(project, left):
     pandas.testing.assert_frame_equal(again.runs, whole.runs)
     once_more = shipcosim.sweep("levels", out="lost", engine="fmpy", workers=1)
     assert not once_more.about.get("remarks")
+
+
+def without(table, column):
+    return table.drop_columns([column])
+
+
+def with_column(table, column, values):
+    return table.set_column(table.column_names.index(column), column, [values])
+
+
+RUNS = {
+    "beyond the plan": lambda table: with_column(table, "run", [*range(11), 99]),
+    "negative": lambda table: with_column(table, "run", [*range(11), -1]),
+    "missing": lambda table: with_column(table, "run", [*range(11), None]),
+    "fractions": lambda table: with_column(table, "run", [one + 0.5 for one in range(12)]),
+    "texts": lambda table: with_column(table, "highest", ["high"] * 12),
+    "without a column": lambda table: without(table, "highest"),
+}
+STUDIES = [b"", b"[1]", b"5", b'{"plan": [], "runs": 3}', b'{"runs": {"done": "x"}}']
+
+
+def test_a_study_whose_files_were_edited_does_again_what_they_lack(project, study):
+    path = study('extends = "levels"\n[tracks]\nsignals = ["lag.y"]\ninterval = "1 s"\n')
+    shipcosim.sweep(path, out="whole", engine="fmpy", workers=1)
+    plan = plan_of(read_study(path))
+
+    def done(file, change):
+        """Number of runs that are done after a change to a file of the study."""
+        folder = project / "edited"
+        shutil.rmtree(folder, ignore_errors=True)
+        shutil.copytree("whole", folder)
+        change(folder / file)
+        return int(Store(folder, plan, "fmpy").done.sum())
+
+    def edited(edit):
+        return lambda file: parquet.write_table(edit(parquet.read_table(file)), file)
+
+    assert done("runs.parquet", lambda file: None) == 12
+    for how, edit in RUNS.items():
+        assert done("runs.parquet", edited(edit)) in (0, 11), how
+    assert done("tracks.parquet", Path.unlink) == 0
+    assert done("tracks.parquet", lambda file: file.write_bytes(b"PAR1")) == 0
+    assert done("tracks.parquet", edited(lambda table: without(table, "lag.y"))) == 0
+    for content in STUDIES:
+        assert done("study.json", lambda file, content=content: file.write_bytes(content)) == 0
 
 
 def test_a_killed_study_goes_on_where_it_stopped(project, study):

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from shipcosim.errors import ShipcosimError
-from shipcosim.scenario import Scenario, check_times, judge, read_scenario, within_run
+from shipcosim.scenario import Scenario, check_times, judge, read_scenario, step_times, within_run
 from shipcosim.series import make_table
 from shipcosim.units import whole_steps
 
@@ -274,6 +274,52 @@ def test_a_part_of_a_run_is_judged_by_what_lies_within_it():
     assert within_run(scenario, part) == (scenario.expect[:2], scenario.expect[2:])
     assert within_run(scenario, whole) == (scenario.expect, [])
     assert within_run(scenario, whole, planned=20.0) == (scenario.expect[:3], scenario.expect[3:])
+    start = make_table(np.zeros(1), [])
+    assert within_run(scenario, start) == ([], scenario.expect)
+
+
+@given(
+    begin=st.floats(0.0, 9.9),
+    length=st.sampled_from([0.0, 0.01, 0.05, 0.1, 0.3, 1.0]),
+    interval=st.sampled_from([None, 0.1, 0.3, 1.0]),
+)
+def test_a_window_has_a_row_or_is_an_error(begin, length, interval):
+    window = [begin, min(begin + length, 10.0)]
+    scenario = Scenario(
+        stop_time=10.0,
+        step_size=0.1,
+        output_interval=interval,
+        expect=[{"signal": "a", "at_most": 1.0, "during": window}],
+    )
+    rows = np.arange(0.0, 10.0 + 1e-6, interval or 0.1)
+    has_row = ((rows > window[0] - 1e-6) & (rows < window[1] + 1e-6)).any()
+    said = [problem.found for problem in check_times(scenario)]
+    assert has_row or "lies between two rows" in said[0]
+    near_a_row = np.abs(rows[:, None] - window).min() < 1e-5
+    assert not said or not has_row or near_a_row
+
+
+EXTREMES = [5e-324, 1e-320, 1e-300, 1e-13, 1e-9, 0.1, 1.0, 1e9, 1e300, 1.7e308]
+
+
+@given(
+    times=st.lists(st.sampled_from(EXTREMES), min_size=4, max_size=4),
+    start=st.sampled_from([0.0, -1.7e308, -1.0, 1.0, 1.7e308]),
+)
+@settings(max_examples=300, deadline=None)
+def test_times_of_any_size_are_complaints_or_steps(times, start):
+    stop_time, step_size, output_interval, event = times
+    scenario = Scenario(
+        stop_time=stop_time,
+        step_size=step_size,
+        output_interval=output_interval,
+        events=[{"time": event, "override": {"a": 1.0}}],
+        expect=[{"signal": "a", "at_most": 1.0, "during": [start, event]}] * (start < event),
+    )
+    wrong = [problem for problem in check_times(scenario, start) if problem.severity == "error"]
+    if not wrong and stop_time > start:
+        steps = whole_steps(stop_time - start, step_size)
+        assert steps and np.diff(step_times(step_size, 0, min(steps, 10), start)).min() > 0.0
 
 
 @given(

@@ -12,7 +12,7 @@ import numpy as np
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario
 from shipcosim.scenario.check import step_times
-from shipcosim.units import whole_steps
+from shipcosim.units import steps_in, whole_steps
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ def time_grid_of(
 
 
 def _off_step(time, start_time, step):
-    nearest = start_time + max(1, round((time - start_time) / step)) * step
+    nearest = start_time + max(1, round(steps_in(time - start_time, step))) * step
     return (
         f"{time:g} s is no whole number of steps of {step:g} s after {start_time:g} s.",
         f"{nearest:.9g} s would be.",

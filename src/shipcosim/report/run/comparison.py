@@ -73,6 +73,7 @@ class Pair:
     shift: float
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def write_comparison(
     tables: tuple[Dataset, Dataset], names: tuple[str, str], path: AnyPath
 ) -> tuple[Outcome, list[Difference]]:
@@ -170,7 +171,7 @@ def differences(pair: Pair) -> list[Difference]:
         span = span or float(np.max(np.abs(a[both]))) or largest
         # Smaller differences are rounding.
         if largest > SAME * max(span, np.finfo(float).tiny):
-            rms = float(np.sqrt(np.mean(size**2)))
+            rms = largest * float(np.sqrt(np.mean((size / largest) ** 2)))
             when = float(time[both][most])
             found.append(Difference(name, unit, rms, largest, when, rms / span))
     return sorted(found, key=lambda one: -one.share)
@@ -302,6 +303,9 @@ def _doubled(panel: Panel, pair: Pair) -> Panel | None:
 def _outcome(pair: Pair, found: Sequence[Difference]) -> Outcome:
     """One sentence: largest distance of the ships, else the signal that differs most."""
     common = sum(1 for name in pair.shown[0].data_vars if name in pair.shown[1])
+    if not found and (unlike := without_difference(pair)):
+        text = f"{len(unlike)} of {common} signals have a number in one run only"
+        return Outcome("plain", "DIFFER", f"{text}, at some times: {shortened(unlike)}.")
     if not found:
         return Outcome("passed", "SAME", f"All {common} signals that both have are the same.")
     differ = f"{len(found)} of {common} signals differ"
@@ -321,6 +325,35 @@ def _outcome(pair: Pair, found: Sequence[Difference]) -> Outcome:
     return Outcome("plain", "DIFFER", f"{differ}, most of all {worst.signal}.")
 
 
+def _covered(pair: Pair) -> tuple[float, float, bool]:
+    """First and last time that both runs cover, and whether that is all of both. [s]"""
+    ends = [table["time"].values[[0, -1]] for table in pair.tables]
+    ends[1] = ends[1] + pair.shift
+    start = max(ends[0][0], ends[1][0])
+    end = min(ends[0][1], ends[1][1])
+    return float(start), float(end), bool(np.allclose(ends[0], ends[1]))
+
+
+def without_difference(pair: Pair) -> list[str]:
+    """Signals that differ by no number at a time that both runs cover, as where one has none."""
+    first, second = pair.shown
+    time = first["time"].values
+    start, end, _ = _covered(pair)
+    is_covered = (time > start - CLOSE) & (time < end + CLOSE)
+    found = []
+    for name in (str(n) for n in first.data_vars if n in second):
+        a = first[name].values
+        b = second[name].values
+        is_same = (a == b) | (np.isnan(a) & np.isnan(b))
+        if (is_covered & ~is_same & ~np.isfinite(b - a)).any():
+            found.append(name)
+    return found
+
+
+CLOSE = 1e-8
+"""Times are rounded to nanoseconds to be common. [s]"""
+
+
 def _remarks(pair: Pair) -> list[str]:
     said = []
     first, second = pair.names
@@ -330,16 +363,15 @@ def _remarks(pair: Pair) -> list[str]:
             f"The runs have no time in common: {second} is moved by {pair.shift:g} s to start with {first}."
         )
     # Differences cover only the time that both runs have.
-    ends = [table["time"].values[[0, -1]] for table in pair.tables]
-    ends[1] = ends[1] + pair.shift
-    if not np.allclose(ends[0], ends[1]):
-        start = max(ends[0][0], ends[1][0])
-        end = min(ends[0][1], ends[1][1])
+    start, end, is_whole = _covered(pair)
+    if not is_whole:
         said.append(f"Differences are for {start:g} to {end:g} s, which both runs cover.")
     # Signals that only one run has: name the first five.
     for name, own, other in ((first, *pair.shown), (second, *pair.shown[::-1])):
         if alone := [str(signal) for signal in own.data_vars if signal not in other]:
             said.append(f"Only in {name}: {shortened(alone)}.")
+    if unlike := without_difference(pair):
+        said.append(f"A number in one run only, at some times: {shortened(unlike)}.")
     return said
 
 

@@ -25,7 +25,7 @@ from shipcosim.report.run.vessels import (
     start_values,
 )
 from shipcosim.report.theme.display import is_constant
-from shipcosim.report.theme.packing import LEVELS, packed_series
+from shipcosim.report.theme.packing import LARGEST, LEVELS, packed_series
 from shipcosim.report.theme.views import JsonObject
 from shipcosim.scenario import Verdict
 
@@ -237,10 +237,10 @@ def _vessel(vessel: Vessel, columns: _Columns) -> JsonObject | None:
     pose = [columns.add(*look) for look in looks]
     if None in pose:
         return None
-    # Outlines along the way need the pose as numbers, where all of it is finite.
+    # Outlines along the way need the pose as numbers, where none of it is a gap of the series.
     north, east, heading = pose_of(columns.table, vessel.pose)
     shown = columns.rows
-    known = shown[np.isfinite(north + east + heading)[shown]]
+    known = shown[(np.abs([north, east, heading]).max(axis=0) < LARGEST)[shown]]
     if not len(known):
         return None
     # Without a known size: a symbol as large as the track suggests.

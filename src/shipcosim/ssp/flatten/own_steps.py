@@ -6,6 +6,7 @@ from math import floor
 
 from shipcosim.ssp.flatten.system import Component
 from shipcosim.ssp.xml.document import Findings
+from shipcosim.units import steps_in
 
 ROUNDED = 1e-3
 """Share of a step by which written numbers may differ from what they stand for: 0.033 stands for a thirtieth."""
@@ -36,7 +37,7 @@ def with_whole_steps(
         step = component.step_size
         # A difference within rounding means the multiple; anything else is left to the check of the
         # plan.
-        n = None if step is None or not base else _multiple(step / base, as_libcosim)
+        n = None if step is None or not base else _multiple(steps_in(step, base), as_libcosim)
         if n is not None and step is not None and base and abs(n * base - step) > EXACT * step:
             found = f"Its step of {step:.9g} s is no multiple of the base step of {base:.9g} s"
             findings.flaw(

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import isfinite
 
 from shipcosim.errors import ShipcosimError, raise_errors
 from shipcosim.ssp.flatten.start_values import check_bounds
@@ -10,7 +9,7 @@ from shipcosim.ssp.flatten.system import Signal, System, alias_remarks
 from shipcosim.ssp.fmu.description import Variable
 from shipcosim.ssp.xml.document import Findings
 from shipcosim.ssp.xml.values import Value
-from shipcosim.units import Unit, UnitError, amount, number_in
+from shipcosim.units import Unit, UnitError, amount, is_finite, number_in
 
 
 def with_values(system: System, values: Mapping[str, Value], where: str = "") -> System:
@@ -137,8 +136,9 @@ def _fits(
         findings.error(place, f"{value!r:.60} is no {kind}.", remedy)
         return False
     # JSON and TOML can hold NaN and infinity; models cannot start from them.
-    if isinstance(value, float) and not isfinite(value):
-        findings.error(place, f"{value} is not a finite number.", _wanted("Real", owner.unit))
+    if isinstance(value, (int, float)) and not is_finite(value):
+        found = f"{str(value):.60} is not a finite number."
+        findings.error(place, found, _wanted(kind, owner.unit))
         return False
     if kind == "Integer" and not -LARGEST <= value < LARGEST:
         findings.error(

@@ -86,5 +86,5 @@ def _seconds(
 ) -> float | None:
     """Time in whole nanoseconds, as OSP counts; None with an error. [s]"""
     with reporting(document, element, findings, local(element)):
-        return round(read_value("Real", text or "") * 1e9) / 1e9
+        return round(read_value("Real", text or ""), 9)
     return None

@@ -1,6 +1,5 @@
 """Archives (.ssp, .fmu): unpacked within limits, and packed to the same bytes every time."""
 
-import os
 import stat
 import zipfile
 from collections import Counter
@@ -11,7 +10,7 @@ from pathlib import Path, PurePosixPath
 from shipcosim.dialects import LFS_POINTER
 from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.ssp.xml.document import AnyPath
-from shipcosim.temporary import temporary_folder
+from shipcosim.temporary import replacement
 
 MOST_ENTRIES = 20_000
 LARGEST_TOTAL = 2**30  # bytes, unpacked
@@ -224,10 +223,7 @@ def replaced(path: Path) -> Iterator[Path]:
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        # A folder: the next write clears it away where this one is killed.
-        with temporary_folder(path.parent, unfinished=True) as folder:
-            partial = Path(folder, path.name)
+        with replacement(path) as partial:
             yield partial
-            os.replace(partial, path)
     except OSError as error:
         raise error_at(str(path), f"Cannot be written: {error.strerror}.") from None

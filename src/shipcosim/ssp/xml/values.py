@@ -1,12 +1,12 @@
 """Types and values of variables as written in SSP and FMI."""
 
-import math
 from collections.abc import Callable
 from typing import Any
 
 import lxml.etree as etree
 
 from shipcosim.ssp.xml.document import local
+from shipcosim.units import is_finite
 
 KINDS = {
     "Real": "Real",
@@ -75,8 +75,8 @@ def _number(convert: Callable[[str], float], text: str, name: str) -> float:
         )  # Python would take "1_000" for a number, XML does not
     except ValueError:
         raise ValueError(f"'{text}' is not a {name}.") from None
-    if not math.isfinite(value):
-        raise ValueError(f"'{text}' is not a finite number.")
+    if not is_finite(value):
+        raise ValueError(f"'{text:.60}' is not a finite number.")
     return value
 
 

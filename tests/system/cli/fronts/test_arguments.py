@@ -2,11 +2,16 @@
 
 import importlib
 import inspect
+import math
 
+import numpy as np
 import pytest
 
 import shipcosim as sc
+from shipcosim.calls.arguments import in_seconds, mapping
+from shipcosim.errors import ShipcosimError
 from shipcosim.options import RunKeywords
+from shipcosim.scenario import Event
 
 COMMANDS = (
     "run",
@@ -44,3 +49,27 @@ def test_every_option_of_a_command_is_an_argument_of_its_call(name):
     options = set(inspect.signature(command).parameters) - OF_THE_TERMINAL
     asked = {(OTHER_NAMES | names).get(option, option) for option in options}
     assert asked <= taken, f"{name}: the call lacks {asked - taken}"
+
+
+@pytest.mark.parametrize("value", [np.float32(2.5), np.int64(3), np.bool_(True), np.str_("a")])
+def test_numbers_of_numpy_are_those_of_python(value):
+    (taken,) = mapping("set", {"lag.u": value}).values()
+    (held,) = Event(time=0.0, override={"lag.u": value}).override.values()
+    assert type(taken) in (float, int, bool, str) and taken == held == value
+
+
+@pytest.mark.parametrize("given", [5, "a.u=1", [("a.u", 1)], {1: 2}, {None: 1}])
+def test_settings_are_a_mapping_of_names(given):
+    with pytest.raises(ShipcosimError, match="Give a dict"):
+        mapping("set", given)
+
+
+@pytest.mark.parametrize("value", [10**400, np.float32("inf"), math.nan, -math.inf, True])
+def test_a_time_is_a_finite_number(value):
+    with pytest.raises(ShipcosimError, match="until = .* is no time"):
+        in_seconds({"until": value}, ["until"])
+
+
+@pytest.mark.parametrize("value", [2, np.float32(2.0), np.int64(2), "2 s"])
+def test_a_time_is_a_number_of_python(value):
+    assert type(in_seconds({"until": value}, ["until"])["until"]) is float

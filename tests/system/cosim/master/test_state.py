@@ -3,12 +3,14 @@
 import subprocess
 import sys
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from ships import given_to
 
+import shipcosim as sc
 from shipcosim.cosim import RunError, RunOptions, Snapshot, read_snapshot, simulate, write_snapshot
 from shipcosim.cosim.master.component import set_start_values
 from shipcosim.cosim.slaves.instances import Instances
@@ -198,6 +200,10 @@ def test_what_a_file_holds_is_what_was_stored(system, make_scenario, tmp_path):
     write_snapshot(stored[0], file)
     assert read_snapshot(file) == stored[0]
     assert (stored[0].time, stored[0].step) == (0.8, 8)
+    large = replace(stored[0], outputs=dict.fromkeys(stored[0].outputs, -1.7e308))
+    write_snapshot(large, file)
+    assert read_snapshot(file) == large
+    write_snapshot(stored[0], file)
     first = file.read_bytes()
     write_snapshot(read_snapshot(file), file)
     assert file.read_bytes() == first
@@ -332,6 +338,14 @@ def test_a_state_goes_on_only_in_the_system_that_it_is_of(
     refused(
         make_system({"plant": "integrator"}), scenario, "holds plant, law, .*; the system has plant"
     )
+
+
+@pytest.mark.parametrize("start_time", [0.5, -1.0, "0.1 s"])
+def test_a_run_that_continues_takes_no_other_start_time(system, stored, start_time):
+    times = {"stop_time": 2.4, "step_size": 0.1, "resume": stored}
+    with pytest.raises(ShipcosimError, match="start_time.*continues a run that started at 0 s"):
+        sc.simulate(system, start_time=start_time, **times)
+    sc.simulate(system, start_time=0.0, **times)
 
 
 def test_what_is_no_snapshot_is_refused(stored, tmp_path):

@@ -9,6 +9,7 @@ import xarray as xr
 from shipcosim.errors import ShipcosimError
 from shipcosim.report import write_comparison
 from shipcosim.report.run.comparison import differences, lay_over
+from shipcosim.series import make_table
 
 
 def boat(north=0.0, turn=0.0, start=0.0, stop=100.0, **start_values):
@@ -121,3 +122,27 @@ def test_runs_with_nothing_in_common_are_refused(tmp_path):
     with pytest.raises(ShipcosimError, match="no signal in common"):
         write_comparison((boat(), other), ("a", "b"), tmp_path / "report.html")
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("odd", [np.nan, np.inf, -np.inf, -1e308])
+@pytest.mark.parametrize("row", [0, 1, 2])
+def test_a_number_that_one_run_lacks_is_a_difference(tmp_path, odd, row):
+    values = np.array([1e308, 1e308, 1e308])
+    other = values.copy()
+    other[row] = odd
+    tables = [make_table(np.arange(3.0), [("a.x", v, "m", "")]) for v in (values, other)]
+    for pair in (tables, tables[::-1]):
+        outcome, _ = write_comparison(tuple(pair), ("A", "B"), tmp_path / "page.html")
+        assert outcome.word == "DIFFER"
+    for table in tables:
+        outcome, _ = write_comparison((table, table), ("A", "B"), tmp_path / "page.html")
+        assert outcome.word == "SAME"
+
+
+@pytest.mark.parametrize("largest", [1e30, 1e40, 1e308, np.inf])
+@pytest.mark.parametrize("rows", [slice(0, 1), slice(5, None), slice(None)])
+def test_a_ship_that_is_nowhere_at_times_has_a_page(tmp_path, largest, rows):
+    table = boat()
+    table["boat.y"].values[rows] = largest
+    outcome, _ = write_comparison((table, table), ("A", "B"), tmp_path / "page.html")
+    assert outcome.word == "SAME"

@@ -657,3 +657,13 @@ def test_values_of_one_component_do_not_look_at_the_others(shop, monkeypatch):
     )
     assert with_values(system, {"a.u": 2.0}).components["a"].start == {"u": 2.0}
     assert set(looked_at) == {"a"}
+
+
+@pytest.mark.parametrize("type_", ["Real m", "Integer"])
+def test_a_value_beyond_all_floats_is_refused(shop, type_):
+    shop.fmu("one", f"input u {type_}")
+    shop.ssd(shop.component("a", "one", "input u"))
+    system = shop.read()
+    for value in (10**400, -(10**400), math.inf, -math.inf, math.nan):
+        with pytest.raises(ShipcosimError, match="a.u: .*(is not a finite number|is no Integer)"):
+            with_values(system, {"a.u": value})

@@ -146,6 +146,7 @@ def test_an_fmu_may_lie_elsewhere_and_be_addressed_as_a_file(osp, shop, tmp_path
         ),
         ({"simulators": SIMULATORS.replace('"b"', '"a"')}, "A second simulator is named 'a'."),
         ({"simulators": SIMULATORS.replace("0.2", "-1")}, "stepSize is -1. It must be positive."),
+        ({"simulators": SIMULATORS.replace("0.2", "1e400")}, "'1e400' is not a finite number"),
         ({"simulators": SIMULATORS.replace(' name="b"', "")}, "'name' is required but missing"),
         ({"head": HEAD.replace("0.1", "0.0")}, "base step size must be positive"),
         ({"head": HEAD.replace("0.1", "quick")}, "'quick' is not"),

@@ -1,0 +1,5 @@
+"""The command, as `python -m shipcosim`."""
+
+from shipcosim.cli import main
+
+main()
