@@ -1,8 +1,10 @@
 """What the operator may choose after a loss, over 12 directions of wind: position first, heading first, a new heading.
 
-`python -m tests.bench.allocation.test_after_loss` prints the table of docs/reports/allocation.md, on seeds 7 and 8 of
+`python -m tests.bench.allocation.test_after_loss [choice ...]` prints the table of docs/reports/allocation.md, on seeds 7 and 8 of
 the wind. The choices were made on seed 1.
 """
+
+import sys
 
 import numpy as np
 import pytest
@@ -76,7 +78,7 @@ def test_heading_first_holds_both_where_the_tunnel_runs():
 
 
 if __name__ == "__main__":
-    for name in CHOICES:
+    for name in sys.argv[1:] or CHOICES:
         found = rows_of(name)
         for lost in LOSSES:
             print(line(name, lost, found), flush=True)

@@ -400,7 +400,7 @@ def _opened(memory, state, available, design):
     for unit, cones, angle, turns in rows:
         if unit.kind == "turning":
             # A unit without the opposite cone comes back to its own after whole turns.
-            apart = pi if max(cones) > 0.0 else 2.0 * pi
+            apart = where(sum(cones) > 0.5, pi, 2.0 * pi)
             nearest = floor((angle - 0.5 * (unit.first + unit.last)) / apart + 0.5)
             turns = where(opens, nearest * (apart / pi), turns)
         half_turns.append(turns)
