@@ -1,7 +1,7 @@
 """What the operator may choose after a loss, over 12 directions of wind: position first, heading first, a new heading.
 
-`python -m tests.bench.allocation.test_after_loss [choice ...]` prints the table of docs/reports/allocation.md, on seeds 7 and 8 of
-the wind. The choices were made on seed 1.
+`python -m tests.bench.allocation.test_after_loss [choice ...]` prints the table of docs/reports/allocation.md, on seeds 7
+and 8 of the wind. The choices were made on seed 1.
 """
 
 import sys
