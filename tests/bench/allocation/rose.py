@@ -1,6 +1,7 @@
 """Power over the exact static optimum in wind from all around: the request that balances the mean wind, held.
 
-`.venv/bin/python tests/bench/allocation/rose.py [law]` prints the ratio for 24 directions at 8 and 12 m/s.
+`.venv/bin/python tests/bench/allocation/rose.py [law ...]` prints the ratio for 24 directions at 8 and 12 m/s, and for
+12 directions in the loop (`held`, 10 m/s) the power over that of fixed angles, with changes of cones and reversals.
 """
 
 import sys
@@ -14,6 +15,7 @@ if __name__ == "__main__":  # as a test its folders are on the path already
 
 from ships import parameters  # noqa: E402
 
+import shipcosim  # noqa: E402
 from allocation.laws import LAWS  # noqa: E402
 from allocation.loops import loads  # noqa: E402
 from allocation.optimum import best  # noqa: E402
@@ -62,8 +64,46 @@ def ratios(law: str, speed: float) -> np.ndarray:
     return np.array([held_power(law, tuple(row)) for row in tau.tolist()]) / least
 
 
+def in_the_loop(law: str) -> dict[str, np.ndarray]:
+    """Mean electrical power, changes of cones and reversals of the azimuths from 150 to 600 s, for 12 directions."""
+    weather = [
+        {"environment.wind_speed": 10.0, "environment.wind_from": at}
+        for at in np.radians(DIRECTIONS[::2])
+    ]
+    found = shipcosim.simulate_many(
+        scenario="held",
+        variations=weather,
+        stop_time=600.0,
+        components={"allocator": law},
+        reduce=_after_start,
+    )
+    return {name: found[name].values for name in ("power", "changes", "reversals")}
+
+
+def _after_start(table):
+    late = table.sel(time=slice(150.0, None))
+    changes = reversals = 0
+    for unit in ("port", "starboard"):
+        ahead = np.cos(late[f"allocator.{unit}_azimuth_cmd"].values) > 0.0
+        changes += np.sum(ahead[1:] != ahead[:-1])
+        astern = late[f"allocator.{unit}_thrust_cmd"].values < 0.0
+        reversals += np.sum(astern[1:] != astern[:-1])
+    power = sum(late[f"{unit}.power"].values for unit in ("port", "starboard", "tunnel"))
+    return {"power": power.mean(), "changes": float(changes), "reversals": float(reversals)}
+
+
 if __name__ == "__main__":
+    fixed = in_the_loop("allocator")["power"]
     for law in sys.argv[1:] or ["optimal_allocator"]:
+        loop = in_the_loop(law)
+        ratio = loop["power"] / fixed
+        print(
+            f"{law} in the loop: {1.0 - loop['power'].sum() / fixed.sum():.3f} less than fixed angles"
+        )
+        print("  " + " ".join(f"{value:.2f}" for value in ratio))
+        print(
+            f"  most changes {loop['changes'].max():.0f}, reversals {loop['reversals'].max():.0f}"
+        )
         for speed in SPEEDS:
             found = ratios(law, speed)
             print(f"{law}, {speed:g} m/s: mean {found.mean():.3f}, worst {found.max():.3f}")

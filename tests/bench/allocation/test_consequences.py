@@ -1,7 +1,7 @@
 """What the consequence analysis says of R/V Gunnerus beforehand, against her simulated in each loss.
 
-`python -m tests.bench.allocation.test_consequences [allocator]` prints every case, and for each wind what
-docs/reports/allocation.md says of it.
+`python -m tests.bench.allocation.test_consequences [allocator [parameter=value ...]]` prints every case, and for each
+wind what docs/reports/allocation.md says of it.
 """
 
 import sys
@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import shipcosim
+from shipcosim.angles import wrap
 from shipcosim.models.allocation.consequences import (
     ConsequenceParameters,
     failures_of,
@@ -35,15 +36,23 @@ SHIP = ConsequenceParameters(
 FAILS = 200.0  # s
 
 
-def outcomes(speed: float, directions, allocator: str = "extended_allocator") -> list[dict]:
-    """Shares said before each loss, and how far she is off after it."""
+def outcomes(
+    speed: float, directions, allocator: str = "extended_allocator", values=None, seed=1, more=None
+) -> list[dict]:
+    """Shares said before each loss, and how far she is off after it; `more` gives events for a direction and a loss."""
     cases = list(product(directions, LOSSES))
+    more = more or (lambda at, loss: [])
+    weather = [_weather(speed, at) | {"environment.seed": seed} for at, _ in cases]
     found = shipcosim.simulate_many(
         scenario="held",
-        variations=[_weather(speed, at) | {"events": _event(loss)} for at, loss in cases],
+        variations=[
+            wind | {"events": _event(loss) + more(at, loss)}
+            for wind, (at, loss) in zip(weather, cases, strict=True)
+        ],
         reduce=_reduced,
         stop_time=600.0,
         components={"allocator": allocator},
+        set=values or {},
     )
     rows = []
     for number, (at, loss) in enumerate(cases):
@@ -79,12 +88,16 @@ def _reduced(table):
     after, late = time > FAILS, time > 2.0 * FAILS
     off = np.hypot(table["vessel.x"].values, table["vessel.y"].values)
     turned = np.degrees(np.abs(table["vessel.psi"].values))
+    astray = np.degrees(np.abs(wrap(table["vessel.psi"].values - table["reference.psi_d"].values)))
+    power = sum(table[f"{unit}.power"].values for unit in ("port", "starboard", "tunnel"))
     loads = {f"tau_{axis}": table[f"controller.tau_{axis}_cmd"].values for axis in "XYN"}
     means = {name: values[before].mean() for name, values in loads.items()}
     return means | {
         "most_off": off[after].max(),
         "late_off": off[late].max(),
         "late_turned": turned[late].max(),
+        "late_astray": astray[late].max(),
+        "late_power": power[late].mean(),
     }
 
 
@@ -119,9 +132,12 @@ def summary(rows: list[dict]) -> str:
 
 
 if __name__ == "__main__":
+    given = (argument.split("=") for argument in sys.argv[2:])
+    values = {f"allocator.{name}": float(value) for name, value in given}
+    shown_names = ("share", "force_share", "most_off", "late_off", "late_turned")
     for wind in (6.0, 10.0, 14.0):
-        found = outcomes(wind, range(0, 360, 30), *sys.argv[1:])
+        found = outcomes(wind, range(0, 360, 30), *sys.argv[1:2], values=values)
         for row in found:
-            shown = "  ".join(f"{row[name]:6.2f}" for name in list(row)[2:4] + list(row)[7:])
+            shown = "  ".join(f"{row[name]:6.2f}" for name in shown_names)
             print(f"{wind:4.0f} m/s  {row['wind_from']:3d} deg  {row['loss']:10s}  {shown}")
         print(f"{wind:4.0f} m/s  {summary(found)}")

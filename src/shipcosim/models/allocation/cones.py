@@ -54,6 +54,8 @@ class ConeChoice(NamedTuple):
         Most force that the present one may miss and another not, a moment counted by the yaw lever. [N]
     thrust_most : float
         Most thrust of a unit that may change its cone. [N]
+    sectors_always : float
+        1: a unit keeps to its cones also where it is the only one that turns; 0: there it turns all round. [1]
     """
 
     cones: tuple
@@ -63,6 +65,7 @@ class ConeChoice(NamedTuple):
     average: float
     missed_most: float
     thrust_most: float
+    sectors_always: float
 
 
 class ConeMemory(NamedTuple):
@@ -160,7 +163,8 @@ def cone_step(
     aimed = _aimed(memory)
     gaps = tuple(_gap(aim, now) for aim, now in zip(aimed.azimuths, state.azimuths, strict=True))
     memory = _strayed(memory, state, aimed, h, design)
-    memory, now = _shifted(_sent(memory, state, gaps, design), state, gaps, design)
+    memory = _sent(memory, state, gaps, design)
+    memory, now = _shifted(memory, state, gaps, available, design)
     new = power_step(state, tau, available, h, design=now, shares=shares)
     return new._replace(memory=memory)
 
@@ -352,9 +356,10 @@ def _sent(memory, state, gaps, design):
     return memory._replace(half_turns=tuple(half_turns), shifting=tuple(shifting))
 
 
-def _shifted(memory, state, gaps, design):
+def _shifted(memory, state, gaps, available, design):
     """The problem with the present intervals; a unit that changes its interval has that of the plan."""
     zero = 0.0 * memory.waited
+    memory, opens = _opened(memory, state, available, design)
     within = _within(design, memory.half_turns)
     units = []
     shifting = []
@@ -366,13 +371,40 @@ def _shifted(memory, state, gaps, design):
             last = clip(angle + gap + _THERE, unit.first, unit.last)
             shifts = where(is_within(angle, first, last), zero, shifts)
             moves = shifts > 0.5
+            first = where(moves, first, zero + unit.first)
+            last = where(moves, last, zero + unit.last)
+            # Without sectors no end is within reach of a step.
             unit = unit._replace(
-                first=where(moves, first, zero + unit.first),
-                last=where(moves, last, zero + unit.last),
+                first=where(opens, angle - pi, first), last=where(opens, angle + pi, last)
             )
         units.append(unit)
         shifting.append(shifts)
     return memory._replace(shifting=tuple(shifting)), within._replace(units=tuple(units))
+
+
+def _opened(memory, state, available, design):
+    """Whether the sectors are open; then the cone of each unit is the one nearest to its angle, for when they are back."""
+    running = 0.0 * memory.waited
+    for unit, on in zip(design.units, available, strict=True):
+        if unit.kind == "turning":
+            running = running + where(on, 1.0, 0.0)
+    opens = (running < 1.5) & (design.choice.sectors_always < 0.5)
+    half_turns = []
+    rows = zip(
+        design.units,
+        zip(*design.choice.cones, strict=True),
+        state.azimuths,
+        memory.half_turns,
+        strict=True,
+    )
+    for unit, cones, angle, turns in rows:
+        if unit.kind == "turning":
+            # A unit without the opposite cone comes back to its own after whole turns.
+            apart = where(sum(cones) > 0.5, pi, 2.0 * pi)
+            nearest = floor((angle - 0.5 * (unit.first + unit.last)) / apart + 0.5)
+            turns = where(opens, nearest * (apart / pi), turns)
+        half_turns.append(turns)
+    return memory._replace(half_turns=tuple(half_turns)), opens
 
 
 def _cone(half_turns):

@@ -158,6 +158,14 @@ class OptimalParameters(TurningParameters):
         "assumed: a quarter of full thrust, given up in 15 s",
         minimum=0.0,
     )
+    sectors_always: float = quantity(
+        1.0,
+        "1",
+        "1: forbidden sectors hold always; 0: not for an azimuth while the other is missing",
+        "choice: a sector keeps the wash off the other azimuth",
+        minimum=0.0,
+        maximum=1.0,
+    )
 
     @property
     def choice(self) -> ConeChoice:
@@ -173,6 +181,7 @@ class OptimalParameters(TurningParameters):
             self.cone_average,
             self.cone_missed_most,
             self.cone_thrust_most,
+            self.sectors_always,
         )
 
 

@@ -187,6 +187,25 @@ def test_one_azimuth_alone_pushes_ahead_and_astern_and_reverses_no_more_when_the
     np.testing.assert_allclose(state[2:5], (-3e3, 6e3, 5e4), atol=1.0)
 
 
+def test_an_azimuth_alone_pushes_abeam_only_where_the_sectors_may_open():
+    """Its wash meets no running azimuth. When the other one is back, it leaves the sector."""
+    opened = optimal.design(replace(PARAMETERS, sectors_always=0.0))
+    alone, abeam, small = (True, False, False), (0.0, 6e3, 0.0), (3e3, 6e3, 5e4)
+    asides = []
+    for design in (DESIGN, opened):
+        state = start()
+        for _ in range(160):
+            state = optimal.step(state, abeam, alone, 0.25, parameters=PARAMETERS, design=design)
+        asides.append(degrees(state.azimuths[0]))
+    assert asides[0] <= 80.0 + 1e-9
+    assert asides[1] == pytest.approx(90.0, abs=0.1)
+    np.testing.assert_allclose(state[2:4], abeam[:2], atol=30.0)  # position before heading
+    for _ in range(400):
+        state = optimal.step(state, small, ALL, 0.25, parameters=PARAMETERS, design=opened)
+    np.testing.assert_allclose(state[2:5], small, atol=1.0)
+    assert violations(state, state) == 0
+
+
 def test_power_limits_are_kept_at_once():
     state = held((8e3, 20e3, 5e4))
     limited = step(state, (8e3, 20e3, 5e4), shares=(0.05, 1.0, 0.1))
