@@ -18,6 +18,7 @@ from shipcosim.cli.progress import LAST_STEP
 from shipcosim.diagnose.pipeline import STEPS
 from shipcosim.diagnose.validation.cosimulation import MOST
 from shipcosim.report.diagnosis.testability import visible_rows
+from shipcosim.report.diagnosis.words import title
 from shipcosim.report.theme.numbers import metres
 from shipcosim.ssp import read_system
 from truth import draw
@@ -320,8 +321,11 @@ def test_summary_of_a_healthy_log_says_what_it_could_not_have_shown(healthy):
     for name in healthy.diagnosis.not_testable:
         assert name.replace("_", " ") in healthy.out
     page = (healthy.folder / "report.html").read_text(encoding="utf-8")
-    for cause, sizes in visible_rows(healthy.diagnosis.smallest_visible):
+    hidden = healthy.diagnosis.not_testable
+    for cause, sizes in visible_rows(healthy.diagnosis.smallest_visible, hidden):
         assert cause in healthy.out and sizes.split(", ")[0] in healthy.out and sizes in page
+    seen = healthy.out.partition("Smallest fault")[2]
+    assert not any(title(name) + "  " in seen for name in hidden)
     assert "Thrust loss  " in healthy.out
     assert "Errors" in healthy.out and "Page: " in healthy.out
 

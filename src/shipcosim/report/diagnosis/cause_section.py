@@ -97,7 +97,8 @@ def cause_section(diagnosis: Diagnosis, evidence: Evidence | None) -> CauseSecti
         sail=_sail(diagnosis),
         not_testable=Table(weak, head=("Cause", "What it would be", "Why not")),
         visible=Table(
-            visible_rows(diagnosis.smallest_visible), head=("Cause", "Size, in 9 of 10 cases")
+            visible_rows(diagnosis.smallest_visible, diagnosis.not_testable),
+            head=("Cause", "Size, in 9 of 10 cases"),
         ),
         form=form_section(diagnosis.form) if diagnosis.form else None,
     )

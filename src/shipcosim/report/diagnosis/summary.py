@@ -78,7 +78,7 @@ def summary(diagnosis: Diagnosis) -> tuple[Block, ...]:
     found = Table(list(finding_rows(diagnosis.findings)), ("", "probability", "", "size"))
     unseen = () if diagnosis.is_assumed else diagnosis.not_testable
     silent = (", ".join(map(title, unseen)),) if unseen else ()
-    visible = Table(visible_rows(diagnosis.smallest_visible))
+    visible = Table(visible_rows(diagnosis.smallest_visible, diagnosis.not_testable))
     columns = diagnosis.log.measured.attrs.get("column_remarks", ()) if diagnosis.log else ()
     return (
         Block("Differences, largest first", Table(discrepancy_rows(diagnosis))),

@@ -58,8 +58,10 @@ def not_testable_rows(
     return rows
 
 
-def visible_rows(sizes: Sequence[VisibleSize]) -> list[tuple[str, str]]:
-    """Each cause with the smallest size that would have shown, at every place of the ship.
+def visible_rows(
+    sizes: Sequence[VisibleSize], not_testable: Sequence[str] = ()
+) -> list[tuple[str, str]]:
+    """Each testable cause with the smallest size that would have shown, at every place of the ship.
 
     Examples
     --------
@@ -70,6 +72,9 @@ def visible_rows(sizes: Sequence[VisibleSize]) -> list[tuple[str, str]]:
     """
     rows: dict[str, list[str]] = {}
     for one in sizes:
+        # What only an absurd size would show is said elsewhere, as a cause that cannot be tested.
+        if one.cause in not_testable:
+            continue
         # A ratio as a percentage, any other number with its unit.
         unit, factor = shown_unit(one.unit, one.size) if one.unit not in ("1", "") else ("%", 100.0)
         size = f"{plain(factor * one.size, 2)} {unit}".replace(" °", "°").rstrip()
