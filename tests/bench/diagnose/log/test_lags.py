@@ -12,7 +12,7 @@ from truth import draw_many
 PAIRS = (("heading",), ("yaw_rate",), ("north", "east"), ("surge", "sway"))
 PARTS = ((0.0, 1.0), (0.5, 1.0), (0.3, 0.6))
 LEAST = {"trial": 0.95, "work": 0.65, "hold": 0.35}
-"""Share that is named right: seeds 98000 to 98003 gave 0.98, 0.70 and 0.40 and more."""
+"""Share that is named right: seeds 98000 to 98003 gave 0.98, 0.68 and 0.40 and more."""
 
 
 def logs(kind, seeds, **options):
@@ -37,6 +37,7 @@ def with_lag(log, channels, lag, part):
 @pytest.mark.parametrize("kind", ["trial", "work", "hold"])
 def test_late_channels_are_named_with_their_lag(kind, lag):
     outcomes = {"right": 0, "another": 0, "none": 0}
+    others = []
     for form in (0.0, 1.0):
         for log in logs(kind, range(98000, 98004), causes=0, form=form):
             for channels in PAIRS:
@@ -46,7 +47,10 @@ def test_late_channels_are_named_with_their_lag(kind, lag):
                         abs(found[0].parameters["lag"].estimate - lag) < 0.6
                     )
                     outcomes["right" if is_right else "another" if found else "none"] += 1
-    print(f"\n{kind}, {lag} s: {outcomes}")
+                    if found and not is_right:
+                        lags = [(one.channels, one.parameters["lag"].estimate) for one in found]
+                        others.append((channels, lags))
+    print(f"\n{kind}, {lag} s: {outcomes}", *others, sep="\n")
     total = sum(outcomes.values())
     assert outcomes["another"] <= 0.05 * total
     assert outcomes["right"] >= LEAST[kind] * total

@@ -120,7 +120,7 @@ def _lag(pair: _Pair | None) -> _Lag | None:
     if len(rows) < 2 * len(lags):
         return None
     time = time[rows]
-    white, way = _white(pair, rows, lags)
+    white, rival = _white(pair, rows, lags)
     squares = _squares(white)
     none = int(np.argmin(np.abs(lags)))
     gains = 0.5 * (squares[:, [none]] - squares)
@@ -129,14 +129,14 @@ def _lag(pair: _Pair | None) -> _Lag | None:
     best = int(np.argmax([gain for gain, _ in judged]))
     segment = judged[best][1]
     here = inside(time, [segment] if segment else [])
-    # The rival: the way is turned, or has another scale. In a steady turn that looks like a lag.
-    energy = max(np.sum(np.abs(way[here]) ** 2), 1e-300)
-    factor = np.vdot(way[here], white[here, none]) / energy
-    rival = _squares(white[here, none] - factor * way[here])
+    # The rival: the way is turned or has another scale, and the position is of another place of the ship. In a steady
+    # turn, or at a steady speed, that looks like a lag.
+    explained = np.linalg.lstsq(rival[here], white[here, none], rcond=None)[0]
+    otherwise = _squares(white[here, none] - rival[here] @ explained)
     # What the lag leaves is white noise as elsewhere; of another fault it would explain a part only.
     rest = white[here, best]
     rough = whiteness(np.column_stack([rest.real, rest.imag])[:, : pair.seen.shape[1]])
-    gain = min(gains[here, best].sum(), 0.5 * np.sum(rival - squares[here, best])) / rough
+    gain = min(gains[here, best].sum(), 0.5 * np.sum(otherwise - squares[here, best])) / rough
     is_noise = squares[here, best].mean() < NOISIER * pair.seen.shape[1] and rough < ROUGHEST
     is_clear = gain - (SEGMENT_COST if segment else 0.0) > LAG_GAIN
     if not (0 < best < len(lags) - 1 and is_noise and is_clear):
@@ -153,17 +153,20 @@ def _lag(pair: _Pair | None) -> _Lag | None:
 
 
 def _white(pair, rows, lags):
-    """What each lag leaves of some rows, (n, k), and the way without a lag, (n,), both as complex white noise."""
+    """What each lag leaves of some rows, (n, k), and way and turn without a lag, (n, 2), as complex white noise."""
     time = pair.time[rows]
     seen = pair.seen[rows]
+    axes = seen.shape[1]
     levels = np.stack([seen - pair.way(lag)[rows] for lag in lags], axis=2)
     starts = after_gaps(time) | jumps(seen)
     whiteners = filter_for(Motion(time, seen, seen, starts), levels)
     # The filter of the lag that leaves least is that of the log's noise.
     noise = [np.mean(np.log(one.std * one.scale[one.gains < 1.0])) for one in whiteners]
-    white = whiteners[int(np.argmin(noise))](np.dstack([levels, pair.way(0.0)[rows]]))
-    white = white[:, 0] + 1j * white[:, 1] if seen.shape[1] == 2 else white[:, 0].astype(complex)
-    return white[:, :-1], white[:, -1]
+    turn = np.column_stack([pair.turn.real, pair.turn.imag])[rows, :axes]
+    series = np.dstack([levels, pair.way(0.0)[rows], turn])
+    white = whiteners[int(np.argmin(noise))](series)
+    white = white[:, 0] + (1j * white[:, 1] if axes == 2 else 0.0)
+    return white[:, :-2], white[:, -2:]
 
 
 def _squares(white):

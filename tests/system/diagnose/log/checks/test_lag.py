@@ -5,6 +5,7 @@ import pytest
 from diagnose.logs import measured, table
 
 from shipcosim.diagnose.log.checks.examine import examine
+from shipcosim.diagnose.log.checks.lag import late_channels
 from shipcosim.diagnose.log.repair import repaired
 
 PAIRS = [("heading",), ("yaw_rate",), ("north", "east"), ("surge", "sway")]
@@ -56,3 +57,14 @@ def test_navigation_that_is_late_as_a_whole_shows_no_lag_between_its_channels(la
     channels = ("north", "east", "heading", "surge", "sway", "yaw_rate")
     late = with_lag(measured(seed=45), channels, lag, PARTS[0])
     assert "channel_lag" not in {found.cause for found in examine(table(late))}
+
+
+@pytest.mark.parametrize("noise", [1.0, 10.0])
+@pytest.mark.parametrize("speed, ahead", [(1.0, -8.0), (2.0, -8.0), (2.0, 8.0), (4.0, -20.0)])
+def test_an_antenna_beside_a_velocity_of_the_ship_is_no_lag(speed, ahead, noise):
+    """At a steady speed an antenna that is ahead or aft looks like a velocity or a position that comes late."""
+    log = measured(seed=46, noise=noise)
+    course = np.exp(1j * np.radians(log["heading"]))
+    way = np.cumsum(speed * course) + ahead * course
+    log |= {"north": log["north"] + way.real, "east": log["east"] + way.imag}
+    assert late_channels(log | {"surge": log["surge"] + speed}) == []
