@@ -1,5 +1,6 @@
 """The optimal allocator with its default numbers: states, steps, and how many limits a step breaks."""
 
+from dataclasses import replace
 from math import pi, radians
 
 import numpy as np
@@ -15,8 +16,11 @@ CONES = [[(radians(-80), radians(80)), (radians(100), radians(260))]] * 2 + [[]]
 SETTLED = (radians(45), radians(135), 0.5 * pi)
 
 
-def step(state, tau, available=ALL, h=H, **changes):
-    return optimal.step(state, tau, available, h, parameters=PARAMETERS, design=DESIGN, **changes)
+ALWAYS = optimal.design(replace(PARAMETERS, sectors_always=1.0))
+
+
+def step(state, tau, available=ALL, h=H, design=DESIGN, **changes):
+    return optimal.step(state, tau, available, h, parameters=PARAMETERS, design=design, **changes)
 
 
 def start(tau=(0.0, 0.0, 0.0), azimuths=SETTLED):
@@ -41,9 +45,11 @@ def many(number, tau=0.0):
     )
 
 
-def violations(old, new, h=H, available=ALL):
-    """How many commands break a limit of thrust, angle, rate or sector."""
+def violations(old, new, h=H, available=ALL, always=False):
+    """How many commands break a limit of thrust, angle, rate or sector; a sector counts while the other azimuth runs."""
     count = 0
+    runs = [np.asarray(f) != 0.0 for f in new.thrusts[:2]]
+    both = always | (runs[0] & runs[1])
     for unit, f0, a0, f, a, on in zip(
         DESIGN.units, old.thrusts, old.azimuths, new.thrusts, new.azimuths, available, strict=True
     ):
@@ -52,7 +58,7 @@ def violations(old, new, h=H, available=ALL):
         count += np.sum(np.abs(a - a0) > unit.azimuth_rate * h * (1 + 1e-9))
         aside = np.abs(np.degrees(np.arctan2(np.sin(a), np.cos(a))))
         if unit.azimuth_rate > 0.0:
-            count += np.sum((aside > 80.0 + 1e-9) & (aside < 100.0 - 1e-9) & (f != 0.0))
+            count += np.sum((aside > 80.0 + 1e-9) & (aside < 100.0 - 1e-9) & (f != 0.0) & both)
             count += np.sum((f < 0.0) & (f < f0) & np.logical_and.reduce(available))
         count += np.sum((np.asarray(f) != 0.0) & ~np.asarray(on))
     return int(count)

@@ -317,6 +317,7 @@ def of_turning_units(*row):
     state = state._replace(
         thrusts=(*row[:3], zero, zero, zero), azimuths=(*state.azimuths, zero, zero, zero)
     )
+    state = cones.cones_at_rest(state, tau, design=optimal.design(TURNING_UNITS))
     return state, tau, (True, on, True, True, True, True)
 
 

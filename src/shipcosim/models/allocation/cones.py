@@ -10,6 +10,8 @@ limits of their rates. The other units take its load over. No thrust is reversed
 from itertools import product
 from typing import Any, NamedTuple
 
+from shipcosim.models.allocation.consequences import Averaged, averaged, held_share
+from shipcosim.models.allocation.detours import detour_step, detours_at_rest
 from shipcosim.models.allocation.sqp import (
     OptimalProblem,
     Turned,
@@ -34,6 +36,7 @@ from shipcosim.models.core.motion import Load
 _LOSS = 10.0  # price of a missed newton over the largest price of a newton of thrust
 _DEAR = 2.0  # cost over that of the cheapest plan, beyond which no plan counts
 _FAR = 1.2  # rad from its plan: beyond it a unit can be at the wrong end of its cone
+_ROUNDS = 12  # of the balance: none of 80 000 random loads came on the wrong side of 1.25
 _THERE = 1.0  # rad from its plan: nearer, a unit that shifts gives thrust again
 
 
@@ -155,8 +158,12 @@ def cone_step(
     ----------
     As `sqp.power_step`; the choice of cones is this project's.
     """
+    shares = shares or (1.0,) * len(design.units)
+    average, design = _ranked(state.average, tau, available, h, design, shares)
     if design.choice is None:
-        return power_step(state, tau, available, h, design=design, shares=shares)
+        memory, now = detour_step(state, tau, h, design=design)
+        new = power_step(state, tau, available, h, design=now, shares=shares)
+        return new._replace(memory=memory, average=average)
     memory = _planned(state.memory, tau, available, h, design, shares)
     memory = _decided(memory, state, available, h, design)
     # Angles of the plan of the wanted cones, and how far each unit is from them.
@@ -165,12 +172,13 @@ def cone_step(
     memory = _strayed(memory, state, aimed, h, design)
     memory = _sent(memory, state, gaps, design)
     memory, now = _shifted(memory, state, gaps, available, design)
-    new = power_step(state, tau, available, h, design=now, shares=shares)
-    return new._replace(memory=memory)
+    usable = _clear(memory, state, available, design)
+    new = power_step(state, tau, usable, h, design=now, shares=shares)
+    return new._replace(memory=memory, average=average)
 
 
 def cones_at_rest(state: Turned, tau: Load, *, design: OptimalProblem) -> Turned:
-    """State at the start with what the choice of cones remembers.
+    """State at the start with what the choice of cones remembers, and no request yet.
 
     Units keep to the intervals of their parameters; the plans are at rest.
 
@@ -192,9 +200,10 @@ def cones_at_rest(state: Turned, tau: Load, *, design: OptimalProblem) -> Turned
     ----------
     Definition.
     """
-    if design.choice is None:
-        return state
     zero = 0.0 * tau[0]
+    state = state._replace(average=Averaged((zero,) * 3, zero))
+    if design.choice is None:
+        return state._replace(memory=detours_at_rest(tau, design=design))
     none = (zero,) * len(design.units)
     cones = tuple(tuple(zero + cone for cone in one) for one in design.choice.cones)
     plans = []
@@ -207,6 +216,21 @@ def cones_at_rest(state: Turned, tau: Load, *, design: OptimalProblem) -> Turned
     waited = zero - design.choice.average
     memory = ConeMemory(none, none, none, waited, zero, zero, cones, tuple(plans), costs, costs)
     return state._replace(memory=memory)
+
+
+def _ranked(average, tau, available, h, design, shares):
+    """The request averaged, and the problem that puts position before heading only where the units cannot hold both."""
+    balance = design.balance
+    average = averaged(average, tau, h, parameters=balance)
+    load = tuple(part / (average.weight + 1e-12) for part in average.load)
+    usable = tuple(where(on, share, 0.0) for on, share in zip(available, shares, strict=True))
+    held = held_share(load, usable, units=balance.units, rounds=_ROUNDS)
+    first = held < balance.dynamic_factor
+    # The balance knows no sectors: an azimuth that keeps to them can miss load that it says is held.
+    if design.choice is not None:
+        first = first | (design.choice.sectors_always > 0.5)
+    lever = where(first, design.yaw_lever_degraded, design.yaw_lever)
+    return average, design._replace(yaw_lever_degraded=lever)
 
 
 def _within(design, half_turns):
@@ -405,6 +429,23 @@ def _opened(memory, state, available, design):
             turns = where(opens, nearest * (apart / pi), turns)
         half_turns.append(turns)
     return memory._replace(half_turns=tuple(half_turns)), opens
+
+
+def _clear(memory, state, available, design):
+    """Units that can be used: one that comes back waits until no other azimuth pushes in a sector."""
+    units = _within(design, memory.half_turns).units
+    zero = 0.0 * memory.waited
+    pushing = zero
+    for unit, f, angle in zip(units, state.thrusts, state.azimuths, strict=True):
+        if unit.kind == "turning":
+            clear = is_within(angle, unit.first, unit.last) | (f == 0.0)
+            pushing = pushing + where(clear, zero, zero + 1.0)
+    waits = (pushing > 0.5) & (design.choice.sectors_always < 0.5)
+    rows = zip(units, state.thrusts, available, strict=True)
+    return tuple(
+        on & ((f != 0.0) | (waits == False)) if unit.kind == "turning" else on  # noqa: E712
+        for unit, f, on in rows
+    )
 
 
 def _cone(half_turns):

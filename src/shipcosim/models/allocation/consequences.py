@@ -15,7 +15,7 @@ consequence analysis. The search: Snethen, XenoCollide, in Game Programming Gems
 
 from dataclasses import dataclass
 from math import pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from shipcosim.angles import wrap
 from shipcosim.models.allocation.units import turning_fields, unit_fields
@@ -57,8 +57,8 @@ def _fields(number):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ConsequenceParameters(numbered_units(_fields)):
-    """Units, and what counts as held."""
+class BalanceParameters:
+    """What counts as held."""
 
     load_time: float = quantity(
         60.0,
@@ -74,6 +74,12 @@ class ConsequenceParameters(numbered_units(_fields)):
         "dynamic factor of DNV-ST-0111, Level 1",
         minimum=1.0,
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ConsequenceParameters(BalanceParameters, numbered_units(_fields)):
+    """Units, and what counts as held."""
+
     analysis_period: float = quantity(
         10.0, "s", "time between two analyses", "assumed", minimum=0.05
     )
@@ -96,6 +102,22 @@ class Units(NamedTuple):
     rows: tuple
 
 
+class Balance(NamedTuple):
+    """What tells whether units hold a load.
+
+    Parameters
+    ----------
+    units : Units
+        From `units_of`. [as its fields]
+    load_time, dynamic_factor : float
+        As of `BalanceParameters`. [s, 1]
+    """
+
+    units: Units
+    load_time: float
+    dynamic_factor: float
+
+
 class Averaged(NamedTuple):
     """Requested load, averaged.
 
@@ -111,13 +133,13 @@ class Averaged(NamedTuple):
     weight: Arithmetic
 
 
-def units_of(parameters: ConsequenceParameters) -> Units:
+def units_of(parameters: Any) -> Units:
     """Thrust sets of the units.
 
     Parameters
     ----------
-    parameters : ConsequenceParameters
-        The units. [as its fields]
+    parameters : ConsequenceParameters, or the parameters of an allocator
+        With places, limits and turning of the units. [as their fields]
 
     Returns
     -------
@@ -151,7 +173,7 @@ def units_of(parameters: ConsequenceParameters) -> Units:
 
 
 def averaged(
-    state: Averaged, tau: Load, h: Arithmetic, *, parameters: ConsequenceParameters
+    state: Averaged, tau: Load, h: Arithmetic, *, parameters: BalanceParameters | Balance
 ) -> Averaged:
     """The average with one more load.
 
@@ -163,7 +185,7 @@ def averaged(
         Requested load. [N, N, N.m]
     h : float
         Time since the last one. [s]
-    parameters : ConsequenceParameters
+    parameters : BalanceParameters or Balance
         The time of the average. [as its fields]
 
     Returns
@@ -182,7 +204,9 @@ def averaged(
     return Averaged(load, state.weight + share * (1.0 - state.weight))
 
 
-def held_share(load: Load, usable: tuple, *, units: Units, heading: float = 1.0) -> Arithmetic:
+def held_share(
+    load: Load, usable: tuple, *, units: Units, heading: float = 1.0, rounds: int = ROUNDS
+) -> Arithmetic:
     """Share of a load that units can hold.
 
     Parameters
@@ -195,6 +219,8 @@ def held_share(load: Load, usable: tuple, *, units: Units, heading: float = 1.0)
         From `units_of`.
     heading : float
         1: force and moment; 0: the force alone, whatever moment comes with it. [1]
+    rounds : int
+        Points that the search tries; few give a share that is a little too small. [1]
 
     Returns
     -------
@@ -235,7 +261,7 @@ def held_share(load: Load, usable: tuple, *, units: Units, heading: float = 1.0)
             _either(first | second, c, _either(third, p, c)),
         )
 
-    a, b, c = times(ROUNDS, further, (a, b, c))
+    a, b, c = times(rounds, further, (a, b, c))
     # Where the ray passes through the last triangle.
     normal = _cross(_minus(b, a), _minus(c, a))
     along = _dot(normal, aim)

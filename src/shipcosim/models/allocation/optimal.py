@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from math import inf, pi
 
 from shipcosim.models.allocation.cones import ConeChoice, cone_choices, cone_step, cones_at_rest
+from shipcosim.models.allocation.consequences import Balance, BalanceParameters, units_of
 from shipcosim.models.allocation.fixed_angles import FixedAngleParameters
 from shipcosim.models.allocation.sqp import (
     AllocatedThruster,
@@ -83,6 +84,9 @@ class TurningParameters(NamedUnits):
         return super().by_unit | {
             "thrust_least": (least, least, -self.tunnel_thrust_max),
             "azimuth_rate": (rate, rate, 0.0),
+            # Both cones together, and thrust either way where a unit is missing, leave out little.
+            "azimuth_first": (0.0, 0.0, 0.0),
+            "azimuth_last": (0.0, 0.0, 0.0),
         }
 
     @property
@@ -107,14 +111,9 @@ class TurningParameters(NamedUnits):
         """Power over thrust^1.5, relative to an azimuth. [1]"""
         return 1.0, 1.0, self.tunnel_price
 
-    @property
-    def lever_degraded(self) -> float:
-        """A missed yaw moment weighs as a missed force at this distance where a unit is missing. [m]"""
-        return self.yaw_lever_degraded
-
 
 @dataclass(frozen=True, kw_only=True)
-class OptimalParameters(TurningParameters):
+class OptimalParameters(BalanceParameters, TurningParameters):
     """Two azimuth thrusters, each with the cone of its interval and the opposite one, and a tunnel thruster."""
 
     azimuth_thrust_least: float = quantity(
@@ -159,7 +158,7 @@ class OptimalParameters(TurningParameters):
         minimum=0.0,
     )
     sectors_always: float = quantity(
-        1.0,
+        0.0,
         "1",
         "1: forbidden sectors hold always; 0: not for an azimuth while the other is missing",
         "choice: a sector keeps the wash off the other azimuth",
@@ -197,9 +196,16 @@ def _fields(number):
 
 
 @dataclass(frozen=True, kw_only=True)
-class OptimalUnitsParameters(numbered_units(_fields), FixedAngleParameters):
+class OptimalUnitsParameters(numbered_units(_fields), BalanceParameters, FixedAngleParameters):
     """Places, limits, turning and prices of the units."""
 
+    yaw_lever_degraded: float = quantity(
+        300.0,
+        "m",
+        "the same where the units left cannot hold both: position before heading",
+        "as of R/V Gunnerus, assumed",
+        minimum=0.1,
+    )
     turning_time: float = quantity(
         10.0,
         "s",
@@ -232,11 +238,6 @@ class OptimalUnitsParameters(numbered_units(_fields), FixedAngleParameters):
         """Units keep their interval of angles."""
         return None
 
-    @property
-    def lever_degraded(self) -> float:
-        """The lever is the same where a unit is missing. [m]"""
-        return self.yaw_lever
-
 
 def design(parameters: OptimalParameters | OptimalUnitsParameters) -> OptimalProblem:
     """Parameters in the form that the law needs.
@@ -260,8 +261,9 @@ def design(parameters: OptimalParameters | OptimalUnitsParameters) -> OptimalPro
     columns = map(p.of_units, (*names, "azimuth_rate", "thrust_least"))
     rows = zip(*columns, p.turning, p.sectors, p.prices, strict=True)
     units = tuple(_unit(*row) for row in rows)
-    problem = designed(units, p.turning_time, p.yaw_lever, p.lever_degraded)
-    return problem._replace(choice=p.choice)
+    problem = designed(units, p.turning_time, p.yaw_lever, p.yaw_lever_degraded)
+    balance = Balance(units_of(p), p.load_time, p.dynamic_factor)
+    return problem._replace(choice=p.choice, balance=balance)
 
 
 def _unit(x, y, azimuth, low, high, thrust_rate, azimuth_rate, least, turns, sector, price):

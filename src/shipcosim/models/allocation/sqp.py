@@ -96,6 +96,8 @@ class OptimalProblem(NamedTuple):
         Load that is missed for a unit of price: so small that no price of power outweighs the request. [N per W/N]
     choice : ConeChoice, optional
         How `cones` chooses the intervals of angles; without it they stay. [as its fields]
+    balance : Balance, optional
+        Of all units, which tells whether those that are left hold position and heading. [as its fields]
     """
 
     units: tuple
@@ -105,6 +107,7 @@ class OptimalProblem(NamedTuple):
     dearest: float
     slack: float
     choice: Any = None
+    balance: Any = None
 
 
 class Turned(NamedTuple):
@@ -122,6 +125,8 @@ class Turned(NamedTuple):
         Power that one unit more of each load would cost. [W/N, W/N, W/(N.m)]
     memory : ConeMemory, optional
         What the choice of cones remembers. [as its fields]
+    average : Averaged, optional
+        Request of the last minute. [as its fields]
     """
 
     thrusts: tuple
@@ -132,6 +137,7 @@ class Turned(NamedTuple):
     saturated: Arithmetic
     marginal: tuple
     memory: tuple = ()
+    average: tuple = ()
 
 
 def designed(

@@ -4,5 +4,6 @@ import pytest
 from models.allocation.test_optimal import keep_limits
 
 
-def test_no_limit_is_broken_on_a_million_random_requests():
-    assert keep_limits(10_000, 100, 3) == 0
+@pytest.mark.parametrize("always", [False, True])
+def test_no_limit_is_broken_on_a_million_random_requests(always):
+    assert keep_limits(10_000, 100, 3, always=always) == 0

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from optimal_allocator import (
     ALL,
+    ALWAYS,
     DESIGN,
     PARAMETERS,
     SETTLED,
@@ -32,8 +33,9 @@ def extremes(draw, number):
     return tuple(tau * (draw.random((3, number)) < 0.8))
 
 
-def keep_limits(runs, steps, seed, h=H):
+def keep_limits(runs, steps, seed, h=H, always=False):
     """Violations in `runs` x `steps` requests that jump, with units that come and go."""
+    design = ALWAYS if always else DESIGN
     draw = np.random.default_rng(seed)
     state, count = many(runs), 0
     available = [np.ones(runs, bool)] * 3
@@ -42,20 +44,22 @@ def keep_limits(runs, steps, seed, h=H):
             tau = extremes(draw, runs)
         if k % 11 == 5:
             available = [draw.random(runs) < 0.9 for _ in range(3)]
-        new = step(state, tau, tuple(available), h)
-        count += violations(state, new, h, available)
+        new = step(state, tau, tuple(available), h, design)
+        count += violations(state, new, h, available, always)
         assert all(np.isfinite(value).all() for value in (*new.thrusts, *new.azimuths))
         state = new
     return count
 
 
-def test_no_limit_is_broken_on_random_requests():
-    assert keep_limits(1000, 40, 1) == 0
+@pytest.mark.parametrize("always", [False, True])
+def test_no_limit_is_broken_on_random_requests(always):
+    assert keep_limits(1000, 40, 1, always=always) == 0
 
 
+@pytest.mark.parametrize("always", [False, True])
 @pytest.mark.parametrize("h", [0.01, 0.5, 3.0])
-def test_no_limit_is_broken_with_other_steps(h):
-    assert keep_limits(100, 30, 2, h) == 0
+def test_no_limit_is_broken_with_other_steps(h, always):
+    assert keep_limits(100, 100, 2, h, always) == 0
 
 
 def test_a_unit_gives_no_thrust_until_it_is_within_its_angles_and_turns_there():
@@ -174,36 +178,50 @@ def test_missing_unit_gives_nothing_at_once_keeps_its_angle_and_the_forces_are_h
     assert abs(6e3 - state.tau_Y) < 600.0  # two units: position before heading
 
 
-def test_one_azimuth_alone_pushes_ahead_and_astern_and_reverses_no_more_when_the_other_is_back():
+def test_one_azimuth_in_its_cone_reverses_and_no_more_when_the_other_is_back():
     state, alone = start(), (True, False, True)
     for tau in ((3e3, 6e3, 5e4), (-3e3, 6e3, 5e4)):
         for _ in range(1000):
-            state = step(state, tau, alone)
+            state = step(state, tau, alone, design=ALWAYS)
         np.testing.assert_allclose(state[2:4], tau[:2], atol=150.0)
     assert state.thrusts[0] < -2e3
     for _ in range(1000):
-        state = step(state, (-3e3, 6e3, 5e4))
+        state = step(state, (-3e3, 6e3, 5e4), design=ALWAYS)
     assert state.thrusts[0] >= PARAMETERS.azimuth_thrust_least
     np.testing.assert_allclose(state[2:5], (-3e3, 6e3, 5e4), atol=1.0)
 
 
-def test_an_azimuth_alone_pushes_abeam_only_where_the_sectors_may_open():
-    """Its wash meets no running azimuth. When the other one is back, it leaves the sector."""
-    opened = optimal.design(replace(PARAMETERS, sectors_always=0.0))
+def test_an_azimuth_alone_pushes_abeam_unless_sectors_hold_always():
+    """Its wash meets no running azimuth. The other one, when it is back, waits until it has left the sector."""
     alone, abeam, small = (True, False, False), (0.0, 6e3, 0.0), (3e3, 6e3, 5e4)
     asides = []
-    for design in (DESIGN, opened):
+    for design in (ALWAYS, DESIGN):
         state = start()
         for _ in range(160):
-            state = optimal.step(state, abeam, alone, 0.25, parameters=PARAMETERS, design=design)
+            state = step(state, abeam, alone, 0.25, design)
         asides.append(degrees(state.azimuths[0]))
     assert asides[0] <= 80.0 + 1e-9
     assert asides[1] == pytest.approx(90.0, abs=0.1)
     np.testing.assert_allclose(state[2:4], abeam[:2], atol=30.0)  # position before heading
     for _ in range(400):
-        state = optimal.step(state, small, ALL, 0.25, parameters=PARAMETERS, design=opened)
+        new = step(state, small, ALL, 0.25)
+        assert violations(state, new, 0.25) == 0
+        state = new
     np.testing.assert_allclose(state[2:5], small, atol=1.0)
-    assert violations(state, state) == 0
+
+
+def test_heading_is_held_too_where_the_units_left_hold_both():
+    """One azimuth and the tunnel hold the first load, not the second: there position goes before heading."""
+    alone, both, too_much = (True, False, True), (3e3, 6e3, 5e4), (3e3, 20e3, 5e4)
+    np.testing.assert_allclose(_held_alone(both, alone), both, atol=1.0)
+    np.testing.assert_allclose(_held_alone(too_much, alone)[:2], too_much[:2], atol=150.0)
+
+
+def _held_alone(tau, available):
+    state = start()
+    for _ in range(1000):
+        state = step(state, tau, available, 0.25)
+    return state[2:5]
 
 
 def test_power_limits_are_kept_at_once():

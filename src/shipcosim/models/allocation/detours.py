@@ -1,0 +1,121 @@
+"""The long way round, for units that keep to one interval of angles.
+
+A step looks for better angles near the last ones. So a unit that is wanted beyond the end of its interval stays at that
+end, although it could be turned there through the rest of its interval. Where load is missed for a while, each unit that
+gives only its least thrust and would help more than `_FAR` away gives its thrust up and turns there.
+"""
+
+from math import isinf
+from typing import NamedTuple
+
+from shipcosim.angles import wrap
+from shipcosim.models.allocation.sqp import OptimalProblem, Turned, is_within
+from shipcosim.models.core.maths import Arithmetic, atan2, clip, cos, sin, where
+from shipcosim.models.core.motion import Load
+
+_WAIT = 5.0  # s for which load must be missed: longer than noise and gusts, assumed
+_FAR = 1.2  # rad: what is nearer, steps find
+_THERE = 1.0  # rad from the aim: nearer, the unit gives thrust again
+
+
+class DetourMemory(NamedTuple):
+    """Which units are on a detour.
+
+    Parameters
+    ----------
+    turning : tuple of floats or (...) arrays or tensors
+        1 while a unit turns idle to its aim, else 0. [1]
+    aims : tuple, as many
+        Angles that the units turn to. [rad]
+    waited : like an aim
+        How long load has been missed. [s]
+    """
+
+    turning: tuple
+    aims: tuple
+    waited: Arithmetic
+
+
+def detours_at_rest(tau: Load, *, design: OptimalProblem) -> DetourMemory:
+    """No unit on a detour.
+
+    Parameters
+    ----------
+    tau : tuple of three floats or (...) arrays or tensors
+        Any load: it gives shape and type only. [N, N, N.m]
+    design : OptimalProblem
+        The units. [as its fields]
+
+    Returns
+    -------
+    DetourMemory
+        The state.
+
+    References
+    ----------
+    Definition.
+    """
+    none = (0.0 * tau[0],) * len(design.units)
+    return DetourMemory(none, none, 0.0 * tau[0])
+
+
+def detour_step(
+    state: Turned, tau: Load, h: float, *, design: OptimalProblem
+) -> tuple[DetourMemory, OptimalProblem]:
+    """Send units on detours.
+
+    Parameters
+    ----------
+    state : Turned
+        State at the last commands. [as its fields]
+    tau : tuple of three floats or (...) arrays or tensors
+        Requested load. [N, N, N.m]
+    h : float
+        Time since the last commands. [s]
+    design : OptimalProblem
+        The units. [as its fields]
+
+    Returns
+    -------
+    tuple of DetourMemory and OptimalProblem
+        What is remembered, and the problem in which a unit on a detour has only the angles around its aim.
+
+    References
+    ----------
+    The way round is this project's.
+    """
+    memory = state.memory
+    zero = 0.0 * memory.waited
+    waited = where(state.saturated, memory.waited + h, zero)
+    # Missed load, as forces of one kind: a moment counts at the lever.
+    X, Y, N = tau[0] - state.tau_X, tau[1] - state.tau_Y, tau[2] - state.tau_N
+    N = N / design.yaw_lever**2
+    rows = zip(
+        design.units, state.thrusts, state.azimuths, memory.turning, memory.aims, strict=True
+    )
+    units, turning, aims = [], [], []
+    for unit, f, angle, turns, aim in rows:
+        # A unit without limits turns the short way by itself.
+        if unit.kind == "turning" and not isinf(unit.last):
+            # The angle within the interval at which a force at this place takes most of the miss away.
+            gx, gy = X - unit.y * N, Y + unit.x * N
+            middle, width = 0.5 * (unit.first + unit.last), 0.5 * (unit.last - unit.first)
+            best = middle + clip(wrap(atan2(gy, gx) - middle), -width, width)
+            helps = gx * cos(best) + gy * sin(best) > 0.0
+            idle = f <= 1.01 * unit.least
+            goes = (waited > _WAIT) & helps & idle & (abs(best - angle) > _FAR)
+            aim = where(goes & (turns < 0.5), best, aim)
+            turns = where(goes, zero + 1.0, turns)
+            # Outside of these angles the law takes the thrust away, then turns the unit there.
+            first = clip(aim - _THERE, unit.first, unit.last)
+            last = clip(aim + _THERE, unit.first, unit.last)
+            turns = where(is_within(angle, first, last), zero, turns)
+            moves = turns > 0.5
+            unit = unit._replace(
+                first=where(moves, first, unit.first), last=where(moves, last, unit.last)
+            )
+        units.append(unit)
+        turning.append(turns)
+        aims.append(aim)
+    memory = DetourMemory(tuple(turning), tuple(aims), waited)
+    return memory, design._replace(units=tuple(units))
