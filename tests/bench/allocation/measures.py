@@ -45,9 +45,9 @@ def spread(values) -> Spread:
 def violations(commanded: Commanded) -> dict[str, np.ndarray]:
     """Steps at which a limit is broken, by kind, (m,) each: force, angle, rate (of thrust or angle), sector.
 
-    An angle that is no number counts as "angle". A command in the forbidden sector counts where the unit pushes: one
-    that turns through it without thrust disturbs nobody. A unit that cannot be used goes to zero at once: its rate
-    does not count.
+    An angle that is no number counts as "angle". A command in the forbidden sector counts where both azimuths push: one
+    that turns through it without thrust disturbs nobody, nor does one that pushes there alone. A unit that cannot be
+    used goes to zero at once: its rate does not count.
     """
     ship, f, a, h = (
         parameters(AllocationParameters),
@@ -68,7 +68,7 @@ def violations(commanded: Commanded) -> dict[str, np.ndarray]:
         "force": ~((f <= most * (1.0 + ALMOST)) & (f >= least * (1.0 + ALMOST))).all(-1),
         "angle": ~np.isfinite(a).all(-1),
         "rate": quick | turned,
-        "sector": (inside & (np.abs(f[..., :2]) > PUSHING)).any(-1),
+        "sector": inside.any(-1) & (np.abs(f[..., :2]) > PUSHING).all(-1),
     }
     return {kind: rows.sum(0) for kind, rows in bad.items()}
 

@@ -1,7 +1,7 @@
 """What the consequence analysis says of R/V Gunnerus beforehand, against her simulated in each loss.
 
-`python -m tests.bench.allocation.test_consequences [allocator [parameter=value ...]]` prints every case, and for each
-wind what docs/reports/allocation.md says of it.
+`python -m tests.bench.allocation.test_consequences [allocator [seed=N] [parameter=value ...]]` prints every case, and for
+each wind what docs/reports/allocation.md says of it.
 """
 
 import sys
@@ -134,9 +134,10 @@ def summary(rows: list[dict]) -> str:
 if __name__ == "__main__":
     given = (argument.split("=") for argument in sys.argv[2:])
     values = {f"allocator.{name}": float(value) for name, value in given}
+    seed = int(values.pop("allocator.seed", 1))
     shown_names = ("share", "force_share", "most_off", "late_off", "late_turned")
     for wind in (6.0, 10.0, 14.0):
-        found = outcomes(wind, range(0, 360, 30), *sys.argv[1:2], values=values)
+        found = outcomes(wind, range(0, 360, 30), *sys.argv[1:2], values=values, seed=seed)
         for row in found:
             shown = "  ".join(f"{row[name]:6.2f}" for name in shown_names)
             print(f"{wind:4.0f} m/s  {row['wind_from']:3d} deg  {row['loss']:10s}  {shown}")

@@ -19,6 +19,7 @@ from shipcosim import angles
 from shipcosim.models.allocation import (
     box_qp,
     cones,
+    consequences,
     extended,
     extreme_learning,
     fixed_angles,
@@ -661,6 +662,12 @@ CASES = [
         TURNING_ROWS,
         of_cones,
         dict(h=0.5, parameters=TURNING, design=TURNING_DESIGN),
+    ),
+    Case(
+        consequences.held_share,
+        [(X, Y, N) for _, _, _, X, Y, N, _ in TURNING_ROWS],
+        lambda *tau: (tau, (1.0, 0.0, 1.0)),
+        dict(units=TURNING_DESIGN.balance.units),
     ),
     Case(sqp.power_step, TURNING_ROWS, of_turning, dict(h=0.05, design=TURNING_DESIGN)),
     Case(

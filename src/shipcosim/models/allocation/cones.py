@@ -224,7 +224,14 @@ def _ranked(average, tau, available, h, design, shares):
     average = averaged(average, tau, h, parameters=balance)
     load = tuple(part / (average.weight + 1e-12) for part in average.load)
     usable = tuple(where(on, share, 0.0) for on, share in zip(available, shares, strict=True))
-    held = held_share(load, usable, units=balance.units, rounds=_ROUNDS)
+    # It is asked only where a unit is missing.
+    missing = sum(
+        where(on, 0.0, 1.0)
+        for on, unit in zip(available, design.units, strict=True)
+        if unit.kind != "none"
+    )
+    rounds = where(missing > 0.5, _ROUNDS, 0)
+    held = held_share(load, usable, units=balance.units, rounds=rounds)
     first = held < balance.dynamic_factor
     # The balance knows no sectors: an azimuth that keeps to them can miss load that it says is held.
     if design.choice is not None:

@@ -205,7 +205,7 @@ def averaged(
 
 
 def held_share(
-    load: Load, usable: tuple, *, units: Units, heading: float = 1.0, rounds: int = ROUNDS
+    load: Load, usable: tuple, *, units: Units, heading: float = 1.0, rounds: Any = ROUNDS
 ) -> Arithmetic:
     """Share of a load that units can hold.
 
@@ -219,7 +219,7 @@ def held_share(
         From `units_of`.
     heading : float
         1: force and moment; 0: the force alone, whatever moment comes with it. [1]
-    rounds : int
+    rounds : int or (...) array or tensor
         Points that the search tries; few give a share that is a little too small. [1]
 
     Returns

@@ -362,13 +362,13 @@ def repeat(going: Callable[[Any], Any], turn: Callable[[Any], Any], state: Any) 
     return state
 
 
-def times(count: int, turn: Callable[[Any], Any], state: Any) -> Any:
+def times(count: Any, turn: Callable[[Any], Any], state: Any) -> Any:
     """Apply a function to a state a number of times.
 
     Parameters
     ----------
-    count : int
-        How many. [1]
+    count : int or (...) array or tensor
+        How many; of many counts the largest. [1]
     turn : callable
         ``turn(state)`` gives the state after it, of the same make. [as state]
     state : any
@@ -395,7 +395,7 @@ def times(count: int, turn: Callable[[Any], Any], state: Any) -> Any:
         return own.repeat(
             lambda now: now[0] < count, lambda now: (now[0] + 1.0, turn(now[1])), (0.0, state)
         )[1]
-    for _ in range(count):
+    for _ in range(count if is_single(count) else int(count.max())):
         state = turn(state)
     return state
 
