@@ -28,7 +28,7 @@ class DetourMemory(NamedTuple):
     aims : tuple, as many
         Angles that the units turn to. [rad]
     waited : like an aim
-        How long load has been missed. [s]
+        How long load has been missed, less how long it has been met. [s]
     """
 
     turning: tuple
@@ -86,7 +86,9 @@ def detour_step(
     """
     memory = state.memory
     zero = 0.0 * memory.waited
-    waited = where(state.saturated, memory.waited + h, zero)
+    # Noise meets the request now and then: that counts against the time, and ends it only if it is as long.
+    waited = memory.waited + where(state.saturated, zero + h, zero - h)
+    waited = clip(waited, zero, zero + 2.0 * _WAIT)
     # Missed load, as forces of one kind: a moment counts at the lever.
     X, Y, N = tau[0] - state.tau_X, tau[1] - state.tau_Y, tau[2] - state.tau_N
     N = N / design.yaw_lever**2

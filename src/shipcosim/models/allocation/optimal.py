@@ -203,7 +203,7 @@ class OptimalUnitsParameters(numbered_units(_fields), BalanceParameters, FixedAn
         300.0,
         "m",
         "the same where the units left cannot hold both: position before heading",
-        "as of R/V Gunnerus, assumed",
+        "assumed: beyond the levers of most ships",
         minimum=0.1,
     )
     turning_time: float = quantity(

@@ -123,8 +123,8 @@ class Turned(NamedTuple):
         True where limits or missing units keep the commands from meeting the request. [1]
     marginal : tuple of three, like a thrust
         Power that one unit more of each load would cost. [W/N, W/N, W/(N.m)]
-    memory : ConeMemory, optional
-        What the choice of cones remembers. [as its fields]
+    memory : ConeMemory or DetourMemory, optional
+        What the choice of cones remembers, or which units are on a detour. [as its fields]
     average : Averaged, optional
         Request of the last minute. [as its fields]
     """
@@ -136,8 +136,8 @@ class Turned(NamedTuple):
     tau_N: Arithmetic
     saturated: Arithmetic
     marginal: tuple
-    memory: tuple = ()
-    average: tuple = ()
+    memory: Any = ()
+    average: Any = ()
 
 
 def designed(
