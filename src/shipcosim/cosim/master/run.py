@@ -211,7 +211,7 @@ class Simulation:
             master = self.begin(slaves, check_interrupt)
             actions = event_actions(self._scenario, self.plan, self.exchanges, grid)
             if self._realtime is not None:
-                add_pace(actions, grid, self._realtime)
+                add_pace(actions, grid, self._realtime, check_interrupt)
             master.run(grid, actions, self._external, self.recorders, progress)
         # An FMU may end the run: the rows until then are the result.
         except Ended as end:
