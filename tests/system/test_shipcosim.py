@@ -190,9 +190,25 @@ def test_folders_of_fmus_that_are_none_are_refused(folders):
         sc.run("gust", stop_time=0.1, fmus=folders)
 
 
+@pytest.mark.parametrize("failures", [[5], b"bus", [None, "port"]])
+def test_failures_that_are_no_names_are_refused(failures):
+    with pytest.raises(sc.ShipcosimError, match="neither a path nor a name"):
+        sc.capability(failures=failures)
+
+
 def test_an_argument_that_is_none_is_as_good_as_left_out():
     """Callers pass on what their own callers left out."""
     alone = sc.simulate("gunnerus_open", stop_time=0.1, step_size=0.1)
     nothing = dict.fromkeys(("events", "record", "engine", "timeout", "progress", "force", "order"))
     same = sc.simulate("gunnerus_open", stop_time=0.1, step_size=0.1, **nothing)
     assert same.table.identical(alone.table)
+
+
+@pytest.mark.parametrize("count", [-1, 2.0, "2", True])
+def test_a_count_is_a_whole_number_that_is_not_negative(count):
+    """A negative one hung, or left out the last runs of a study."""
+    words = " = .* Give a whole number from 0 on"
+    with pytest.raises(sc.ShipcosimError, match="workers" + words):
+        sc.simulate_many("gunnerus_open", variations=[{}], stop_time=0.1, workers=count)
+    with pytest.raises(sc.ShipcosimError, match="at_most" + words):
+        sc.sweep("wind_limits", at_most=count)

@@ -20,7 +20,7 @@ KINDS: dict[str, tuple[Any, str]] = {
     "PathLike": (os.PathLike, "a path"),
     "bool": (bool, "True or False"),
     "float": (Real, "a number"),
-    "int": (Integral, "a whole number"),
+    "int": (Integral, "a whole number from 0 on"),
     "Iterable": (Iterable, "a list"),
     "Sequence": (Iterable, "a list"),
     "Callable": (Callable, "a function"),
@@ -105,7 +105,8 @@ def _other_kind(annotation: str, value: Any) -> str:
     # Classes are known by their names: importing xarray takes longer than most calls.
     names = {one.__name__ for one in type(value).__mro__}
     for kind in kinds:
-        is_of_kind = kind in names or isinstance(value, KINDS[kind][0])
-        if is_of_kind and (kind == "bool" or "bool" not in names):
+        fits = kind in names or isinstance(value, KINDS[kind][0])
+        # True is a number to Python; counts are not negative.
+        if fits and (kind == "bool" or "bool" not in names) and (kind != "int" or value >= 0):
             return ""
     return " or ".join(dict.fromkeys(filter(None, (KINDS[kind][1] for kind in kinds))))

@@ -49,6 +49,14 @@ def test_replay_of_one_system_has_no_before(call, gunnerus, log):
     assert done.code == 0 and "simulated" in done.out and "before" not in done.out
 
 
+@pytest.mark.parametrize("horizon", ["0", "-5", "0.05", "1e-9"])
+def test_a_prediction_shorter_than_a_step_is_refused(call, gunnerus, log, horizon):
+    refused = call("replay", log, "--system", "otter_open", f"--horizon={horizon}", "--out", "out")
+    assert refused.code == 2 and refused.err.count("error:") == 1
+    assert "is shorter than a step of 0.2 s. Ask for longer predictions." in refused.err
+    assert not (gunnerus / "out").exists()
+
+
 def test_replay_refuses_what_is_not_there(call, gunnerus):
     assert (
         "There is no such file of measured data"
