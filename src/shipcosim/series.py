@@ -619,6 +619,9 @@ def _plain(values: np.ndarray | tuple[str, ...]) -> tuple[np.ndarray, bool]:
         return np.where(np.isnat(values), np.nan, values / np.timedelta64(1, "s")), True
     if values.dtype.kind == "M":
         return _seconds_of(values), True
+    # Python takes 1_000 for a number; in a table it is a text, as it is in a log.
+    if any("_" in str(value) for value in values):
+        return values, False
     try:
         return values.astype(float), False
     except (ValueError, TypeError):

@@ -176,6 +176,7 @@ def test_tables_of_spreadsheets_are_read(tmp_path, content):
     [
         ("x [m]\n1.0\n", "no column 'time'"),
         ("time [s],x [m]\n0,left\n", "column 'x'.*not numbers"),
+        ("time [s],x [m]\n0,1_000\n1,2_000\n", "column 'x'.*not numbers, as '1_000'"),
         ("time [s],x [m],x [m]\n0,1,2\n", "'x'.*twice"),
         ("time [s],x [m]\n0,1,2\n", "row 2: has 3 cells, and the header has 2"),
     ],

@@ -51,7 +51,7 @@ def with_known_keywords(function: Function) -> Function:
     Examples
     --------
     >>> @with_known_keywords
-    ... def sail(*, speed: "float" = 1.0): ...
+    ... def sail(*, speed: float = 1.0): ...
     >>> sail(sped=2.0)
     Traceback (most recent call last):
     shipcosim.errors.ShipcosimError: sail(): There is no keyword 'sped'. There is: speed. Did you mean 'speed'?
