@@ -7,6 +7,7 @@ take most of a second, which a command that only prints its help should not pay.
 from __future__ import annotations
 
 import csv
+import errno
 import gzip
 import io
 import json
@@ -239,11 +240,10 @@ def write_file(path: str | os.PathLike, content: bytes) -> None:
         with replacement(path) as new:
             new.write_bytes(content)
     except OSError as error:
-        raise error_at(
-            str(path),
-            f"cannot be written: {error.strerror or error}.",
-            f"{len(content) / 1e6:.1f} MB are needed.",
-        ) from error
+        is_full = error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+        remedy = f"{len(content) / 1e6:.1f} MB are needed." if is_full else ""
+        found = f"cannot be written: {error.strerror or error}."
+        raise error_at(str(path), found, remedy) from error
 
 
 def write_json(content: Mapping[str, Any], path: str | os.PathLike) -> None:

@@ -229,7 +229,7 @@ def test_a_failed_write_keeps_the_old_file(tmp_path):
     with pytest.raises(TypeError):
         write_file(tmp_path / "page.html", "not bytes")
     assert (tmp_path / "page.html").read_text() == "old" and len(list(tmp_path.iterdir())) == 1
-    with pytest.raises(ShipcosimError, match="cannot be written: No such file or directory"):
+    with pytest.raises(ShipcosimError, match=r"cannot be written: No such file or directory\.$"):
         write_file(tmp_path / "nowhere" / "page.html", b"new")
 
 

@@ -9,7 +9,6 @@ from typing import Any
 from shipcosim.errors import Problem, raise_errors
 from shipcosim.units import value_of
 
-
 QUOTED = re.compile(r'\s*"([^"]+)"\s*(=)(.*)', re.DOTALL)
 """A setting whose name is in quotes, as in a scenario: it may have an = in it."""
 

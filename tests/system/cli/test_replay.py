@@ -1,5 +1,8 @@
 """The command `replay`: what it compares, what it leaves, what it refuses."""
 
+import subprocess
+import sys
+
 import pytest
 
 import shipcosim as sc
@@ -54,6 +57,21 @@ def test_a_prediction_shorter_than_a_step_is_refused(call, gunnerus, log, horizo
     refused = call("replay", log, "--system", "otter_open", f"--horizon={horizon}", "--out", "out")
     assert refused.code == 2 and refused.err.count("error:") == 1
     assert "is shorter than a step of 0.2 s. Ask for longer predictions." in refused.err
+    assert not (gunnerus / "out").exists()
+
+
+LIMITED = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits the size of files by POSIX's setrlimit")
+def test_a_full_disk_is_one_error_and_leaves_nothing(gunnerus, log):
+    code = f"{LIMITED}; from shipcosim.cli import main; main()"
+    words = ["replay", log, "--system", "otter_open", "--horizon", "20", "--out", "out"]
+    done = subprocess.run(
+        [sys.executable, "-c", code, *words], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 2 and done.stderr.count("error:") == 1
+    assert "out/replay.nc:\ncannot be written: File too large." in done.stderr
     assert not (gunnerus / "out").exists()
 
 
