@@ -81,7 +81,6 @@ def _texts(system: System, progress: CountProgress | None) -> dict[str, str]:
     known: dict[Any, str] = {}
     with delayed_interrupt() as check_interrupt, Instances() as instances:
         for done, component in enumerate(system.components.values(), start=1):
-            check_interrupt()
             # Components that share FMU and start values share their text.
             key = component.fmu.path, repr(sorted(component.start.items()))
             try:
@@ -92,6 +91,7 @@ def _texts(system: System, progress: CountProgress | None) -> dict[str, str]:
                 problems.append(Problem(component.name, f"has no native code: {reason}.", REMEDY))
             if progress is not None:
                 progress(done, len(system.components))
+            check_interrupt()
     if problems:
         raise NotForPages(problems)
     return found
