@@ -13,13 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors
-from shipcosim.temporary import (
-    exchange,
-    numbered,
-    replacement,
-    say_kept,
-    temporary_folder,
-)
+from shipcosim.temporary import exchange, numbered, say_kept, temporary_folder
 
 WRITING = "writing the page"
 """What a progress function gets at the end, where results are written."""
@@ -133,27 +127,3 @@ def set_file_aside(path: Path, *, force: bool = False) -> None:
         aside = numbered(path.resolve())
         os.replace(path, aside)
         say_kept(aside)
-
-
-@contextmanager
-def replaced(path: Path, *, force: bool = True) -> Iterator[Path]:
-    """Path of a file to write, which then replaces another in one step; its folder is made if needed.
-
-    Parameters
-    ----------
-    path : Path
-    force : bool
-        Replace an earlier file instead of keeping it, as `set_file_aside` does.
-
-    Raises
-    ------
-    ShipcosimError
-        If it cannot be written.
-    """
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with replacement(path) as new:
-            yield new
-            set_file_aside(path, force=force)
-    except OSError as error:
-        raise error_at(str(path), f"Cannot be written: {error.strerror}.") from None

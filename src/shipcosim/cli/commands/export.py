@@ -65,7 +65,8 @@ def fmu(
     from shipcosim.cli.requests import parsed_components
     from shipcosim.cosim import export_fmu
     from shipcosim.ssp import with_values
-    from shipcosim.staging import replaced
+    from shipcosim.ssp.xml.archive import replaced
+    from shipcosim.staging import set_file_aside
     from shipcosim.temporary import temporary_folder
 
     reading = Reading(
@@ -83,8 +84,9 @@ def fmu(
         remarks = export_fmu(
             system, made, step, connectors_only=connectors_only, check=not unchecked
         )
-        with replaced(target, force=force) as new:
+        with replaced(target) as new:
             new.write_bytes(made.read_bytes())
+            set_file_aside(target, force=force)
     print_problems(remarks)
     say(shown_path(target))
 

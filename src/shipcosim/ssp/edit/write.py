@@ -13,11 +13,10 @@ from shipcosim.ssp.flatten.assemble import assemble_package
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.read.package import open_package
 from shipcosim.ssp.read.parameters import ParameterValue
-from shipcosim.ssp.xml.archive import write_archive
+from shipcosim.ssp.xml.archive import replaced, write_archive
 from shipcosim.ssp.xml.document import AnyPath, Findings, qualified
 from shipcosim.ssp.xml.markup import add, ensure, to_bytes
 from shipcosim.ssp.xml.values import Value
-from shipcosim.staging import replaced
 from shipcosim.units import find_unit
 
 KIND_OF = {bool: "Boolean", int: "Integer", float: "Real", str: "String", bytes: "Binary"}

@@ -3,13 +3,14 @@
 import stat
 import zipfile
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 
 from shipcosim.dialects import LFS_POINTER
 from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.ssp.xml.document import AnyPath
-from shipcosim.staging import replaced
+from shipcosim.temporary import replacement
 
 MOST_ENTRIES = 20_000
 LARGEST_TOTAL = 2**30  # bytes, unpacked
@@ -209,3 +210,20 @@ def write_archive(path: AnyPath, files: Mapping[str, bytes]) -> None:
                 zipfile.ZIP_STORED if name.endswith((".fmu", ".ssp")) else zipfile.ZIP_DEFLATED
             )
             archive.writestr(entry, files[name], compresslevel=9)
+
+
+@contextmanager
+def replaced(path: Path) -> Iterator[Path]:
+    """Path of a file to write, which then replaces another in one step; its folder is made if needed.
+
+    Raises
+    ------
+    ShipcosimError
+        If it cannot be written.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with replacement(path) as partial:
+            yield partial
+    except OSError as error:
+        raise error_at(str(path), f"Cannot be written: {error.strerror}.") from None
