@@ -6,7 +6,7 @@ import sys
 import pytest
 
 import shipcosim as sc
-from shipcosim.series import write_table
+from shipcosim.series import read_table, write_table
 from shipcosim.ssp import read_system, with_values
 
 SSV = """<?xml version="1.0"?><ssv:ParameterSet version="1.0" name="extended"
@@ -58,6 +58,17 @@ def test_a_prediction_shorter_than_a_step_is_refused(call, gunnerus, log, horizo
     assert refused.code == 2 and refused.err.count("error:") == 1
     assert "is shorter than a step of 0.2 s. Ask for longer predictions." in refused.err
     assert not (gunnerus / "out").exists()
+
+
+def test_what_is_handled_in_a_log_stands_on_the_terminal_as_on_the_page(call, gunnerus, log):
+    whole = read_table(log)
+    write_table(whole.drop_isel(time=range(300, 500)), gunnerus / "gap.nc")
+    done = call("replay", "gap.nc", "--system", "otter_open", "--horizon", "20", "--out", "out")
+    page = (gunnerus / "out" / "report.html").read_text(encoding="utf-8")
+    assert done.code == 0
+    for text in (done.out, page):
+        assert "gap: there are no rows" in text
+        assert "200 rows of the usual step 0.1 s not there" in text
 
 
 LIMITED = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))"
