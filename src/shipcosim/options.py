@@ -9,6 +9,7 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Real
+from sys import float_info
 from typing import TYPE_CHECKING, TypedDict
 
 from shipcosim.errors import error_at
@@ -92,7 +93,7 @@ class RunOptions:
 
     def __post_init__(self):
         pace = self.realtime
-        if pace is not None and not (isinstance(pace, Real) and 0.0 < pace < float("inf")):
+        if pace is not None and not (isinstance(pace, Real) and 0.0 < pace <= float_info.max):
             found = f"{pace!r:.60} is no pace."
             raise error_at(
                 "realtime", found, "Give a positive number: 1.0 is as fast as the clock."

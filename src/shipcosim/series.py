@@ -7,6 +7,7 @@ take most of a second, which a command that only prints its help should not pay.
 from __future__ import annotations
 
 import csv
+import errno
 import gzip
 import io
 import json
@@ -239,11 +240,10 @@ def write_file(path: str | os.PathLike, content: bytes) -> None:
         with replacement(path) as new:
             new.write_bytes(content)
     except OSError as error:
-        raise error_at(
-            str(path),
-            f"cannot be written: {error.strerror or error}.",
-            f"{len(content) / 1e6:.1f} MB are needed.",
-        ) from error
+        is_full = error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+        remedy = f"{len(content) / 1e6:.1f} MB are needed." if is_full else ""
+        found = f"cannot be written: {error.strerror or error}."
+        raise error_at(str(path), found, remedy) from error
 
 
 def write_json(content: Mapping[str, Any], path: str | os.PathLike) -> None:
@@ -619,6 +619,9 @@ def _plain(values: np.ndarray | tuple[str, ...]) -> tuple[np.ndarray, bool]:
         return np.where(np.isnat(values), np.nan, values / np.timedelta64(1, "s")), True
     if values.dtype.kind == "M":
         return _seconds_of(values), True
+    # Python takes 1_000 for a number; in a table it is a text, as it is in a log.
+    if any("_" in str(value) for value in values):
+        return values, False
     try:
         return values.astype(float), False
     except (ValueError, TypeError):

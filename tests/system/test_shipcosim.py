@@ -154,23 +154,61 @@ def test_a_time_that_is_none_is_refused_by_name(name, wrong):
         )
 
 
-@pytest.mark.parametrize("wrong", ["table.csv", {"port_rpm": [1.0]}, 3])
-def test_inputs_that_are_no_table_are_refused(wrong):
-    with pytest.raises(sc.ShipcosimError, match="is no table.*read_table"):
-        sc.simulate("gunnerus_open", stop_time=1.0, step_size=0.1, inputs=wrong)
+WRONG_KINDS = [
+    ("engine", 3, "engine = 3. Give a text"),
+    ("engine", [], "engine = .* Give a text"),
+    ("parameters", [3], "parameters: 3 is neither a path nor a name"),
+    ("parameters", 3, "parameters = 3. Give a path or name or a list"),
+    ("record", 3.5, "record = 3.5. Give a path or name or a list"),
+    ("events", 3, "events = 3. Give a list"),
+    ("events", sc.Scenario, "events = .* Give a list"),
+    ("realtime", "fast", "realtime = 'fast'. Give a number"),
+    ("realtime", True, "realtime = True. Give a number"),
+    ("realtime", 10**400, "is no pace. Give a positive number"),
+    ("out", 3, "out = 3. Give a path or name"),
+    ("out", b"results", "out = b'results'. Give a path or name"),
+    ("scenario", 5, "scenario = 5. Give a path or name or a Scenario"),
+    ("inputs", "table.csv", "inputs = 'table.csv'. Give a Dataset, as of shipcosim.read_table"),
+    ("inputs", {"port_rpm": [1.0]}, "inputs = .* Give a Dataset, as of shipcosim.read_table"),
+    ("progress", 5, "progress = 5. Give a function"),
+    ("resume", 5, "resume = 5. Give a Snapshot or a text or a path"),
+    ("store", [], r"store = \[\]. Give a function or a text or a path"),
+    ("force", "no", "force = 'no'. Give True or False"),
+    ("isolate", 1, "isolate = 1. Give True or False"),
+]
 
 
-@pytest.mark.parametrize(
-    ("argument", "wrong", "message"),
-    [
-        ("engine", 3, "There is no engine '3'"),
-        ("order", None, "There is no order of exchange 'None'"),
-        ("parameters", [3], "parameters: 3 is neither a path nor a name"),
-        ("record", 3.5, "record: 3.5 is neither a path nor a name"),
-        ("realtime", "fast", "'fast' is no pace"),
-        ("out", 3, "out: 3 is neither a path nor a name"),
-    ],
-)
+@pytest.mark.parametrize(("argument", "wrong", "message"), WRONG_KINDS)
 def test_an_argument_of_a_wrong_type_is_refused_by_name(argument, wrong, message):
     with pytest.raises(sc.ShipcosimError, match=message):
-        sc.simulate("gunnerus_open", stop_time=1.0, step_size=0.1, **{argument: wrong})
+        sc.simulate("gunnerus_open", **{"stop_time": 1.0, "step_size": 0.1, argument: wrong})
+
+
+@pytest.mark.parametrize("folders", [[5], b"fmus", 5])
+def test_folders_of_fmus_that_are_none_are_refused(folders):
+    with pytest.raises(sc.ShipcosimError, match="fmus"):
+        sc.run("gust", stop_time=0.1, fmus=folders)
+
+
+@pytest.mark.parametrize("failures", [[5], b"bus", [None, "port"]])
+def test_failures_that_are_no_names_are_refused(failures):
+    with pytest.raises(sc.ShipcosimError, match="neither a path nor a name"):
+        sc.capability(failures=failures)
+
+
+def test_an_argument_that_is_none_is_as_good_as_left_out():
+    """Callers pass on what their own callers left out."""
+    alone = sc.simulate("gunnerus_open", stop_time=0.1, step_size=0.1)
+    nothing = dict.fromkeys(("events", "record", "engine", "timeout", "progress", "force", "order"))
+    same = sc.simulate("gunnerus_open", stop_time=0.1, step_size=0.1, **nothing)
+    assert same.table.identical(alone.table)
+
+
+@pytest.mark.parametrize("count", [-1, 2.0, "2", True])
+def test_a_count_is_a_whole_number_that_is_not_negative(count):
+    """A negative one hung, or left out the last runs of a study."""
+    words = " = .* Give a whole number from 0 on"
+    with pytest.raises(sc.ShipcosimError, match="workers" + words):
+        sc.simulate_many("gunnerus_open", variations=[{}], stop_time=0.1, workers=count)
+    with pytest.raises(sc.ShipcosimError, match="at_most" + words):
+        sc.sweep("wind_limits", at_most=count)

@@ -186,7 +186,7 @@ class Reading:
         if isinstance(given, SystemStructure):
             return given.checked(parameters, swapped)
         path = _path_of_system(given, argument)
-        folders = [*self.fmus, *library.fmus(path)]
+        folders = [*listed(self.fmus, "fmus"), *library.fmus(path)]
         return read_system(path, parameters, fmus=folders, components=swapped, strict=self.strict)
 
     def system_of_scenario(self, scenario: Scenario) -> System:
@@ -199,7 +199,7 @@ class Reading:
             parameters=[Path(one) for one in listed(self.parameters)],
             components=fmus_of(self.components),
             strict=self.strict,
-            fmus=[Path(one) for one in self.fmus],
+            fmus=[Path(one) for one in listed(self.fmus, "fmus")],
         )
 
 

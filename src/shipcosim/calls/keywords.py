@@ -1,39 +1,73 @@
-"""Errors for unknown keywords of a call, in one sentence."""
+"""Errors for the arguments of a call, in one sentence: unknown keywords, values of another type."""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Iterable
 from functools import wraps
+from numbers import Integral, Real
 from typing import Any, TypeVar, cast
 
-from shipcosim.calls.arguments import path_or_name
 from shipcosim.errors import Problem, error_at, raise_errors, suggestion
 from shipcosim.options import RunKeywords
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
+KINDS: dict[str, tuple[Any, str]] = {
+    "AnyPath": ((str, os.PathLike), "a path or name"),
+    "str": (str, "a text"),
+    "PathLike": (os.PathLike, "a path"),
+    "bool": (bool, "True or False"),
+    "float": (Real, "a number"),
+    "int": (Integral, "a whole number from 0 on"),
+    "Iterable": (Iterable, "a list"),
+    "Sequence": (Iterable, "a list"),
+    "Callable": (Callable, "a function"),
+    "CountProgress": (Callable, "a function"),
+    "Progress": (Callable, "a function"),
+    "Scenario": ((), "a Scenario"),
+    "Dataset": ((), "a Dataset, as of shipcosim.read_table(FILE)"),
+    "DataFrame": ((), "a DataFrame"),
+    "Snapshot": ((), "a Snapshot"),
+    "Reference": ((), "a Reference"),
+    "None": ((), ""),
+}
+"""What values of an annotation are, and words for it. Whatever has another part is checked by the function itself."""
+
+MEANT = {"AnyScenario": "AnyPath | Scenario", "Sequence[AnyPath]": "AnyPath | Sequence"}
+"""What an alias stands for, and that a single path is as good as a list of it."""
+
+TIME = {"float", "str"}
+"""Parts of a time: its function says in which unit it is wanted."""
+
 
 def with_known_keywords(function: Function) -> Function:
-    """A function that refuses arguments it does not have with a ShipcosimError, before it does anything.
+    """A function that refuses arguments it does not have, or of another type, before it does anything.
 
-    ``**options`` of a function are those of `shipcosim.options.RunKeywords`.
+    It raises ShipcosimError. A keyword that is None is as good as left out. ``**options`` of a function are those of
+    `shipcosim.options.RunKeywords`.
 
     Examples
     --------
     >>> @with_known_keywords
-    ... def sail(*, speed=1.0): ...
+    ... def sail(*, speed: float = 1.0): ...
     >>> sail(sped=2.0)
     Traceback (most recent call last):
     shipcosim.errors.ShipcosimError: sail(): There is no keyword 'sped'. There is: speed. Did you mean 'speed'?
+    >>> sail(speed="fast")
+    Traceback (most recent call last):
+    shipcosim.errors.ShipcosimError: sail(): speed = 'fast'. Give a number.
     """
     signature = inspect.signature(function)
     parameters = signature.parameters.values()
-    known = [
-        one.name for one in parameters if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)
-    ]
+    known = {
+        one.name: one.annotation
+        for one in parameters
+        if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)
+    }
     if any(one.kind is one.VAR_KEYWORD for one in parameters):
-        known += RunKeywords.__annotations__
+        known |= {name: kind.__forward_arg__ for name, kind in RunKeywords.__annotations__.items()}
 
     @wraps(function)
     def call(*arguments, **keywords):
@@ -44,14 +78,35 @@ def with_known_keywords(function: Function) -> Function:
             if k not in known
         ]
         raise_errors(unknown)
+        keywords = {name: value for name, value in keywords.items() if value is not None}
         try:
             given = signature.bind(*arguments, **keywords).arguments
         except TypeError as error:
             text = str(error)
             remedy = f"Its form is {function.__name__}({', '.join(known)})."
             raise error_at(where, f"{text[:1].upper()}{text[1:]}.", remedy) from None
-        if given.get("out") is not None:
-            path_or_name("out", given["out"])
+        wrong = []
+        for name, value in {**given, **keywords}.items():
+            if wanted := _other_kind(str(known.get(name)), value):
+                wrong.append(Problem(where, f"{name} = {value!r:.60}.", f"Give {wanted}."))
+        raise_errors(wrong)
         return function(*arguments, **keywords)
 
     return cast(Function, call)
+
+
+def _other_kind(annotation: str, value: Any) -> str:
+    """Words for what an annotation wants where a value is something else; empty if it fits."""
+    for alias, meant in MEANT.items():
+        annotation = annotation.replace(alias, meant)
+    kinds = [part.partition("[")[0].rpartition(".")[2] for part in annotation.split(" | ")]
+    if value is None or not set(kinds) <= set(KINDS) or set(kinds) >= TIME:
+        return ""
+    # Classes are known by their names: importing xarray takes longer than most calls.
+    names = {one.__name__ for one in type(value).__mro__}
+    for kind in kinds:
+        fits = kind in names or isinstance(value, KINDS[kind][0])
+        # True is a number to Python; counts are not negative.
+        if fits and (kind == "bool" or "bool" not in names) and (kind != "int" or value >= 0):
+            return ""
+    return " or ".join(dict.fromkeys(filter(None, (KINDS[kind][1] for kind in kinds))))

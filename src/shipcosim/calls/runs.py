@@ -569,9 +569,6 @@ def fed_by(
                 f"Give one as {named('inputs')}.",
             )
         return None
-    if not hasattr(table, "data_vars"):
-        found = f"A {type(table).__name__} is no table."
-        raise error_at(named("inputs"), found, "Give shipcosim.read_table(FILE), a Dataset.")
     longest = in_seconds({"max_gap": max_gap}, ["max_gap"])["max_gap"]
     table = interpolated(table, system, interpolate)
     return table if longest is None else table.assign_attrs(max_gap=longest)
@@ -606,7 +603,7 @@ def changes(
     texts = [f"{name} = {_text(value)}" for name, value in start_values.items()]
     texts += [f"parameter set {Path(one).name}" for one in listed(parameters)]
     texts += [f"{name} runs {Path(fmu).name}" for name, fmu in (components or {}).items()]
-    texts += [f"FMUs of folder {Path(one).name}" for one in fmus]
+    texts += [f"FMUs of folder {Path(one).name}" for one in listed(fmus)]
     if options.engine != RunOptions.engine:
         texts.append(f"engine {options.engine}")
     if options.order != RunOptions.order:

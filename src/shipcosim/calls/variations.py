@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ from shipcosim.calls.arguments import (
     AnyTime,
     Components,
     Settings,
+    listed,
     mapping,
     read_scenario,
     scenario_of,
@@ -110,13 +112,13 @@ def simulate_many(
         scenario, ship, times | {"set": mapping("set", set), "events": list(events)}
     )
     varied = [_variation(ship, happening, dict(entries)) for entries in _records(variations)]
-    wanted = [record] if isinstance(record, str) else record
+    wanted = [os.fspath(one) for one in listed(record, "record")]
     return run_variations(
         with_values(ship, happening.set, str(happening.path or "scenario")),
         happening,
         varied,
         RunOptions(engine=engine, start_time=start_time, progress=progress),
-        choose=tuple if wanted is None else lambda names: chosen(names, wanted),
+        choose=tuple if record is None else lambda names: chosen(names, wanted),
         reduce=reduce,
         workers=workers,
     )

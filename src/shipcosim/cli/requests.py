@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 from shipcosim.errors import Problem, raise_errors
 from shipcosim.units import value_of
+
+QUOTED = re.compile(r'\s*"([^"]+)"\s*(=)(.*)', re.DOTALL)
+"""A setting whose name is in quotes, as in a scenario: it may have an = in it."""
 
 
 def parsed_settings(settings: Iterable[str]) -> dict[str, Any]:
@@ -16,11 +20,14 @@ def parsed_settings(settings: Iterable[str]) -> dict[str, Any]:
     --------
     >>> parsed_settings(["vessel.mass=5e5", "port.failed=true", "environment.spectrum=kaimal"])
     {'vessel.mass': 500000.0, 'port.failed': True, 'environment.spectrum': 'kaimal'}
+    >>> parsed_settings(['"table.k=2"=0.5', "note.text=a=b"])
+    {'table.k=2': 0.5, 'note.text': 'a=b'}
     """
     values = {}
     problems = []
     for setting in settings:
-        name, sign, text = setting.partition("=")
+        quoted = QUOTED.fullmatch(setting)
+        name, sign, text = quoted.groups() if quoted else setting.partition("=")
         if not sign or not name.strip():
             problems.append(
                 Problem(

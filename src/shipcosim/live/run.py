@@ -42,6 +42,9 @@ MOST_AT_ONCE = 4096
 EVERY, RECENT, MOST_STATES = 5.0, 60.0, 80
 """Time between two states to go back to, the age up to which all are kept, and their number. [s, s, 1]"""
 
+NUMBERS = {"Real": int | float, "Integer": int, "Boolean": bool}
+"""What a page sends for a signal of each kind."""
+
 Change = tuple[int, str, str, Any]
 """Step before which it acts; override, bias or reset; signal; value."""
 
@@ -263,9 +266,11 @@ class LiveRun:
             kinds = [plan.kind_of(end)]
             modifiers_of(end, plan, self._simulation.exchanges)
         number = 0 if action == "reset" else value
-        is_small = kinds == ["Real"] or abs(number) < 2**31
-        fits = isinstance(number, int | float) and isfinite(number) and bool(kinds) and is_small
-        if action not in ("override", "bias", "reset") or not fits or int(step) < self._now:
+        # The saved scenario takes an Integer and a Boolean as such only.
+        fits = isfinite(number) and (kinds == ["Real"] or abs(number) < 2**31)
+        is_of_kind = action == "reset" or isinstance(number, NUMBERS[kinds[0]])
+        is_action = action in ("override", "bias", "reset")
+        if not (is_action and fits and is_of_kind) or int(step) < self._now:
             raise ValueError(name)
         return int(step), action, str(name), number
 

@@ -103,7 +103,9 @@ def run_compiler(arguments: Sequence[str], folder: Path | str, goal: str = "") -
     command = [sys.executable, "-m", "ziglang", "cc", *arguments]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode:
-        raise error_at(f"compiler{goal}", f"fails: {done.stderr.strip()[:1000]}")
+        # A crash, as on a full disk, leaves no words.
+        reason = done.stderr.strip()[:1000] or f"it ends with code {done.returncode}."
+        raise error_at(f"compiler{goal}", f"fails: {reason}")
 
 
 def kept(key: object, suffix: str, make: Callable[[], bytes]) -> bytes:

@@ -130,7 +130,9 @@ class Replay(SavedResult, LogReplay):
     def write(self, stage: Path) -> None:
         """Write report.html, errors.csv and replay.nc into a folder that is there."""
         self.to_pandas().reset_index().to_csv(stage / "errors.csv", index=False)
-        series_of(self.tracks).to_netcdf(stage / "replay.nc", engine="h5netcdf")
+        # Made in memory: on a full disk HDF5 ends the process.
+        content = series_of(self.tracks).to_netcdf(engine="h5netcdf")
+        write_file(stage / "replay.nc", bytes(content))
         super().write(stage)
 
 

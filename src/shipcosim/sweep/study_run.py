@@ -92,6 +92,9 @@ def run_study(
     check_installed()
     if engine not in ENGINES:
         raise error_at("engine", f"engine = {engine!r}.", "Studies are run by 'native' or 'fmpy'.")
+    if scheduler is not None and workers is not None:
+        found = f"workers = {workers}, but the scheduler has workers of its own."
+        raise error_at("workers (--workers)", found, "Leave one of them out.")
     # The store knows which runs are done, also from an interrupted study.
     store = Store(folder, plan, engine, force)
     search = Search(plan) if plan.study.tune else None

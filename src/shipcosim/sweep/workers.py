@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import pickle
 import signal
@@ -131,6 +132,10 @@ class Cluster(Workers):
     def __init__(self, plan: Plan, engine: str, address: str):
         with imported("--scheduler", "Dask is not installed.", "cluster"):
             from distributed import Client
+        # A cluster that ends is told in one sentence, not by tracebacks of the client's tasks.
+        for name in ("distributed.client", "distributed.core", "distributed.utils"):
+            logging.getLogger(name).setLevel(logging.CRITICAL)
+        self._where = f"--scheduler {address}"
         try:
             self._client = Client(address, timeout=10, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
@@ -138,17 +143,17 @@ class Cluster(Workers):
                 "Start one: dask scheduler, and on each machine dask worker ADDRESS --nthreads 1."
             )
             found = f"No scheduler of Dask answers: {str(error) or type(error).__name__}."
-            raise error_at(f"--scheduler {address}", found, remedy) from None
+            raise error_at(self._where, found, remedy) from None
         self.n = len(self._client.scheduler_info(n_workers=-1)["workers"])
         if not self.n:
             self._client.close()
             found = "It has no worker."
             remedy = f"Start some: dask worker {address} --nthreads 1."
-            raise error_at(f"--scheduler {address}", found, remedy)
+            raise error_at(self._where, found, remedy)
         # The job goes to all workers once; each chunk then only refers to it.
         self._packed: PackedJob = pack(plan, engine, with_fmus=True)
         self._executor = self._client.get_executor(pure=False, retries=2)
-        self._job: Any = self._client.scatter(self._packed, broadcast=True, hash=False)
+        self.renew()
 
     def submit(self, runs: Sequence[PlannedRun]) -> Future[Chunk]:
         """See `Workers`."""
@@ -156,7 +161,12 @@ class Cluster(Workers):
 
     def renew(self) -> None:
         """Send the job to the workers that there are now."""
-        self._job = self._client.scatter(self._packed, broadcast=True, hash=False)
+        try:
+            self._job: Any = self._client.scatter(self._packed, broadcast=True, hash=False)
+        except OSError as error:
+            found = f"The cluster answers no more: {error}."
+            remedy = "Start it again, then the same command, which goes on."
+            raise error_at(self._where, found, remedy) from None
 
     def close(self) -> None:
         """See `Workers`."""

@@ -224,17 +224,33 @@ def test_exception_in_an_fmu_shows_its_traceback_component_and_time_and_keeps_th
 def test_ctrl_c_stops_at_once_and_keeps_what_there_is(project, send, pause, least):
     """In a group both the command and its child get it, and the child gets it again from the command."""
     set_ = ["--set", f"lag.pause={pause}", "--set", "lag.time_constant=1.0"]
-    running = command("run", "fill", *set_, start_new_session=True)
-    deadline = time.monotonic() + 30.0
-    while not (project / "stepping").exists() and time.monotonic() < deadline:
-        time.sleep(0.05)
-    time.sleep(0.5)
+    running = stepping(project, *set_)
     getattr(os, send)(running.pid, signal.SIGINT)
     out, err = running.communicate(timeout=300)
     assert running.returncode == 130 and "PARTIAL" in err and "Traceback" not in err and out == ""
     table = read_table(project / "results" / "fill" / "result-partial.nc")
     assert table.attrs["complete"] == 0 and least <= table.sizes["time"] < 51
     assert not (project / "results" / "fill" / "result.nc").exists()
+
+
+def stepping(project, *options):
+    """A run in a process of its own that has begun to step."""
+    running = command("run", "fill", *options, start_new_session=True)
+    deadline = time.monotonic() + 30.0
+    while not (project / "stepping").exists() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    time.sleep(0.5)
+    return running
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="see above")
+@pytest.mark.parametrize("pace", ["1e-3", "1e-300"])
+def test_ctrl_c_stops_a_run_that_waits_for_the_clock(project, pace):
+    """At these paces the second step is due after 100 s, or later than any clock can wait."""
+    running = stepping(project, "--set", "lag.pause=0.01", "--realtime", pace)
+    running.send_signal(signal.SIGINT)
+    _, err = running.communicate(timeout=20)
+    assert running.returncode == 130 and "PARTIAL" in err and "Traceback" not in err
 
 
 def test_complete_run_takes_away_the_partial_results_before_it(call, project):

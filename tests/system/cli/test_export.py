@@ -175,3 +175,16 @@ def test_commands_of_the_page_run(root, gunnerus, call):
     assert [line for line, code in codes.items() if code] == [
         line for line in lines if line.startswith(differing)
     ]
+
+
+def test_an_earlier_export_stays_where_none_can_be_made_and_is_kept_beside_a_new_one(
+    gunnerus, call
+):
+    assert call("export", "osp", "short", "--out", "out").code == 0
+    before = sorted(path.name for path in (gunnerus / "out").iterdir())
+    sixths = ["--stop-time", "1", "--step-size", str(1 / 6)]
+    refused = call("export", "osp", "short", "--out", "out", *sixths)
+    assert refused.code == 2 and "no whole number of nanoseconds" in refused.err
+    assert sorted(path.name for path in (gunnerus / "out").iterdir()) == before
+    assert "kept in out-1" in call("export", "osp", "short", "--out", "out").err
+    assert sorted(path.name for path in (gunnerus / "out-1").iterdir()) == before

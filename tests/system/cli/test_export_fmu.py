@@ -46,3 +46,18 @@ def test_what_cannot_be_expressed_is_said_and_nothing_is_left(call, project):
 def test_a_step_size_is_needed(call, project):
     result = call("export", "fmu", "ssp/tank")
     assert result.code == 2 and "--step-size" in result.err
+
+
+def test_an_earlier_fmu_stays_where_none_can_be_made_and_is_kept_beside_a_new_one(call, project):
+    (project / "tank.fmu").write_bytes(b"earlier")
+    call("build")
+    system = sc.read(project / "ssp" / "tank")
+    system.add_component("two", project / "build" / "fmus" / "lag.fmu")
+    system.connect("lag.y", "two.u", factor=2.0)
+    system.write(project / "two.ssp")
+    words = ["export", "fmu", "--unchecked", "--step-size", "0.1"]
+    assert call(*words, "two.ssp").code == 2
+    assert (project / "tank.fmu").read_bytes() == b"earlier"
+    assert call(*words, "ssp/tank").code == 0
+    assert (project / "tank-1.fmu").read_bytes() == b"earlier"
+    assert read_fmu(project / "tank.fmu").variables

@@ -113,6 +113,10 @@ def test_fenced_blocks_are_cells_of_code():
     ]
 
 
+def test_the_next_command_takes_a_folder_with_a_blank_in_its_name(call, empty):
+    assert "cd 'my ship' && shipcosim run" in call("init", "my ship").out
+
+
 def test_new_fmu_is_built_and_checked_by_name(call, empty):
     done = call("new", "fmu", "deck_winch")
     assert done.code == 0 and "Go on with" in done.out

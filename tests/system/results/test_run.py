@@ -210,7 +210,7 @@ REFUSED = {
     ),
     "nothing": ({}, "run\\(\\): Missing a required argument: 'scenario'"),
     "name": ({"scenario": "gsut"}, "There is no such scenario file.* Did you mean 'gust'"),
-    "number": ({"scenario": 3}, "3 is neither a path nor a name"),
+    "number": ({"scenario": 3}, "scenario = 3. Give a path or name or a Scenario"),
     "set": ({"scenario": "gust", "set": 3}, "set = 3"),
     "until": ({"scenario": "gust", "until": "5 kn"}, "until: '5 kn' is in kn"),
     "text": ({"scenario": "gust", "stop_time": "long"}, "stop_time = 'long'"),

@@ -66,3 +66,32 @@ def test_a_scheduler_that_is_not_there_is_said(project, monkeypatch):
     )
     with pytest.raises(ShipcosimError, match="No scheduler of Dask answers"):
         shipcosim.sweep("levels", out="out", engine="fmpy", scheduler="tcp://127.0.0.1:9")
+
+
+def test_a_cluster_whose_workers_are_all_gone_is_said_and_what_is_done_stays(
+    project, study, cluster
+):
+    path, killed = study(SLOW), []
+
+    def kill_all(done, total):
+        if done >= 3 and not killed:
+            cluster.scale(0)
+            killed.extend(worker.pid for worker in cluster.workers.values())
+            for pid in killed:
+                os.kill(pid, signal.SIGKILL)
+
+    with pytest.raises(ShipcosimError, match="answers no more.*the same command, which goes on"):
+        shipcosim.sweep(
+            path,
+            out="lost",
+            engine="fmpy",
+            scheduler=cluster.scheduler_address,
+            progress=kill_all,
+        )
+    assert killed
+    assert len(shipcosim.sweep(path, out="lost", engine="fmpy", at_most=0).runs) >= 3
+
+
+def test_workers_of_this_machine_beside_a_scheduler_are_refused(project):
+    with pytest.raises(ShipcosimError, match="workers = 2, but the scheduler has workers"):
+        shipcosim.sweep("levels", out="out", engine="fmpy", scheduler="tcp://a:1", workers=2)

@@ -65,7 +65,9 @@ def fmu(
     from shipcosim.cli.requests import parsed_components
     from shipcosim.cosim import export_fmu
     from shipcosim.ssp import with_values
+    from shipcosim.ssp.xml.archive import replaced
     from shipcosim.staging import set_file_aside
+    from shipcosim.temporary import temporary_folder
 
     reading = Reading(
         parameters=parameters or [], components=parsed_components(components or ()), strict=strict
@@ -75,11 +77,17 @@ def fmu(
     print_problems(system.deviations)
     system = with_values(system, scenario.set, what)
     target = out / f"{system.name}.fmu"
-    set_file_aside(target, force=force)
     step = scenario.step_size
-    print_problems(
-        export_fmu(system, target, step, connectors_only=connectors_only, check=not unchecked)
-    )
+    # An earlier FMU is set aside at the end: where nothing could be made, it stays.
+    with temporary_folder() as folder:
+        made = Path(folder, target.name)
+        remarks = export_fmu(
+            system, made, step, connectors_only=connectors_only, check=not unchecked
+        )
+        with replaced(target) as new:
+            new.write_bytes(made.read_bytes())
+            set_file_aside(target, force=force)
+    print_problems(remarks)
     say(shown_path(target))
 
 
@@ -249,8 +257,7 @@ def osp(
     Example: shipcosim export osp four_corner --out results/osp
     """
     from shipcosim.cli.console import print_problems, shown_path
-    from shipcosim.cosim.export.osp import SCENARIO, STRUCTURE, write_osp
-    from shipcosim.staging import set_aside
+    from shipcosim.cosim.export.osp import write_osp
 
     # OSP's structures need no end; events need one.
     system, scenario = _system_and_scenario(
@@ -261,7 +268,6 @@ def osp(
         needs_end=events is not None,
     )
     has_end = bool(stop_time or system.experiment.stop_time or scenario.path)
-    set_aside(out, [STRUCTURE, SCENARIO, *(file.name for file in out.glob("*.fmu"))], force=force)
-    print_problems(write_osp(system, scenario, out, has_end=has_end))
+    print_problems(write_osp(system, scenario, out, has_end=has_end, force=force))
     for path in sorted(out.glob("*")):
         say(shown_path(path))

@@ -1,5 +1,6 @@
 """The command `shipcosim init`."""
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -21,5 +22,5 @@ def init(
 
     for path in write_new(folder, project_files(folder.resolve().name)):
         say(path)
-    inside = "" if folder.resolve() == Path.cwd() else f"cd {folder} && "
+    inside = "" if folder.resolve() == Path.cwd() else f"cd {shlex.quote(str(folder))} && "
     say(f"\nGo on with: {inside}shipcosim run hold_position\nREADME.md says what is what.")

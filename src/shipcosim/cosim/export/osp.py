@@ -156,9 +156,16 @@ def _remarks(system, scenario):
 
 
 def write_osp(
-    system: System, scenario: Scenario, folder: str | os.PathLike, *, has_end: bool = True
+    system: System,
+    scenario: Scenario,
+    folder: str | os.PathLike,
+    *,
+    has_end: bool = True,
+    force: bool = True,
 ) -> list[Problem]:
     """Write the files of `osp_files` into a folder; complete or not at all. Arguments as there.
+
+    Without `force` an earlier export, with all FMUs, moves into a numbered folder beside it.
 
     Returns
     -------
@@ -176,7 +183,8 @@ def write_osp(
             for name, data in files.items():
                 (new / name).write_bytes(data)
             # A scenario of an earlier export would act on this system too.
-            exchange(Path(stage), folder, [SCENARIO], keep=False)
+            earlier = [] if force else [STRUCTURE, *(file.name for file in folder.glob("*.fmu"))]
+            exchange(Path(stage), folder, [SCENARIO, *earlier], keep=not force)
     except OSError as error:
         raise error_at(str(folder), f"Cannot be written: {error.strerror}.") from None
     return remarks

@@ -71,7 +71,16 @@ def event_actions(
     return dict(actions)
 
 
-def add_pace(actions: dict[int, list[Callable[[], None]]], grid: TimeGrid, realtime: float) -> None:
+LONGEST_SLEEP = 0.2
+"""Time after which a run that waits for the clock looks for Ctrl-C. Assumed: nobody notices it. [s]"""
+
+
+def add_pace(
+    actions: dict[int, list[Callable[[], None]]],
+    grid: TimeGrid,
+    realtime: float,
+    check_interrupt: Callable[[], None],
+) -> None:
     """Have each step wait until its time has come on the clock.
 
     Parameters
@@ -81,6 +90,8 @@ def add_pace(actions: dict[int, list[Callable[[], None]]], grid: TimeGrid, realt
     grid : TimeGrid
     realtime : float
         Seconds of the run in a second of the clock. A run that is late catches up.
+    check_interrupt : callable
+        Raises KeyboardInterrupt where the user wants to stop.
     """
     begin = 0.0
 
@@ -89,7 +100,9 @@ def add_pace(actions: dict[int, list[Callable[[], None]]], grid: TimeGrid, realt
         # The clock starts with the first step: loading the FMUs is no part of the run.
         begin = begin or perf_counter()
         due = begin + (grid.times[step] - grid.times[grid.first]) / realtime
-        sleep(max(due - perf_counter(), 0.0))
+        while (early := due - perf_counter()) > 0.0:
+            check_interrupt()
+            sleep(min(early, LONGEST_SLEEP))
 
     for step in range(grid.first, grid.last):
         actions.setdefault(step, []).append(partial(wait, step))

@@ -13,7 +13,7 @@ from shipcosim.cosim.master.time_grid import TimeGrid
 from shipcosim.cosim.slaves.interface_type import interface_type_of
 from shipcosim.cosim.slaves.pythonfmu_code import stores_registered_alone
 from shipcosim.cosim.slaves.slave import SlaveError
-from shipcosim.errors import Problem, raise_errors
+from shipcosim.errors import Problem, raise_errors, shortened
 from shipcosim.scenario import Scenario
 from shipcosim.snapshot import Snapshot
 from shipcosim.ssp import System
@@ -215,6 +215,11 @@ def restore_snapshot(
     Failure
         If an FMU does not take its state.
     """
+    # A row before the first step would else show values of the start.
+    shown = [label(end) for layout in plan.layouts.values() for end in layout.outputs]
+    if lost := sorted(set(shown) - set(snapshot.outputs)):
+        found = f"it has no value of {shortened(lost)}."
+        raise Failure(Problem(f"snapshot at {snapshot.time:g} s", found, "Store the state again."))
     # FMU states first, then the overrides, then the values in the arrays.
     for name, component in components.items():
         _stored(component, component.restore, snapshot.states[name])

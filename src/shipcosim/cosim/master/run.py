@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
@@ -211,7 +211,7 @@ class Simulation:
             master = self.begin(slaves, check_interrupt)
             actions = event_actions(self._scenario, self.plan, self.exchanges, grid)
             if self._realtime is not None:
-                add_pace(actions, grid, self._realtime)
+                add_pace(actions, grid, self._realtime, check_interrupt)
             master.run(grid, actions, self._external, self.recorders, progress)
         # An FMU may end the run: the rows until then are the result.
         except Ended as end:
@@ -371,7 +371,9 @@ class Simulation:
     def attributes(self, complete: bool) -> dict[str, object]:
         """Facts about the run. `complete` is 1 or 0, since NetCDF has no truth values."""
         known = attributes_of(self.plan.system, self._scenario)
-        known |= {"start_time": self._grid.start_time, "engine": self._engine, "order": self._order}
+        # Where nothing could be compiled, Python has stepped all.
+        engine = "fmpy" if ALL in self._in_python() else self._engine
+        known |= {"start_time": self._grid.start_time, "engine": engine, "order": self._order}
         if self._inputs is not None:
             known["inputs_sha256"] = digest(self._inputs)
         if self._grid.run_times[-1] < self._grid.times[-1]:
@@ -386,10 +388,13 @@ class Simulation:
             known["profile"] = self._profile.as_json()
         return known | {"complete": int(complete), "remarks": json.dumps(self.remarks())}
 
+    def _in_python(self) -> Mapping[str, str]:
+        """Why Python steps components that were to be compiled, by name."""
+        return self._master.reasons if isinstance(self._master, CompiledMaster) else {}
+
     def remarks(self) -> list[str]:
         """Remarks that do not stop the run, each once."""
-        master = self._master
-        in_python = master.reasons if isinstance(master, CompiledMaster) else {}
+        in_python = self._in_python()
         # Who leaves the engine to us need not know which component could not be compiled.
         if not self._is_asked and ALL not in in_python:
             in_python = {}

@@ -11,6 +11,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from shipcosim.cosim.master.interrupt import delayed_interrupt
 from shipcosim.cosim.master.plan import Plan
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.cosim.webassembly.wiring import NotForPages, Wiring
@@ -78,7 +79,7 @@ def _texts(system: System, progress: CountProgress | None) -> dict[str, str]:
     found = {}
     problems = []
     known: dict[Any, str] = {}
-    with Instances() as instances:
+    with delayed_interrupt() as check_interrupt, Instances() as instances:
         for done, component in enumerate(system.components.values(), start=1):
             # Components that share FMU and start values share their text.
             key = component.fmu.path, repr(sorted(component.start.items()))
@@ -90,6 +91,7 @@ def _texts(system: System, progress: CountProgress | None) -> dict[str, str]:
                 problems.append(Problem(component.name, f"has no native code: {reason}.", REMEDY))
             if progress is not None:
                 progress(done, len(system.components))
+            check_interrupt()
     if problems:
         raise NotForPages(problems)
     return found

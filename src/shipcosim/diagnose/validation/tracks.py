@@ -199,7 +199,10 @@ def _instruments(one: Replayed) -> tuple[dict[str, float], float]:
 def _segments(record: Record, horizon: float) -> tuple[np.ndarray, int]:
     """Rows at which predictions start, one after another where the log is whole, and how many rows each has."""
     # Walk along the log: a segment where all inputs are known, the next one behind it.
-    count = max(int(horizon / record.step + 1e-6), 1)
+    count = int(horizon / record.step + 1e-6)
+    if count < 1:
+        found = f"a prediction of {horizon:g} s is shorter than a step of {record.step:g} s."
+        raise error_at("replay", found, "Ask for longer predictions.")
     whole = np.isfinite(record.measured[:, :3]).sum(axis=-1) == 3
     rows = []
     row = 0

@@ -31,10 +31,6 @@ def render(replay: LogReplay, title: str, facts: dict[str, str]) -> str:
     # Track and channels, measured and simulated.
     tracks = replay.tracks
     figures = (track_figure(tracks), *over_time_figures(tracks))
-    # Faults of the log come before other remarks.
-    faults = tuple(
-        f"{fault.label}: {fault.note}" if fault.note else fault.label for fault in replay.faults
-    )
     page = ReplayPage(
         title=f"Replay of {title}",
         facts=facts_of(facts),
@@ -42,9 +38,17 @@ def render(replay: LogReplay, title: str, facts: dict[str, str]) -> str:
         scene=make_scene(tracks, None, replay.system),
         figures=figures,
         errors=error_rows(errors_of(tracks)),
-        remarks=(*faults, *replay.remarks),
+        remarks=remarks_of(replay),
     )
     return render_template("replay/templates/replay.html.jinja", page)
+
+
+def remarks_of(replay: LogReplay) -> tuple[str, ...]:
+    """What was found in the log and handled: its faults, then other remarks."""
+    faults = (
+        f"{fault.label}: {fault.note}" if fault.note else fault.label for fault in replay.faults
+    )
+    return (*faults, *replay.remarks)
 
 
 def replay_outcome(replay: LogReplay) -> Outcome:

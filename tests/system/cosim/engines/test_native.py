@@ -2,6 +2,7 @@
 
 import importlib.util
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,8 @@ from shipcosim.cosim.master import compiled
 from shipcosim.cosim.master import run as own
 from shipcosim.cosim.master.run import Interrupted
 from shipcosim.cosim.systems import system_of
-from shipcosim.errors import error_at
+from shipcosim.errors import ShipcosimError, error_at
+from shipcosim.native.compiler import run_compiler
 from shipcosim.scenario import Event, read_scenario
 
 NATIVE = RunOptions(engine="native")
@@ -205,4 +207,13 @@ def test_a_compiler_that_fails_is_said_and_python_steps(make_system, make_scenar
     for engine in ("auto", "native"):
         table = simulate(system, scenario, RunOptions(engine=engine))
         assert "no space left" in by_python(table)["all components"]
+        assert table.attrs["engine"] == "fmpy"
         assert table["lag.y"].values.tolist() == python["lag.y"].values.tolist()
+
+
+def test_a_compiler_that_ends_without_a_word_is_said_with_its_code(tmp_path, monkeypatch):
+    """As it does where the disk of the cache is full."""
+    ended = SimpleNamespace(returncode=-6, stderr="")
+    monkeypatch.setattr("shipcosim.native.compiler.subprocess.run", lambda *_, **__: ended)
+    with pytest.raises(ShipcosimError, match="compiler: fails: it ends with code -6"):
+        run_compiler([], tmp_path)

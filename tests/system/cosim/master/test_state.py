@@ -366,6 +366,14 @@ def test_what_is_no_snapshot_is_refused(stored, tmp_path):
         read_snapshot(tmp_path / "absent.state")
 
 
+def test_a_state_without_an_output_is_refused(system, stored, make_scenario):
+    """The first row would show the value of the start."""
+    outputs = {name: value for name, value in stored.outputs.items() if name != "plant.y"}
+    with pytest.raises(ShipcosimError, match="snapshot at 0.5 s: it has no value of plant.y"):
+        edited = replace(stored, outputs=outputs)
+        simulate(system, make_scenario(2.4, 0.1), RunOptions(resume=edited))
+
+
 @pytest.mark.parametrize("until", [0.0, 0.25, 3.0])
 def test_a_run_cannot_end_just_anywhere(system, make_scenario, until):
     with pytest.raises(ShipcosimError, match="no whole number of steps|would go from 0 s to"):

@@ -10,6 +10,10 @@ from selenium.webdriver.common.keys import Keys
 from typer.testing import CliRunner
 
 from shipcosim.cli.app import app
+from shipcosim.cosim.export.fmu import block_of
+from shipcosim.fmi.export.builder import build_fmu
+from shipcosim.report.live.export import live_page
+from shipcosim.scenario import Scenario
 
 
 def saved(page):
@@ -173,6 +177,34 @@ def test_out_is_a_folder_or_the_file_itself(craft_project, tmp_path, monkeypatch
         assert found.exit_code == 0, found.output
     assert (tmp_path / "new" / "ship.html").is_file()
     assert (tmp_path / "folder" / "odd.html").is_file()
+
+
+RINGS = '''
+import os
+import signal
+
+from shipcosim.fmi import Fmu, Output
+
+if os.environ.get("RINGS"):
+    signal.raise_signal(signal.SIGINT)
+
+
+class Bell(Fmu):
+    """Where it is loaded Ctrl-C comes."""
+
+    sound = Output("1", "loudness")
+
+    def step(self, t, h):
+        self.sound += h
+'''
+
+
+def test_ctrl_c_while_a_page_loads_an_fmu_is_none_of_the_fmus_errors(tmp_path, monkeypatch):
+    (tmp_path / "bell.py").write_text(RINGS)
+    system = block_of(build_fmu(tmp_path / "bell.py", tmp_path))
+    monkeypatch.setenv("RINGS", "1")
+    with pytest.raises(KeyboardInterrupt):
+        live_page(system, Scenario(description="bell", stop_time=1.0, step_size=0.1))
 
 
 def test_tunable_parameters_are_knobs(craft):

@@ -294,6 +294,9 @@ def test_the_command_starts_a_server_where_no_page_can_run_the_system(foreign_pr
         advance(50, [0, "override", "gear", 1]),
         advance(50, [20, "override", "gear", None]),
         advance(50, [20, "override", "speed", "3"]),
+        advance(50, [20, "override", "gear", 2.5]),
+        advance(50, [20, "override", "craft.engaged", 5]),
+        advance(50, [20, "override", "craft.engaged", 0.3]),
     ],
 )
 def test_what_our_page_never_asks_for_closes_the_connection_and_not_the_server(served, asked):
