@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from shipcosim.diagnose.explanation.form import learnt
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.explanation.search import ExplainedLog, at_first_sight, explain
 from shipcosim.diagnose.explanation.unmodelled import is_healthy, unmodelled_gains
@@ -22,6 +23,7 @@ from shipcosim.diagnose.log.mislabels import (
 )
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.log_faults.clock import clock_by_response, with_rate
+from shipcosim.diagnose.log_faults.held_inputs import contradicted, held_inputs
 from shipcosim.diagnose.log_faults.input_labels import (
     likelihood,
     suspected_inputs,
@@ -47,7 +49,17 @@ def corrected(found: Identification) -> Identification:
     navigation = with_right_navigation(found)
     clock = with_right_clock(navigation)
     wind = with_right_wind(clock)
-    return with_right_connections(wind)
+    return with_right_connections(with_measured_inputs(wind))
+
+
+def with_measured_inputs(found: Identification) -> Identification:
+    """The log without rows in which a channel of thrusters or wind keeps a value that the ship contradicts."""
+    for gap in held_inputs(found.repaired, found.ship):
+        cut = _repaired(found, (*found.faults, gap))
+        segments = contradicted(gap, found.repaired, learnt(cut.problem))
+        if segments:
+            found = _repaired(found, (*found.faults, replace(gap, segments=segments)))
+    return found
 
 
 def with_right_navigation(found: Identification) -> Identification:

@@ -40,6 +40,13 @@ SEGMENT_GAIN = 5.0
 PART_GAIN = 15.0
 """What a segment must gain over the whole log. [nats] Assumed."""
 
+# Channels of thrusters and wind that are held
+
+HELD_EXCESS = 100.0
+"""By how much the held rows must be less likely than others. [nats]"""
+HELD_ALIKE = 0.9
+"""Share of the held rows of a channel in which another one is held too, to be the same gap. Assumed."""
+
 # Labels of the navigation
 
 LABEL_GAIN = 30.0

@@ -87,6 +87,23 @@ def gaps(log: dict) -> list[Finding]:
     ]
 
 
+def held_segments(time: np.ndarray, values: np.ndarray) -> tuple[Segment, ...]:
+    """Segments in which a channel keeps one value for longer than chance makes it, zero included. [s]
+
+    Parameters
+    ----------
+    time, values : (n,) arrays
+        [s], and the channel, NaN where there is no value.
+    """
+    whole = np.isfinite(values)
+    time = time[whole]
+    if len(time) < FEWEST_CONSTANT:
+        return ()
+    least = max(FEWEST_GAP_ROWS, int(SHORTEST_GAP / np.median(np.diff(time))))
+    spans = _long_runs(np.diff(values[whole]) == 0.0, least)
+    return tuple((float(time[first]), float(time[last])) for first, last in spans)
+
+
 def lifeless(log: dict) -> list[Finding]:
     """Channels of the navigation that never change, although other channels show motion.
 

@@ -1,0 +1,90 @@
+"""Channels of thrusters and wind that keep a value which was not measured: only the ship's response shows it.
+
+A thruster that stands still keeps its value too. So the rows in which a channel is held are cut out, the ship is fitted
+to the others, and with this fit the held rows are judged as they are logged.
+"""
+
+import numpy as np
+import xarray
+
+from shipcosim.diagnose.explanation.search import explain
+from shipcosim.diagnose.explanation.unmodelled import unmodelled_gains
+from shipcosim.diagnose.finding import Finding, Segment, log_fault
+from shipcosim.diagnose.inference.fitting import IdentificationProblem
+from shipcosim.diagnose.inference.innovations import innovations
+from shipcosim.diagnose.inference.parts import explained, linearised_by_parts
+from shipcosim.diagnose.inference.thresholds import UNMODELLED
+from shipcosim.diagnose.log.checks.samples import HELD, held_segments
+from shipcosim.diagnose.log.mislabels import drive_channels
+from shipcosim.diagnose.log.rows import inside
+from shipcosim.diagnose.log_faults.thresholds import HELD_ALIKE, HELD_EXCESS
+from shipcosim.diagnose.ship.inputs import with_inputs_of
+from shipcosim.diagnose.ship.model import ShipModel
+
+_WIND = ("wind_speed", "wind_from", "true_wind_speed", "true_wind_from")
+
+
+def held_inputs(log: xarray.Dataset, model: ShipModel) -> list[Finding]:
+    """Gaps that channels of thrusters and wind would have if they were not measured where they keep a value.
+
+    Parameters
+    ----------
+    log : xarray.Dataset
+        Repaired.
+    model : ShipModel
+    """
+    time = log["logged_time"].values
+    drives = [role for name in model.thrusters for role in drive_channels(name, log)]
+    roles = [*drives, *(role for role in _WIND if role in log)]
+    held = {role: held_segments(time, log[role].values) for role in roles}
+    found = {}
+    for role, segments in held.items():
+        # What stops together, as all channels of a unit whose line is lost, is one gap.
+        here = inside(time, segments) if segments else np.zeros(len(time), bool)
+        together = [
+            other
+            for other, others in held.items()
+            if others and (here & inside(time, others)).sum() > HELD_ALIKE * here.sum()
+        ]
+        if segments and not any(role in channels for channels in found):
+            found[tuple(together)] = log_fault("gap", tuple(together), HELD, segments, 0.99)
+    return list(found.values())
+
+
+def contradicted(
+    finding: Finding, log: xarray.Dataset, problem: IdentificationProblem
+) -> tuple[Segment, ...]:
+    """Segments of a gap that the ship contradicts as they are logged, while she answers the other rows as modelled.
+
+    Parameters
+    ----------
+    finding : Finding
+        As from `held_inputs`.
+    log : xarray.Dataset
+        Repaired, the gap not cut out.
+    problem : IdentificationProblem
+        Of the log with the gap cut out.
+
+    Returns
+    -------
+    tuple of (float, float)
+        [s]
+    """
+    # The other rows have to be explained: else the model is wrong, and not a channel.
+    fit = explain(problem, most=1)[0]
+    if max(unmodelled_gains(problem, fit).values()) > UNMODELLED:
+        return ()
+    # Squared innovations of all rows as logged, about that fit.
+    record = with_inputs_of(problem.record, log, problem.model)
+    linear = linearised_by_parts(fit.about, record, fit.model, fit.columns, kept=False)
+    white = innovations(explained(linear, fit.left), problem.noise, record).white[..., 0]
+    squares = (white**2).sum(-1)
+    # Half their excess over what they are in the other rows is the evidence against a segment.
+    logged = np.interp(record.time, log["time"].values, log["logged_time"].values)
+    usual = squares[~inside(logged, finding.segments)].mean()
+    excess = {
+        segment: 0.5 * (squares - usual)[inside(logged, [segment])].sum()
+        for segment in finding.segments
+    }
+    print("  HELD", finding.channels, {s: round(e) for s, e in excess.items()}, usual)
+    return tuple(segment for segment, nats in excess.items() if nats > HELD_EXCESS)
