@@ -23,7 +23,7 @@ from shipcosim.diagnose.log.mislabels import (
 )
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.log_faults.clock import clock_by_response, with_rate
-from shipcosim.diagnose.log_faults.held_inputs import contradicted, held_inputs
+from shipcosim.diagnose.log_faults.held_inputs import held_inputs, is_contradicted
 from shipcosim.diagnose.log_faults.input_labels import (
     likelihood,
     suspected_inputs,
@@ -54,11 +54,14 @@ def corrected(found: Identification) -> Identification:
 
 def with_measured_inputs(found: Identification) -> Identification:
     """The log without rows in which a channel of thrusters or wind keeps a value that the ship contradicts."""
-    for gap in held_inputs(found.repaired, found.ship):
+    held = held_inputs(found.repaired, found.ship)
+    logged = learnt(found.problem) if held else found.problem
+    if not held or is_healthy(logged, explain(logged, most=1)[0]):
+        return found
+    for gap in held:
         cut = _repaired(found, (*found.faults, gap))
-        segments = contradicted(gap, found.repaired, learnt(cut.problem))
-        if segments:
-            found = _repaired(found, (*found.faults, replace(gap, segments=segments)))
+        if is_contradicted(gap, found.repaired, learnt(cut.problem)):
+            found = cut
     return found
 
 

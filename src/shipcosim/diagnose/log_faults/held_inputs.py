@@ -4,15 +4,17 @@ A thruster that stands still keeps its value too. So the rows in which a channel
 to the others, and with this fit the held rows are judged as they are logged.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import xarray
 
 from shipcosim.diagnose.explanation.search import explain
 from shipcosim.diagnose.explanation.unmodelled import unmodelled_gains
-from shipcosim.diagnose.finding import Finding, Segment, log_fault
-from shipcosim.diagnose.inference.fitting import IdentificationProblem
+from shipcosim.diagnose.finding import Finding, log_fault
+from shipcosim.diagnose.inference.fitting import IdentificationProblem, prepared
 from shipcosim.diagnose.inference.innovations import innovations
-from shipcosim.diagnose.inference.parts import explained, linearised_by_parts
+from shipcosim.diagnose.inference.parts import explained
 from shipcosim.diagnose.inference.thresholds import UNMODELLED
 from shipcosim.diagnose.log.checks.samples import HELD, held_segments
 from shipcosim.diagnose.log.mislabels import drive_channels
@@ -51,10 +53,8 @@ def held_inputs(log: xarray.Dataset, model: ShipModel) -> list[Finding]:
     return list(found.values())
 
 
-def contradicted(
-    finding: Finding, log: xarray.Dataset, problem: IdentificationProblem
-) -> tuple[Segment, ...]:
-    """Segments of a gap that the ship contradicts as they are logged, while she answers the other rows as modelled.
+def is_contradicted(finding: Finding, log: xarray.Dataset, problem: IdentificationProblem) -> bool:
+    """Whether no cause explains the held rows as they are logged, while the others are explained.
 
     Parameters
     ----------
@@ -64,27 +64,20 @@ def contradicted(
         Repaired, the gap not cut out.
     problem : IdentificationProblem
         Of the log with the gap cut out.
-
-    Returns
-    -------
-    tuple of (float, float)
-        [s]
     """
     # The other rows have to be explained: else the model is wrong, and not a channel.
     fit = explain(problem, most=1)[0]
-    if max(unmodelled_gains(problem, fit).values()) > UNMODELLED:
-        return ()
-    # Squared innovations of all rows as logged, about that fit.
+    left = max(unmodelled_gains(problem, fit).values())
+    # What its rows leave, and what all rows leave as logged, with the cause that explains these best.
     record = with_inputs_of(problem.record, log, problem.model)
-    linear = linearised_by_parts(fit.about, record, fit.model, fit.columns, kept=False)
-    white = innovations(explained(linear, fit.left), problem.noise, record).white[..., 0]
-    squares = (white**2).sum(-1)
-    # Half their excess over what they are in the other rows is the evidence against a segment.
+    rival = explain(prepared(replace(problem, record=record)), most=1)[0]
     logged = np.interp(record.time, log["time"].values, log["logged_time"].values)
-    usual = squares[~inside(logged, finding.segments)].mean()
-    excess = {
-        segment: 0.5 * (squares - usual)[inside(logged, [segment])].sum()
-        for segment in finding.segments
-    }
-    print("  HELD", finding.channels, {s: round(e) for s, e in excess.items()}, usual)
-    return tuple(segment for segment, nats in excess.items() if nats > HELD_EXCESS)
+    usual = _squares(problem, fit)[~inside(logged, finding.segments)].mean()
+    excess = 0.5 * (_squares(problem, rival) - usual).sum()
+    return excess > HELD_EXCESS and left < UNMODELLED
+
+
+def _squares(problem, fit):
+    """Squared innovations of each row with a fit."""
+    white = innovations(explained(fit.linear, fit.left), problem.noise, fit.record).white
+    return (white[..., 0] ** 2).sum(-1)

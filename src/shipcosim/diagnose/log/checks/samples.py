@@ -88,7 +88,7 @@ def gaps(log: dict) -> list[Finding]:
 
 
 def held_segments(time: np.ndarray, values: np.ndarray) -> tuple[Segment, ...]:
-    """Segments in which a channel keeps one value for longer than chance makes it, zero included. [s]
+    """Segments in which a channel holds the value that it holds longest, for longer than chance makes it. [s]
 
     Parameters
     ----------
@@ -97,11 +97,17 @@ def held_segments(time: np.ndarray, values: np.ndarray) -> tuple[Segment, ...]:
     """
     whole = np.isfinite(values)
     time = time[whole]
+    values = values[whole]
     if len(time) < FEWEST_CONSTANT:
         return ()
     least = max(FEWEST_GAP_ROWS, int(SHORTEST_GAP / np.median(np.diff(time))))
-    spans = _long_runs(np.diff(values[whole]) == 0.0, least)
-    return tuple((float(time[first]), float(time[last])) for first, last in spans)
+    spans = list(_long_runs(np.diff(values) == 0.0, least))
+    longest = max(spans, key=lambda span: span[1] - span[0], default=(0, 0))
+    return tuple(
+        (float(time[first]), float(time[last]))
+        for first, last in spans
+        if values[first] == values[longest[0]]
+    )
 
 
 def lifeless(log: dict) -> list[Finding]:
