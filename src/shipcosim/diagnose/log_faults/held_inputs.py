@@ -1,7 +1,7 @@
 """Channels of thrusters and wind that keep a value which was not measured: only the ship's response shows it.
 
-A thruster that stands still keeps its value too. So the rows in which a channel is held are cut out, the ship is fitted
-to the others, and with this fit the held rows are judged as they are logged.
+A thruster that stands still keeps its value too. So the held rows are cut out, and the ship has to be explained by the
+others. Then no cause may explain all rows as they are logged.
 """
 
 from dataclasses import replace
@@ -41,15 +41,16 @@ def held_inputs(log: xarray.Dataset, model: ShipModel) -> list[Finding]:
     held = {role: held_segments(time, log[role].values) for role in roles}
     found = {}
     for role, segments in held.items():
-        # What stops together, as all channels of a unit whose line is lost, is one gap.
-        here = inside(time, segments) if segments else np.zeros(len(time), bool)
-        together = [
+        if not segments or any(role in channels for channels in found):
+            continue
+        # What is held together, as all channels of a thruster whose line is lost, is one gap.
+        here = inside(time, segments)
+        together = tuple(
             other
             for other, others in held.items()
             if others and (here & inside(time, others)).sum() > HELD_ALIKE * here.sum()
-        ]
-        if segments and not any(role in channels for channels in found):
-            found[tuple(together)] = log_fault("gap", tuple(together), HELD, segments, 0.99)
+        )
+        found[together] = log_fault("gap", together, HELD, segments, 0.99)
     return list(found.values())
 
 
@@ -67,14 +68,14 @@ def is_contradicted(finding: Finding, log: xarray.Dataset, problem: Identificati
     """
     # The other rows have to be explained: else the model is wrong, and not a channel.
     fit = explain(problem, most=1)[0]
-    left = max(unmodelled_gains(problem, fit).values())
-    # What its rows leave, and what all rows leave as logged, with the cause that explains these best.
+    if max(unmodelled_gains(problem, fit).values()) > UNMODELLED:
+        return False
+    logged = np.interp(problem.record.time, log["time"].values, log["logged_time"].values)
+    usual = _squares(problem, fit)[~inside(logged, finding.segments)].mean()
+    # All rows as logged, with the cause that explains these best and with the same noise.
     record = with_inputs_of(problem.record, log, problem.model)
     rival = explain(prepared(replace(problem, record=record)), most=1)[0]
-    logged = np.interp(record.time, log["time"].values, log["logged_time"].values)
-    usual = _squares(problem, fit)[~inside(logged, finding.segments)].mean()
-    excess = 0.5 * (_squares(problem, rival) - usual).sum()
-    return excess > HELD_EXCESS and left < UNMODELLED
+    return bool(0.5 * (_squares(problem, rival) - usual).sum() > HELD_EXCESS)
 
 
 def _squares(problem, fit):
