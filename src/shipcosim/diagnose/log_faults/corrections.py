@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from shipcosim.diagnose.explanation.form import learnt
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.explanation.search import ExplainedLog, at_first_sight, explain
 from shipcosim.diagnose.explanation.unmodelled import is_healthy, unmodelled_gains
@@ -16,12 +17,15 @@ from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.inference.thresholds import MOST_CAUSES, UNMODELLED
 from shipcosim.diagnose.log.checks.wind import leaps
 from shipcosim.diagnose.log.mislabels import (
+    DRIVES,
+    THRUSTER_LABELS,
     WIND_LABELS,
     finding_of,
     possible,
 )
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.log_faults.clock import clock_by_response, with_rate
+from shipcosim.diagnose.log_faults.held_inputs import held_inputs, is_contradicted
 from shipcosim.diagnose.log_faults.input_labels import (
     likelihood,
     suspected_inputs,
@@ -47,7 +51,37 @@ def corrected(found: Identification) -> Identification:
     navigation = with_right_navigation(found)
     clock = with_right_clock(navigation)
     wind = with_right_wind(clock)
-    return with_right_connections(wind)
+    return with_right_connections(with_measured_inputs(wind))
+
+
+def with_measured_inputs(found: Identification) -> Identification:
+    """The log without rows in which a channel of thrusters or wind keeps a value that the ship contradicts."""
+    # A channel that is held can look like a wrong label of its thruster: first without these labels.
+    others = tuple(fault for fault in found.faults if not _is_label_of_a_drive(fault))
+    is_labelled = len(others) < len(found.faults)
+    if is_labelled and held_inputs(found.repaired, found.ship):
+        plain = _repaired(found, others)
+        cut = _without_held_inputs(plain)
+        if cut is not plain:
+            return cut
+    return _without_held_inputs(found)
+
+
+def _is_label_of_a_drive(fault):
+    return fault.cause in THRUSTER_LABELS and all(role.endswith(DRIVES) for role in fault.channels)
+
+
+def _without_held_inputs(found):
+    """The log without held channels that the ship contradicts; itself where she is explained without that."""
+    held = held_inputs(found.repaired, found.ship)
+    logged = learnt(found.problem) if held else found.problem
+    if not held or is_healthy(logged, explain(logged, most=1)[0]):
+        return found
+    for gap in held:
+        cut = _repaired(found, (*found.faults, gap))
+        if is_contradicted(gap, found.repaired, learnt(cut.problem)):
+            found = cut
+    return found
 
 
 def with_right_navigation(found: Identification) -> Identification:

@@ -94,7 +94,9 @@ def relabelled(
     labels = [
         label for label in possible(LABELS, plain) if label in known or _matters(plain, label)
     ]
-    gains = {label: _gain(plain, label, problem) - base for label in labels}
+    # A row after a step with unknown inputs is predicted by nothing: there a unit gains by its factor alone.
+    judged = _judged(problem)
+    gains = {label: judged * (_gain(plain, label, problem) - base) for label in labels}
     # What the present faults gain is the threshold for others, with a margin.
     so_far = sum(
         float(gains[one.mislabel][inside(problem.record.time, one.segments)].sum()) for one in found
@@ -104,6 +106,11 @@ def relabelled(
     # factors of the faults at hand and of the candidates.
     less = sum(_density(one, problem) for one in found)
     return [Relabelled((*others, one), _density(one, problem) - less) for one in tried]
+
+
+def _judged(problem):
+    """Rows that the row before predicts, as all that drives the ship is known over the step."""
+    return np.r_[True, problem.record.known[:-1]]
 
 
 def _likely(gains, record, least):
@@ -181,6 +188,6 @@ def _density(finding, problem):
     places = [CHANNELS.index(role) for role in finding.channels]
     here = (
         np.isfinite(problem.record.measured[:, places])
-        & inside(problem.record.time, finding.segments)[:, None]
+        & (inside(problem.record.time, finding.segments) & _judged(problem))[:, None]
     )
     return float(np.log(scale) * here.sum())

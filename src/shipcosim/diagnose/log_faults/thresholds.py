@@ -40,6 +40,15 @@ SEGMENT_GAIN = 5.0
 PART_GAIN = 15.0
 """What a segment must gain over the whole log. [nats] Assumed."""
 
+# Channels of thrusters and wind that are held
+
+HELD_EXCESS = 150.0
+"""How much likelier the innovations of the other rows are than those of all rows as logged. [nats] Of the independent
+truth, stops of thrusters that did stand still reach 93 (18 stops; seeds 98602, 98603, 98700, 98701), channels that are
+held 118 to 962 (5 logs, seed 98500; two of them stay below)."""
+HELD_ALIKE = 0.9
+"""Share of the held rows of a channel in which another one is held too, to be the same gap. Assumed."""
+
 # Labels of the navigation
 
 LABEL_GAIN = 30.0

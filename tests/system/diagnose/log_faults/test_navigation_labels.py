@@ -57,3 +57,22 @@ def test_near_north_earth_fixed_is_body_fixed_and_no_fault():
         )
         assert _matters(kept, earth) is matters
     assert _matters(kept, negative("surge"))
+
+
+def test_rows_without_known_inputs_name_no_unit(monkeypatch):
+    """Nothing predicts such a row, so that a unit gained there by its factor alone: velocities in m/s, not kn."""
+    commands = twin.commands
+    monkeypatch.setattr(twin, "WIND", (0.0, 2.0))
+    monkeypatch.setattr(
+        twin,
+        "commands",
+        lambda time, seed: {
+            name: (0.0 * speed, direction)
+            for name, (speed, direction) in commands(time, seed).items()
+        },
+    )
+    log = twin.sailed({"healthy": {}})["healthy"]
+    lost = (log["time"].values > 100.0) & (log["time"].values < 300.0)
+    speed = np.where(lost, np.nan, log["wind_speed"].values)
+    log = log.assign(wind_speed=log["wind_speed"].copy(data=speed))
+    assert relabelled(log, (), twin.ready(log)) == []

@@ -87,6 +87,29 @@ def gaps(log: dict) -> list[Finding]:
     ]
 
 
+def held_segments(time: np.ndarray, values: np.ndarray) -> tuple[Segment, ...]:
+    """Segments in which a channel holds the value that it holds longest, for longer than chance makes it. [s]
+
+    Parameters
+    ----------
+    time, values : (n,) arrays
+        [s], and the channel, NaN where there is no value.
+    """
+    whole = np.isfinite(values)
+    time = time[whole]
+    values = values[whole]
+    if len(time) < FEWEST_CONSTANT:
+        return ()
+    least = max(FEWEST_GAP_ROWS, int(SHORTEST_GAP / np.median(np.diff(time))))
+    spans = list(_long_runs(np.diff(values) == 0.0, least))
+    longest = max(spans, key=lambda span: span[1] - span[0], default=(0, 0))
+    return tuple(
+        (float(time[first]), float(time[last]))
+        for first, last in spans
+        if values[first] == values[longest[0]]
+    )
+
+
 def lifeless(log: dict) -> list[Finding]:
     """Channels of the navigation that never change, although other channels show motion.
 

@@ -1,0 +1,84 @@
+"""Channels of thrusters and wind that keep a value which was not measured: only the ship's response shows it.
+
+A thruster that stands still keeps its value too. So the held rows are cut out, and the ship has to be explained by the
+others. Then no cause may explain all rows as they are logged.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import xarray
+
+from shipcosim.diagnose.explanation.search import explain
+from shipcosim.diagnose.explanation.unmodelled import unmodelled_gains
+from shipcosim.diagnose.finding import Finding, log_fault
+from shipcosim.diagnose.inference.fitting import IdentificationProblem, prepared
+from shipcosim.diagnose.inference.innovations import innovations
+from shipcosim.diagnose.inference.parts import explained
+from shipcosim.diagnose.inference.thresholds import UNMODELLED
+from shipcosim.diagnose.log.checks.samples import HELD, held_segments
+from shipcosim.diagnose.log.mislabels import drive_channels
+from shipcosim.diagnose.log.rows import inside
+from shipcosim.diagnose.log_faults.thresholds import HELD_ALIKE, HELD_EXCESS
+from shipcosim.diagnose.ship.inputs import with_inputs_of
+from shipcosim.diagnose.ship.model import ShipModel
+
+_WIND = ("wind_speed", "wind_from", "true_wind_speed", "true_wind_from")
+
+
+def held_inputs(log: xarray.Dataset, model: ShipModel) -> list[Finding]:
+    """Gaps that channels of thrusters and wind would have if they were not measured where they keep a value.
+
+    Parameters
+    ----------
+    log : xarray.Dataset
+        Repaired.
+    model : ShipModel
+    """
+    time = log["logged_time"].values
+    drives = [role for name in model.thrusters for role in drive_channels(name, log)]
+    roles = [*drives, *(role for role in _WIND if role in log)]
+    held = {role: held_segments(time, log[role].values) for role in roles}
+    found = {}
+    for role, segments in held.items():
+        if not segments or any(role in channels for channels in found):
+            continue
+        # What is held together, as all channels of a thruster whose line is lost, is one gap.
+        here = inside(time, segments)
+        together = tuple(
+            other
+            for other, others in held.items()
+            if others and (here & inside(time, others)).sum() > HELD_ALIKE * here.sum()
+        )
+        found[together] = log_fault("gap", together, HELD, segments, 0.99)
+    return list(found.values())
+
+
+def is_contradicted(finding: Finding, log: xarray.Dataset, problem: IdentificationProblem) -> bool:
+    """Whether no cause explains the held rows as they are logged, while the others are explained.
+
+    Parameters
+    ----------
+    finding : Finding
+        As from `held_inputs`.
+    log : xarray.Dataset
+        Repaired, the gap not cut out.
+    problem : IdentificationProblem
+        Of the log with the gap cut out.
+    """
+    # The other rows have to be explained: else the model is wrong, and not a channel.
+    fit = explain(problem, most=1)[0]
+    if max(unmodelled_gains(problem, fit).values()) > UNMODELLED:
+        return False
+    logged = np.interp(problem.record.time, log["time"].values, log["logged_time"].values)
+    usual = _squares(problem, fit)[~inside(logged, finding.segments)].mean()
+    # All rows as logged, with the cause that explains these best and with the same noise.
+    record = with_inputs_of(problem.record, log, problem.model)
+    rival = explain(prepared(replace(problem, record=record)), most=1)[0]
+    return bool(0.5 * (_squares(problem, rival) - usual).sum() > HELD_EXCESS)
+
+
+def _squares(problem, fit):
+    """Squared innovations of each row with a fit."""
+    white = innovations(explained(fit.linear, fit.left), problem.noise, fit.record).white
+    return (white[..., 0] ** 2).sum(-1)

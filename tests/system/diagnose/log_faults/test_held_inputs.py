@@ -1,0 +1,65 @@
+"""A thruster's channel that is held is a gap where the ship was driven otherwise, and none where the thruster stood."""
+
+import numpy as np
+import pytest
+from diagnose import twin
+
+from shipcosim.diagnose.checked_log import ReadLog
+from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
+from shipcosim.diagnose.log_faults.corrections import with_measured_inputs
+from shipcosim.diagnose.pipeline import problem_of
+
+FIRST, LAST = 120.0, 180.0  # s
+
+
+def inside(log):
+    """Rows in which a channel is held."""
+    return (log["time"].values >= FIRST) & (log["time"].values <= LAST)
+
+
+def with_noise(log):
+    """A log whose thrusters are logged as instruments show them: with noise, to a tenth."""
+    random = np.random.default_rng(1)
+    for role in [role for role in log if role.endswith(("_rpm", "_azimuth"))]:
+        values = np.round(log[role].values + 0.3 * random.normal(size=log.sizes["time"]), 1)
+        log = log.assign({role: log[role].copy(data=values)})
+    return log
+
+
+def gaps(log):
+    """Channels and segments of the gaps that the ship's response shows."""
+    found = with_measured_inputs(problem_of(ReadLog(log, twin.model(), read_catalogue())))
+    return [(fault.channels, *fault.segments) for fault in found.faults if fault.cause == "gap"]
+
+
+@pytest.mark.parametrize(
+    "channels, is_zero",
+    [
+        (("port_rpm",), True),
+        (("tunnel_rpm",), False),
+        (("starboard_rpm", "starboard_azimuth"), True),
+    ],
+)
+def test_a_held_channel_that_the_ship_contradicts_is_a_gap(channels, is_zero):
+    log = with_noise(twin.logs()["healthy"])
+    here = inside(log)
+    for role in channels:
+        values = log[role].values
+        held = 0.0 if is_zero else values[here][0]
+        log = log.assign({role: log[role].copy(data=np.where(here, held, values))})
+    assert gaps(log) == [(channels, (FIRST, LAST))]
+
+
+def test_a_thruster_that_stands_still_is_no_gap(monkeypatch):
+    commands = twin.commands
+
+    def stopped(time, seed=0):
+        units = commands(time, seed)
+        speed, direction = units["port"]
+        stands = (time >= FIRST) & (time <= LAST)
+        return units | {"port": (np.where(stands, 0.0, speed), direction)}
+
+    monkeypatch.setattr(twin, "commands", stopped)
+    log = with_noise(twin.sailed({"healthy": {}})["healthy"])
+    stands = np.where(inside(log), 0.0, log["port_rpm"].values)
+    assert gaps(log.assign(port_rpm=log["port_rpm"].copy(data=stands))) == []
