@@ -83,7 +83,7 @@ def path_or_name(what: str, given: Any) -> AnyPath:
     return given
 
 
-def listed(given: AnyPath | Iterable[AnyPath] | None, what: str = "") -> list[AnyPath]:
+def listed(given: Any, what: str = "") -> list[AnyPath]:
     """Paths or names as a list, also for a single one; errors name the argument."""
     if given is None:
         return []

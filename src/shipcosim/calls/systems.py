@@ -318,7 +318,7 @@ def capability(
 
     if out is not None:
         check_targets(Path(out))
-    groups = [tuple(map(str, listed(one or ("",), "failures"))) for one in failures]
+    groups = [tuple(map(str, listed(one or [one], "failures"))) for one in failures]
     sets = [Path(one) for one in listed(parameters, "parameters")]
     vessel = vessel_of(os.fspath(path_or_name("system", system)), sets, ship)
     result = CapabilityOfShip(**parts_of(capability_of(vessel, groups)))
