@@ -90,21 +90,27 @@ def detour_step(
     waited = memory.waited + where(state.saturated, zero + h, zero - h)
     waited = clip(waited, zero, zero + 2.0 * _WAIT)
     # Missed load, as forces of one kind: a moment counts at the lever.
-    X, Y, N = tau[0] - state.tau_X, tau[1] - state.tau_Y, tau[2] - state.tau_N
-    N = N / design.yaw_lever**2
+    X = tau[0] - state.tau_X
+    Y = tau[1] - state.tau_Y
+    N = (tau[2] - state.tau_N) / design.yaw_lever**2
     rows = zip(
         design.units, state.thrusts, state.azimuths, memory.turning, memory.aims, strict=True
     )
-    units, turning, aims = [], [], []
+    units = []
+    turning = []
+    aims = []
     for unit, f, angle, turns, aim in rows:
         # A unit without limits turns the short way by itself.
         if unit.kind == "turning" and not isinf(unit.last):
             # The angle within the interval at which a force at this place takes most of the miss away.
-            gx, gy = X - unit.y * N, Y + unit.x * N
-            middle, width = 0.5 * (unit.first + unit.last), 0.5 * (unit.last - unit.first)
+            gx = X - unit.y * N
+            gy = Y + unit.x * N
+            middle = 0.5 * (unit.first + unit.last)
+            width = 0.5 * (unit.last - unit.first)
             best = middle + clip(wrap(atan2(gy, gx) - middle), -width, width)
             helps = gx * cos(best) + gy * sin(best) > 0.0
             idle = f <= 1.01 * unit.least
+            # Once on its way a unit keeps its aim until it is there.
             goes = (waited > _WAIT) & helps & idle & (abs(best - angle) > _FAR)
             aim = where(goes & (turns < 0.5), best, aim)
             turns = where(goes, zero + 1.0, turns)

@@ -2,7 +2,8 @@
 
 The law is that of `sqp`; here are the units. A named azimuth has two cones of allowed angles, ahead
 and astern: `cones` chooses one for each. It starts with port ahead and starboard astern: one unit
-ahead and one astern can give any small load without a reversal. A numbered unit keeps its interval.
+ahead and one astern can give any small load without a reversal. A numbered unit keeps its interval;
+`detours` turns it the long way round.
 A unit that turns runs with its least thrust or more, and reverses only where another unit
 is missing. Any other unit has a fixed direction and reverses. The parameters `port_azimuth` and
 `starboard_azimuth` belong to laws with fixed angles; they are not used here.
