@@ -11,10 +11,11 @@ from itertools import product
 from typing import Any, NamedTuple
 
 from shipcosim.models.allocation.consequences import Averaged, averaged, held_share
-from shipcosim.models.allocation.detours import detour_step, detours_at_rest
+from shipcosim.models.allocation.detours import FAR, detour_step, detours_at_rest, on_its_way
 from shipcosim.models.allocation.sqp import (
     OptimalProblem,
     Turned,
+    is_whole,
     is_within,
     power_step,
     resting,
@@ -35,9 +36,7 @@ from shipcosim.models.core.motion import Load
 
 _LOSS = 10.0  # price of a missed newton over the largest price of a newton of thrust
 _DEAR = 2.0  # cost over that of the cheapest plan, beyond which no plan counts
-_FAR = 1.2  # rad from its plan: beyond it a unit can be at the wrong end of its cone
 _ROUNDS = 12  # of the balance: none of 80 000 random loads came on the wrong side of 1.25
-_THERE = 1.0  # rad from its plan: nearer, a unit that shifts gives thrust again
 
 
 class ConeChoice(NamedTuple):
@@ -225,12 +224,7 @@ def _ranked(average, tau, available, h, design, shares):
     load = tuple(part / (average.weight + 1e-12) for part in average.load)
     usable = tuple(where(on, share, 0.0) for on, share in zip(available, shares, strict=True))
     # It is asked only where a unit is missing.
-    missing = sum(
-        where(on, 0.0, 1.0)
-        for on, unit in zip(available, design.units, strict=True)
-        if unit.kind != "none"
-    )
-    rounds = where(missing > 0.5, _ROUNDS, 0)
+    rounds = where(is_whole(available, design), 0, _ROUNDS)
     held = held_share(load, usable, units=balance.units, rounds=rounds)
     first = held < balance.dynamic_factor
     # The balance knows no sectors: an azimuth that keeps to them can miss load that it says is held.
@@ -361,7 +355,7 @@ def _sent(memory, state, gaps, design):
     for unit, f, angle, turns, want, gap in rows:
         # Due: in the wrong cone, or far from the plan although that has long been cheaper.
         wrong = abs(_cone(turns) - want) > 0.5
-        strays = (memory.strayed > design.choice.wait) & (abs(gap) > _FAR)
+        strays = (memory.strayed > design.choice.wait) & (abs(gap) > FAR)
         sends = (wrong | strays) & (f <= design.choice.thrust_most)
         if unit.kind != "turning":
             sends = zero > 0.0
@@ -389,7 +383,6 @@ def _sent(memory, state, gaps, design):
 
 def _shifted(memory, state, gaps, available, design):
     """The problem with the present intervals; a unit that changes its interval has that of the plan."""
-    zero = 0.0 * memory.waited
     memory, opens = _opened(memory, state, available, design)
     within = _within(design, memory.half_turns)
     units = []
@@ -397,16 +390,10 @@ def _shifted(memory, state, gaps, available, design):
     rows = zip(within.units, state.azimuths, memory.shifting, gaps, strict=True)
     for unit, angle, shifts, gap in rows:
         if unit.kind == "turning":
-            # Outside of this interval the law takes the thrust away, then turns the unit there.
-            first = clip(angle + gap - _THERE, unit.first, unit.last)
-            last = clip(angle + gap + _THERE, unit.first, unit.last)
-            shifts = where(is_within(angle, first, last), zero, shifts)
-            moves = shifts > 0.5
-            first = where(moves, first, zero + unit.first)
-            last = where(moves, last, zero + unit.last)
+            unit, shifts = on_its_way(unit, angle, angle + gap, shifts)
             # Without sectors no end is within reach of a step.
             unit = unit._replace(
-                first=where(opens, angle - pi, first), last=where(opens, angle + pi, last)
+                first=where(opens, angle - pi, unit.first), last=where(opens, angle + pi, unit.last)
             )
         units.append(unit)
         shifting.append(shifts)

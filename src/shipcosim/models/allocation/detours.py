@@ -2,20 +2,26 @@
 
 A step looks for better angles near the last ones. So a unit that is wanted beyond the end of its interval stays at that
 end, although it could be turned there through the rest of its interval. Where load is missed for a while, each unit that
-gives only its least thrust and would help more than `_FAR` away gives its thrust up and turns there.
+gives only its least thrust and would help more than `FAR` away gives its thrust up and turns there.
 """
 
 from math import isinf
 from typing import NamedTuple
 
 from shipcosim.angles import wrap
-from shipcosim.models.allocation.sqp import OptimalProblem, Turned, is_within
+from shipcosim.models.allocation.sqp import (
+    AllocatedThruster,
+    OptimalProblem,
+    Turned,
+    is_within,
+)
 from shipcosim.models.core.maths import Arithmetic, atan2, clip, cos, sin, where
 from shipcosim.models.core.motion import Load
 
 _WAIT = 5.0  # s for which load must be missed: longer than noise and gusts, assumed
-_FAR = 1.2  # rad: what is nearer, steps find
 _THERE = 1.0  # rad from the aim: nearer, the unit gives thrust again
+FAR = 1.2
+"""Angle beyond which steps do not find where a unit is wanted: what is nearer, they find. [rad]"""
 
 
 class DetourMemory(NamedTuple):
@@ -111,19 +117,47 @@ def detour_step(
             helps = gx * cos(best) + gy * sin(best) > 0.0
             idle = f <= 1.01 * unit.least
             # Once on its way a unit keeps its aim until it is there.
-            goes = (waited > _WAIT) & helps & idle & (abs(best - angle) > _FAR)
+            goes = (waited > _WAIT) & helps & idle & (abs(best - angle) > FAR)
             aim = where(goes & (turns < 0.5), best, aim)
             turns = where(goes, zero + 1.0, turns)
-            # Outside of these angles the law takes the thrust away, then turns the unit there.
-            first = clip(aim - _THERE, unit.first, unit.last)
-            last = clip(aim + _THERE, unit.first, unit.last)
-            turns = where(is_within(angle, first, last), zero, turns)
-            moves = turns > 0.5
-            unit = unit._replace(
-                first=where(moves, first, unit.first), last=where(moves, last, unit.last)
-            )
+            unit, turns = on_its_way(unit, angle, aim, turns)
         units.append(unit)
         turning.append(turns)
         aims.append(aim)
     memory = DetourMemory(tuple(turning), tuple(aims), waited)
     return memory, design._replace(units=tuple(units))
+
+
+def on_its_way(
+    unit: AllocatedThruster, angle: Arithmetic, aim: Arithmetic, turns: Arithmetic
+) -> tuple[AllocatedThruster, Arithmetic]:
+    """A unit that turns idle to an aim.
+
+    Parameters
+    ----------
+    unit : AllocatedThruster
+        With its own interval of angles. [as its fields]
+    angle, aim : float
+        Where it is, and where it turns to. [rad, rad]
+    turns : float
+        1 while it is on its way, else 0. [1]
+
+    Returns
+    -------
+    tuple of AllocatedThruster and float
+        The unit, on its way with only the angles around its aim; and 0 where it has arrived, else as before.
+        [as its fields, 1]
+
+    References
+    ----------
+    Definition.
+    """
+    zero = 0.0 * turns
+    # Outside of these angles the law takes the thrust away, then turns the unit there.
+    first = clip(aim - _THERE, unit.first, unit.last)
+    last = clip(aim + _THERE, unit.first, unit.last)
+    turns = where(is_within(angle, first, last), zero, turns)
+    moves = turns > 0.5
+    first = where(moves, first, zero + unit.first)
+    last = where(moves, last, zero + unit.last)
+    return unit._replace(first=first, last=last), turns

@@ -244,13 +244,7 @@ def power_step(
     quadratic programming, IEEE Trans. Control Systems Technology 12(1), 2004. Instead of their price of a singular
     configuration, units that turn keep a least thrust.
     """
-    # True if no unit is missing.
-    missing = sum(
-        where(on, 0.0, 1.0)
-        for on, unit in zip(available, design.units, strict=True)
-        if unit.kind != "none"
-    )
-    whole = missing < 0.5
+    whole = is_whole(available, design)
     # Units with their last commands and the bounds of the next.
     around = _around(state, available, whole, h, design, shares or (1.0,) * len(design.units))
     unmet, changes = _changes(around, tau, state.marginal, design, h)
@@ -284,6 +278,33 @@ def power_step(
         clip(at.thrust + change, at.low, at.high) for at, change in zip(around, found, strict=True)
     ]
     return _commanded(state, tau, around, thrusts, turned, forces, marginal, h, design)
+
+
+def is_whole(available: tuple, design: OptimalProblem) -> Any:
+    """Whether no unit is missing.
+
+    Parameters
+    ----------
+    available : tuple
+        As of `power_step`. [1]
+    design : OptimalProblem
+        The units. [as its fields]
+
+    Returns
+    -------
+    bool, or like those of `available`
+        True where all units that there are can be used. [1]
+
+    References
+    ----------
+    Definition.
+    """
+    missing = sum(
+        where(on, 0.0, 1.0)
+        for on, unit in zip(available, design.units, strict=True)
+        if unit.kind != "none"
+    )
+    return missing < 0.5
 
 
 def _changes(around, tau, marginal, design, h):
