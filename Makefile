@@ -43,10 +43,12 @@ durations: .venv/installed-test
 	$(BIN)/python -m pip install --quiet --editable ".[docs,native]"
 	$(BIN)/python -c "open('.venv/installed-docs', 'w')"
 
+# Dask in a folder of its own: xarray imports it wherever it is found, 0.4 s of each of a thousand commands of the tests.
 # torch by its exact version: where a CPU build is at hand pip takes that one, a range would fetch gigabytes of GPU packages
 .venv/installed-test: .venv/installed
 	$(BIN)/python -m pip install --quiet torch==2.13.0
 	$(BIN)/python -m pip install --quiet --editable ".[docs,engines,test]"
+	$(BIN)/python -m pip install --quiet --target .venv/cluster "distributed>=2024.8"
 	$(BIN)/python -c "open('.venv/installed-test', 'w')"
 
 clean:

@@ -1,4 +1,4 @@
-"""What a million runs on a hundred workers cost: `python tests/bench/cluster`.
+"""What a million runs on a hundred workers cost: `PYTHONPATH=.venv/cluster python tests/bench/cluster`.
 
 The dispatch of a study, as it is, on a clock of its own: workers are simulated, so are their times. What the one
 process that dispatches spends on a run, on a row and on a task of Dask is measured first.

@@ -2,6 +2,8 @@
 
 import os
 import signal
+import sys
+from pathlib import Path
 
 import pandas
 import pytest
@@ -10,8 +12,17 @@ import shipcosim
 from shipcosim.errors import ShipcosimError
 
 
+DASK = Path(__file__).resolve().parents[3] / ".venv" / "cluster"
+
+
+@pytest.fixture(autouse=True)
+def dask(monkeypatch):
+    # As in the Makefile: Dask has a folder of its own, which processes of workers are told too.
+    monkeypatch.setattr(sys, "path", [*sys.path, str(DASK)])
+
+
 @pytest.fixture
-def cluster():
+def cluster(dask):
     from distributed import LocalCluster
 
     with LocalCluster(
