@@ -119,7 +119,8 @@ def print_summary(result: Run, page: Path, *, to_stderr: bool = False) -> None:
             console.print(Text(remark, style="yellow"))
     print_problems(result.errors)
     if result.table.attrs.get("engine") == "native":
-        console.print("The models ran as compiled code.")
+        others = result.table.attrs.get("stepped_by_python")
+        console.print(f"The models ran as compiled code{f', but for {others}' if others else ''}.")
     say_outcome(console, outcome)
     say_page(console, page)
 

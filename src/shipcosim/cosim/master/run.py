@@ -372,8 +372,11 @@ class Simulation:
         """Facts about the run. `complete` is 1 or 0, since NetCDF has no truth values."""
         known = attributes_of(self.plan.system, self._scenario)
         # Where nothing could be compiled, Python has stepped all.
-        engine = "fmpy" if ALL in self._in_python() else self._engine
+        in_python = self._in_python()
+        engine = "fmpy" if ALL in in_python else self._engine
         known |= {"start_time": self._grid.start_time, "engine": engine, "order": self._order}
+        if engine == "native" and in_python:
+            known["stepped_by_python"] = ", ".join(in_python)
         if self._inputs is not None:
             known["inputs_sha256"] = digest(self._inputs)
         if self._grid.run_times[-1] < self._grid.times[-1]:

@@ -58,7 +58,7 @@ def make_module(plan: Plan, scenario: Scenario, progress: CountProgress | None =
         The compiler is missing or fails.
     """
     check_installed()
-    texts = _texts(plan.system, progress)
+    texts = texts_of(plan.system, progress)
     # Components with the same text share its functions.
     prefixes = {text: f"fmu{n}_" for n, text in enumerate(dict.fromkeys(texts.values()))}
     of_component = {name: (prefixes[text], _guid(text)) for name, text in texts.items()}
@@ -74,8 +74,14 @@ def make_module(plan: Plan, scenario: Scenario, progress: CountProgress | None =
     return _linked([*prefixes.items(), (desk, "")])
 
 
-def _texts(system: System, progress: CountProgress | None) -> dict[str, str]:
-    """C texts of all components, by name."""
+def texts_of(system: System, progress: CountProgress | None = None) -> dict[str, str]:
+    """C texts of all components, by name.
+
+    Raises
+    ------
+    NotForPages
+        With every component that has no native code, and why.
+    """
     found = {}
     problems = []
     known: dict[Any, str] = {}

@@ -5,7 +5,7 @@ end, although it could be turned there through the rest of its interval. Where l
 gives only its least thrust and would help more than `FAR` away gives its thrust up and turns there.
 """
 
-from math import isinf
+from math import inf
 from typing import NamedTuple
 
 from shipcosim.angles import wrap
@@ -107,7 +107,7 @@ def detour_step(
     aims = []
     for unit, f, angle, turns, aim in rows:
         # A unit without limits turns the short way by itself.
-        if unit.kind == "turning" and not isinf(unit.last):
+        if unit.kind == "turning" and unit.last < inf:
             # The angle within the interval at which a force at this place takes most of the miss away.
             gx = X - unit.y * N
             gy = Y + unit.x * N
