@@ -1,7 +1,7 @@
 """FMU of a plain fixed thruster."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
-from shipcosim.models.core.maths import pi
+from shipcosim.models.core.maths import pi, where
 from shipcosim.models.propulsion.fixed import FixedParameters, fixed_loads
 
 
@@ -13,11 +13,13 @@ class FixedThruster(Fmu):
     u_r = Input("m/s", "ship's velocity forward through the water")
     v_r = Input("m/s", "ship's velocity to starboard through the water")
     r = Input("rad/s", "ship's yaw rate")
+    failed = Input("1", "without power: no thrust", start=False, optional=True)
 
     thrust = Output("N", "delivered thrust, positive in the thruster's direction")
     tau_X = Output("N", "force on the ship, forward")
     tau_Y = Output("N", "force on the ship, to starboard")
     tau_N = Output("N.m", "yaw moment on the ship")
+    available = Output("1", "has not failed", start=True)
 
     thruster = Parameters(FixedParameters)
 
@@ -28,8 +30,8 @@ class FixedThruster(Fmu):
         self._push()
 
     def _push(self):
-        speed = self.rpm_in * pi / 30.0
-        loads = fixed_loads(
-            self.thrust_in, speed, self.u_r, self.v_r, self.r, thruster=self.thruster
-        )
+        force = where(self.failed, 0.0, self.thrust_in)
+        speed = where(self.failed, 0.0, self.rpm_in) * pi / 30.0
+        loads = fixed_loads(force, speed, self.u_r, self.v_r, self.r, thruster=self.thruster)
+        self.available = not self.failed
         self.thrust, _, self.tau_X, self.tau_Y, self.tau_N = loads

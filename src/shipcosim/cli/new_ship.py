@@ -207,16 +207,10 @@ def _study(ship: Described) -> str:
     """A study of failures: each thruster stops, in wind from all sides."""
     from shipcosim.ships.control import units_for_dp
 
-    # A thruster without a drive cannot fail by itself; the allocator gets it as lost.
-    events = {
-        unit.name: f'"allocator.available_{number}" = false'
-        if unit.fmu == "fixed_thruster"
-        else f'"{unit.name}.failed" = true'
-        for number, unit in enumerate(units_for_dp(ship), 1)
-    }
+    event = '[{{ time = 200.0, override = {{ "{name}.failed" = true }} }}]'
     cases = [
-        f'    {{ label = "{name} stops", events = [{{ time = 200.0, override = {{ {event} }} }}] }},'
-        for name, event in events.items()
+        f'    {{ label = "{unit.name} stops", events = {event.format(name=unit.name)} }},'
+        for unit in units_for_dp(ship)
     ]
     return FAILURES.format(name=ship.name, cases="\n".join(cases))
 
@@ -264,7 +258,7 @@ output_interval = 0.5
 
 [set]
 "environment.wind_speed" = 8.0     # m/s
-"environment.wind_from"  = 0.785   # rad, from north
+"environment.wind_from"  = "45 deg"
 
 [[expect]]
 signal = ["vessel.x", "vessel.y"]

@@ -239,9 +239,8 @@ def _loop_wires(ship: Described) -> Iterable[tuple[str, str]]:
         yield f"allocator.thrust_cmd_{number}", f"{unit.name}.{given}"
         if unit.kind == "azimuth":
             yield f"allocator.azimuth_cmd_{number}", f"{unit.name}.azimuth_cmd"
-        if unit.fmu != "fixed_thruster":
-            yield f"{unit.name}.available", f"allocator.available_{number}"
-            yield f"{unit.name}.available", f"consequences.available_{number}"
+        yield f"{unit.name}.available", f"allocator.available_{number}"
+        yield f"{unit.name}.available", f"consequences.available_{number}"
 
 
 def _kinds(ship: Described, kind: str) -> dict[str, tuple[type, ...]]:

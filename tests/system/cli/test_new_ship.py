@@ -178,3 +178,24 @@ def test_in_a_terminal_it_asks_for_what_is_not_said_and_proposes_what_is_usual(
         'breadth = { value = "11 m", origin = "assumed' in text
         and text.count('kind = "tunnel"') == 2
     )
+
+
+@pytest.mark.parametrize("propulsion", ["azimuths", "screws"])
+def test_each_thruster_fails_and_allocator_and_consequence_analysis_are_told(project, propulsion):
+    made = told("new", "ship", "tern", *ASKED, "--propulsion", propulsion, "--yes")
+    assert made.exit_code == 0, made.output
+    wires = sc.read("tern_dp").connections
+    units = ["port", "starboard", "bow"] + ["stern"] * (propulsion == "screws")
+    scenario = (project / "scenarios" / "tern.toml").read_text(encoding="utf-8")
+    for number, unit in enumerate(units, 1):
+        assert f'"{unit}.failed" = true' in (project / "studies/tern_failures.toml").read_text()
+        event = f'[[events]]\ntime = 1.0\noverride = {{ "{unit}.failed" = true }}\n'
+        (project / "scenarios" / "lost.toml").write_text(f"{scenario}\n{event}", encoding="utf-8")
+        run = sc.run("lost", stop_time=20.0, out=f"lost-{unit}")
+        # A shaft runs down as 1/(1 + t/T)²: a few percent are left after 19 s.
+        thrust = abs(run[f"{unit}.thrust"])
+        assert thrust[-1] <= 0.1 * thrust.max()
+        assert run[f"allocator.thrust_cmd_{number}"][-1] == 0.0
+        assert not run[f"{unit}.available"][-1]
+        for asked in ("allocator", "consequences"):
+            assert (f"{unit}.available", f"{asked}.available_{number}") in wires

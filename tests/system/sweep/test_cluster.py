@@ -11,7 +11,6 @@ import pytest
 import shipcosim
 from shipcosim.errors import ShipcosimError
 
-
 DASK = Path(__file__).resolve().parents[3] / ".venv" / "cluster"
 
 
