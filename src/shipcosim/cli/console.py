@@ -120,7 +120,7 @@ def print_summary(result: Run, page: Path, *, to_stderr: bool = False) -> None:
     print_problems(result.errors)
     if result.table.attrs.get("engine") == "native":
         others = result.table.attrs.get("stepped_by_python")
-        console.print(f"The models ran as compiled code{f', but for {others}' if others else ''}.")
+        console.print(f"The models ran as compiled code{f', except {others}' if others else ''}.")
     say_outcome(console, outcome)
     say_page(console, page)
 

@@ -31,7 +31,7 @@ DIRECTIONS = range(0, 360, 30)  # deg
 
 
 def outcomes(propulsion, length, breadth, draught, seed=7) -> list[dict]:
-    """What was said before each loss, and how far she is off after it; losses of a ship that was off before are left out."""
+    """What was said before each loss, and how far she is off after it; without those of a ship that was off before."""
     with TemporaryDirectory() as folder:
         before = Path.cwd()
         os.chdir(folder)
