@@ -42,7 +42,7 @@ class Channel(BaseModel):
         default=None, description="of time: column with these, beside one of seconds"
     )
     hemisphere: str | None = Field(
-        default=None, description="of latitude and longitude: column of N and S, E and W"
+        default=None, description="column of N and S, E and W, or of S and P for starboard and port"
     )
     quaternion: tuple[str, str, str, str] | None = Field(
         default=None,

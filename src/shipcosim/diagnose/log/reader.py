@@ -15,6 +15,7 @@ from shipcosim.diagnose.log.files.bags import is_bag, tables_of_bag
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.joined_tables import joined, tables_in
 from shipcosim.diagnose.log.files.long_format import brought_together, spread
+from shipcosim.diagnose.log.files.missing import without_missing
 from shipcosim.diagnose.log.files.nmea2000 import is_messages, tables_of_messages
 from shipcosim.diagnose.log.files.table import LogColumns, read_file
 from shipcosim.diagnose.log.files.times import epoch_unit
@@ -23,7 +24,7 @@ from shipcosim.diagnose.log.names.proposal import Proposal, propose
 from shipcosim.diagnose.log.names.units import unit_for
 from shipcosim.diagnose.log.roles import NAVIGATION, OVER_EARTH, role_of
 from shipcosim.diagnose.log.thresholds import LATEST, SHORTEST_STEP
-from shipcosim.diagnose.log.values import LARGEST, WrongUnit, values_of
+from shipcosim.diagnose.log.values import LARGEST, WrongUnit, read_together, values_of
 from shipcosim.diagnose.numerics import finite, usual_rise
 from shipcosim.errors import Problem, ShipcosimError, error_at, reading, shortened
 from shipcosim.series import make_table
@@ -85,7 +86,7 @@ def read_log(
         proposal = propose(columns, thrusters, form)
         mapping = _sure(columns, proposal)
     else:
-        mapping = given.channels
+        mapping = read_together(given.channels, columns)
     is_asked = given is not None and bool(given.channels)
     # Convert each channel to the unit of its role, and keep what is stated and what is not used.
     signals, said = _signals(columns, mapping, form, is_asked)
@@ -137,7 +138,7 @@ def columns_of(log: str | os.PathLike, form: FileLayout | None = None) -> LogCol
             return joined(path, tables, dict.fromkeys(tables, Channel(column="time")))
         files = tables_in(path)
         if not files:
-            return spread(read_file(path, form), form)
+            return without_missing(spread(read_file(path, form), form))
         tables = {name: columns_of(file, form) for name, file in files.items()}
         times = {
             name: next(

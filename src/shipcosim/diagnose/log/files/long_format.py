@@ -8,6 +8,7 @@ import numpy as np
 
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.interpolation import at_times
+from shipcosim.diagnose.log.files.missing import FLAGS, bad_rows
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.vocabulary import meaning_of, words_of
 from shipcosim.diagnose.log.rows import usable_rows
@@ -27,8 +28,19 @@ _NAMES = (
     "item",
     "field",
 )
-_NAMES += ("sensor", "message", "msg", "label", "source", "id", "measurement", "type", "path")
-_VALUES = ("value", "val", "reading", "data", "measurement", "number", "v", "y")
+_NAMES += (
+    "varname",
+    "sensor",
+    "message",
+    "msg",
+    "label",
+    "source",
+    "id",
+    "measurement",
+    "type",
+    "path",
+)
+_VALUES = ("value", "varvalue", "val", "reading", "data", "measurement", "number", "v", "y")
 _MOST_NAMES = 500
 _ALONE = 0.1  # share of rows with most channels, below which rows are messages of single sensors. Assumed.
 
@@ -113,6 +125,11 @@ def _wide(log, names, value, clock, unit):
     # Rows with a name and a time; several columns of names are joined.
     frame: Any = pandas.DataFrame({column: log.values[column] for column in log.values})
     told = frame[names].notna().all(axis=1) & frame[clock].notna()
+    bad = np.zeros(len(frame), bool)
+    for flag in log.values:
+        if FLAGS >= set(words_of(flag)):
+            bad |= bad_rows(words_of(flag), log.values[flag])
+    told &= ~bad
     frame = frame[told]
     key = frame[names[0]].astype("str")
     for more in names[1:]:
@@ -137,6 +154,8 @@ def _wide(log, names, value, clock, unit):
     said = [
         f"One value a row: '{' and '.join(names)}' names {len(values) - 1} channels, '{value}' holds them."
     ]
+    if bad.any():
+        said.append(f"{bad.sum()} values that are called bad left out.")
     if again:
         said.append(
             f"{again} values of a channel at a time that it has one for already: the first is kept."

@@ -14,7 +14,22 @@ HEMISPHERES = {
     "latitude": {"N": 1.0, "S": -1.0},
     "longitude": {"E": 1.0, "Ø": 1.0, "Ö": 1.0, "W": -1.0, "V": -1.0},
 }
-"""Signs of a degree by the letter of its side; O is east in German and west in Spanish, so it is none."""
+"""Signs of a number by the letter of its side; O is east in German and west in Spanish, so it is none."""
+_TO_SIDES = {"S": 1.0, "R": 1.0, "P": -1.0, "L": -1.0, "B": -1.0}
+_ALONG = {"F": 1.0, "AHEAD": 1.0, "A": -1.0, "R": -1.0}
+_SIDES = frozenset(
+    "NORTH SOUTH EAST WEST FWD FORWARD ASTERN AFT REV REVERSE SB STB STBD STARBOARD RIGHT PORT LEFT BB".split()
+)
+
+
+def sides_of(role: str) -> dict[str, float]:
+    """Signs by the letters that may stand behind the numbers of a role; empty where none do."""
+    if role in ("sway", "yaw_rate", "wind_from"):
+        return _TO_SIDES
+    is_along = role == "surge" or role.endswith(("_rpm", "_thrust"))
+    return _ALONG if is_along else HEMISPHERES.get(role, {})
+
+
 _TEXT = re.compile(
     r"\s*(?P<before>[NSEØÖWVnseøöwv])?\s*(?P<degrees>[+-]?\d+(?:\.\d+)?)\s*[°ºd*-]?\s*"
     r"(?:(?P<minutes>\d+(?:\.\d+)?)\s*['′’´m]?\s*(?:(?P<seconds>\d+(?:\.\d+)?)\s*(?:\"|″|''|s)?\s*)?)?"
@@ -59,26 +74,24 @@ def degrees_of_minutes(values: np.ndarray) -> np.ndarray:
 
 
 def hemisphere_signs(cells: np.ndarray, role: str) -> np.ndarray | None:
-    """Signs of a column of N and S, or E and W; None where it holds something else.
+    """Signs of a column of N and S, E and W, or port and starboard; None where it holds something else.
 
     Parameters
     ----------
     cells : (n,) array of str or None
         The column.
     role : str
-        ``"latitude"`` or ``"longitude"``.
+        Of the numbers that the column belongs to.
     """
     if cells.dtype.kind == "f":
         return None
     # Signs by the first letter; every cell must be a word for a hemisphere.
-    known = HEMISPHERES[role]
-    signs = np.array(
-        [known.get(str(cell).strip().upper()[:1], np.nan) if cell else np.nan for cell in cells]
-    )
+    known = sides_of(role)
+    words = [str(cell).strip().upper() if cell else "" for cell in cells]
+    signs = np.array([known.get(word, known.get(word[:1], np.nan)) for word in words])
     told = np.array([cell is not None for cell in cells])
-    words = {str(cell).strip().upper() for cell in cells if cell}
-    allowed = {*known, "NORTH", "SOUTH", "EAST", "WEST"}
-    return signs if told.any() and words <= allowed and np.isfinite(signs[told]).all() else None
+    is_one = told.any() and set(words) <= {"", *known} | _SIDES and np.isfinite(signs[told]).all()
+    return signs if is_one else None
 
 
 def degrees_of_texts(cells: np.ndarray, largest: float) -> np.ndarray | None:

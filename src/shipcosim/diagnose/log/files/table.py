@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.diagnose.log.files.cells import numbers_of, with_unit, without_fillers
+from shipcosim.diagnose.log.files.cells import numbers_of, with_unit
 from shipcosim.diagnose.log.files.excel import is_workbook, text_of_sheet
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.json_records import is_json, text_of_records
@@ -19,7 +19,7 @@ from shipcosim.diagnose.log.files.matlab import columns_of_matlab, is_matlab
 from shipcosim.diagnose.log.files.nmea import columns_of_sentences, holds_sentences
 from shipcosim.diagnose.log.files.refused_formats import refuse_foreign
 from shipcosim.diagnose.log.files.text import text_of
-from shipcosim.diagnose.log.files.times import seconds_of_parts
+from shipcosim.diagnose.log.files.times import seconds_of_parts, with_fractions
 from shipcosim.diagnose.log.names.units import is_unit, name_and_unit
 from shipcosim.dialects import NOTHING, cells_in, decimal_of, is_comment
 from shipcosim.errors import Problem, ShipcosimError, error_at
@@ -121,6 +121,7 @@ def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
             values[name], units[name] = found
     if decimal == ",":
         said.append("Numbers are read with a decimal comma.")
+    said += with_fractions(values)
     if "time" not in values and (found := seconds_of_parts(values)):
         parts, values["time"] = found
         units["time"] = "s"
@@ -304,9 +305,5 @@ def _with_comma(columns):
 def _column(name, cells, decimal):
     """Values of a column, and remarks on them."""
     if cells.dtype.kind in "fiub":
-        return without_fillers(name, cells.to_numpy(float))
-    values, said = numbers_of(name, cells, decimal)
-    if values.dtype.kind == "f":
-        values, more = without_fillers(name, values)
-        said = [*said, *more]
-    return values, said
+        return cells.to_numpy(float), []
+    return numbers_of(name, cells, decimal)

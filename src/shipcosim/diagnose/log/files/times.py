@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from datetime import datetime
 from functools import cache
-from itertools import product, takewhile
+from itertools import pairwise, product, takewhile
 from typing import Any
 
 import numpy as np
@@ -128,6 +128,45 @@ def seconds_of(
         times = times - zone
         times = times - finite(times)[0]
     return times, said
+
+
+def with_fractions(columns: dict[str, np.ndarray]) -> list[str]:
+    """Put milliseconds that stand in a column behind stamps of whole seconds into these, in place; remarks.
+
+    Parameters
+    ----------
+    columns : dict of str to (n,) array
+        In their order.
+    """
+    for clock, name in pairwise(list(columns)):
+        stamps = columns[clock]
+        rest = columns[name]
+        is_fraction = name.lower() in _MILLISECONDS and np.isin(rest, range(1000)).all()
+        if is_fraction and all(_WHOLE_SECONDS.search(str(stamp)) for stamp in stamps):
+            both = [f"{stamp}.{int(ms):03d}" for stamp, ms in zip(stamps, rest, strict=True)]
+            columns[clock] = np.array(both, object)
+            return [f"The fractions of a second of '{clock}' stand in '{name}'."]
+    return []
+
+
+_MILLISECONDS = frozenset("ms msec millis millisecond milliseconds millisec".split())
+_WHOLE_SECONDS = re.compile(r"\d:\d\d:\d\d$")
+
+
+def is_clock_number(known: np.ndarray) -> bool:
+    """Whether numbers can be hhmmss and not seconds, because minutes and seconds stay below 60.
+
+    Fractions of days run slower than any clock: their steps are below a millisecond.
+    """
+    whole = np.floor(known)
+    inside = known.min() >= 0.0 and known.max() < 240000.0
+    return bool(
+        inside
+        and (whole % 100 < 60).all()
+        and (whole // 100 % 100 < 60).all()
+        and known.max() > 100.0
+        and float(np.ptp(known)) >= 1e-3 * (len(known) - 1)
+    )
 
 
 def seconds_of_parts(columns: Mapping[str, np.ndarray]) -> tuple[list[str], np.ndarray] | None:
