@@ -95,24 +95,22 @@ def replay_log(
 
 def _misfit(tracks: Tracks) -> tuple[str, ...]:
     """A remark where all systems move otherwise than the log by more than weather makes a ship move."""
-    off = errors_of(tracks, (1.0,)).isel(after=0)
     # A ship that lies still is at the end of a prediction where she was at its start.
+    end = tracks.horizon
     start = {
-        name: one.isel(time=[0]).assign_coords(time=[tracks.horizon])
-        for name, one in tracks.predicted.items()
+        name: one.isel(time=[0]).assign_coords(time=[end]) for name, one in tracks.predicted.items()
     }
-    still = errors_of(Tracks(tracks.horizon, tracks.measured, start), (1.0,)).isel(after=0)
+    off = errors_of(tracks, (1.0,))
+    still = errors_of(Tracks(end, tracks.measured, start), (1.0,)).assign_coords(after=off["after"])
     turns = off["heading"] > np.maximum(_TURNED, _MORE_TURNED * still["heading"])
-    drifts = off["position"] > _DRIFTED * tracks.horizon
-    is_other = (turns | drifts) & (off["position"] > still["position"])
-    if not is_other.all() or next(iter(start.values())).sizes["segment"] < _FEWEST:
+    is_other = (turns | (off["position"] > _DRIFTED * end)) & (off["position"] > still["position"])
+    if not is_other.all() or start.popitem()[1].sizes["segment"] < _FEWEST:
         return ()
     shown = [
-        f"{float(e['heading'][-1]):.0f} deg and {float(e['position'][-1]):.3g} m"
-        for e in (off, still)
+        f"{e['heading'][-1, 0]:.0f} deg and {e['position'][-1, 0]:.3g} m" for e in (off, still)
     ]
     return (
-        f"The log does not fit this ship: {tracks.horizon:.0f} s after its starts the simulation is off by {shown[0]}, "
+        f"The log does not fit this ship: {end:.0f} s after its starts the simulation is off by {shown[0]}, "
         f"a ship that lies still by {shown[1]}. Is it the log of another ship, or of thrusters under wrong names?",
     )
 

@@ -24,7 +24,7 @@ from shipcosim.diagnose.log.names.proposal import Proposal, propose
 from shipcosim.diagnose.log.names.units import unit_for
 from shipcosim.diagnose.log.roles import NAVIGATION, OVER_EARTH, role_of
 from shipcosim.diagnose.log.thresholds import LATEST, SHORTEST_STEP
-from shipcosim.diagnose.log.values import LARGEST, WrongUnit, read_together, values_of
+from shipcosim.diagnose.log.values import LARGEST, WrongUnit, values_of
 from shipcosim.diagnose.numerics import finite, usual_rise
 from shipcosim.errors import Problem, ShipcosimError, error_at, reading, shortened
 from shipcosim.series import make_table
@@ -86,7 +86,7 @@ def read_log(
         proposal = propose(columns, thrusters, form)
         mapping = _sure(columns, proposal)
     else:
-        mapping = read_together(given.channels, columns)
+        mapping = given.channels
     is_asked = given is not None and bool(given.channels)
     # Convert each channel to the unit of its role, and keep what is stated and what is not used.
     signals, said = _signals(columns, mapping, form, is_asked)

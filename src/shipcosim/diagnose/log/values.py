@@ -24,6 +24,7 @@ from shipcosim.diagnose.log.files.times import (
     seconds_of_clock,
 )
 from shipcosim.diagnose.log.names.units import name_and_unit, unit_for
+from shipcosim.diagnose.log.names.vocabulary import meaning_of, words_of
 from shipcosim.diagnose.log.roles import role_of
 from shipcosim.diagnose.log.thresholds import SHORTEST_STEP
 from shipcosim.diagnose.numerics import finite, usual_rise
@@ -127,25 +128,22 @@ def _without_leaps(values, column):
     A direction lies within a turn or, where turns are counted on, goes on from there without a leap.
     """
     size = np.abs(values)
-    known = finite(size)
-    most = max(_MOST_TURNED, _USUALLY_TURNED * float(np.median(known))) if len(known) else np.inf
-    rows = size > most
     far = np.flatnonzero(size > _MOST_TURNED)
-    values = np.where(rows, np.nan, values)
-    kept = finite(values)
-    is_many = rows.sum() > _FEW_IMPOSSIBLE * len(known)
-    leaps = np.abs(np.diff(kept)).max(initial=0.0) > 360.0
-    if len(far) and (is_many or abs(kept[0]) > _MOST_TURNED or (len(far) > rows.sum() and leaps)):
+    if not len(far):
+        return values, []
+    rows = size > max(_MOST_TURNED, _USUALLY_TURNED * np.median(finite(size)))
+    left = np.where(rows, np.nan, values)
+    known = finite(left)
+    is_leaping = rows.sum() < len(far) and np.abs(np.diff(known)).max() > 360.0
+    if is_leaping or rows.mean() > _FEW_IMPOSSIBLE or abs(known[0]) > _MOST_TURNED:
         found = f"column '{column}' is {size[far[0]]:g} deg in row {far[0] + 2}, which is no direction: is the unit right?"
         remedy = (
             "In a channel file map = [[0, 0], [36000, 360]] reads hundredths of a degree, "
             "and offset = -3600 takes off ten turns."
         )
         raise error_at("", found, remedy)
-    if not rows.any():
-        return values, []
-    shown = f"{size[rows][0]:g} deg in {int(rows.sum())} row{'s' * int(rows.sum() > 1)}"
-    return values, [f"'{column}' is {shown}, which is no direction: left out."]
+    said = f"'{column}' is {size[far[0]]:g} deg in row {far[0] + 2} or more, which is no direction: left out."
+    return left, [said] if rows.any() else []
 
 
 def _without_placeholders(values, name, column):
@@ -232,20 +230,22 @@ def _time(channel, column, stated, log, form):
         read = seconds_of(values, form.dates, stated)
         if read is not None:
             times, said = _without_summer_time(read[0], values)
+            if channel.milliseconds is not None:
+                times = times + 1e-3 * _numbers(log, _found(log, channel.milliseconds))
             return times, [*read[1], *said]
     # Numbers: clock times as hhmmss, seconds with nanoseconds, counts since 1970, or a plain unit.
     numbers = _numbers(log, column)
-    known = finite(numbers)
     if stated.lower() == CLOCK_NUMBER:
         return seconds_of_clock(_of_clock(numbers))
-    # Plain seconds of some minutes come by 60 to 99, which no clock shows.
-    is_long = not stated and len(known) and np.ptp(known) > 200.0 and usual_rise(known, 1e9) < 40.0
-    if is_long and not channel.nanoseconds and is_clock_number(known):
-        times, said = seconds_of_clock(_of_clock(numbers))
-        return times, [*said, f"Numbers in '{column}' are clock times: 123519 is 12:35:19."]
     if channel.nanoseconds is not None:
         return numbers + 1e-9 * _numbers(log, _found(log, channel.nanoseconds)), []
     unit = unit_for(stated, "s") if stated else ""
+    known = finite(numbers)
+    # Seconds of some minutes come by 60 to 99, which no clock shows.
+    is_long = len(known) and np.ptp(known) > 200.0 and usual_rise(known, 1e9) < 40.0
+    if not unit and is_long and is_clock_number(known):
+        times, said = seconds_of_clock(_of_clock(numbers))
+        return times, [*said, f"Numbers in '{column}' are clock times: 123519 is 12:35:19."]
     if unit in ("", "date") and (epoch := epoch_unit(numbers)) is not None:
         said = [f"Times in '{column}' are {epoch} since 1970."] if epoch != "s" or unit else []
         return numbers / EPOCHS[epoch], said
@@ -359,12 +359,14 @@ def _position(channel, column, stated, name, log):
             return None
     elif stated.replace(" ", "").lower() == TEN_MILLIONTHS.replace(" ", ""):
         degrees = 1e-7 * values
-    elif stated.lower() == MINUTES or (not stated and is_minutes(values, LARGEST[name])):
+    elif stated.lower() == MINUTES or (not stated and _in_minutes(values, name, log)):
         degrees = degrees_of_minutes(values)
         said = (
             []
             if stated
-            else [f"'{column}' is {name} in {MINUTES}, as it is beyond {LARGEST[name]:g}."]
+            else [
+                f"'{column}' is {name} in {MINUTES}, as positions of the log are beyond all degrees."
+            ]
         )
     elif channel.hemisphere is None:
         return None
@@ -387,29 +389,16 @@ def _signs(channel, name, log):
     return signs
 
 
-def read_together(channels: dict[str, Channel], log: LogColumns) -> dict[str, Channel]:
-    """Channels of which longitude has the form of latitude: degrees and minutes, or degrees.
-
-    Alone, 123.4 can be 1 degree 23.4 minutes or 123.4 degrees, and 350.4 can be 3 degrees 50.4 minutes.
-
-    Parameters
-    ----------
-    channels : dict of str to Channel
-        By role.
-    log : LogColumns
-        Columns of the file.
-    """
-    pair = [channels[name] for name in LARGEST if name in channels]
-    cells = [log.values.get(channel.column) for channel in pair]
-    is_stated = any(channel.unit or log.units.get(channel.column) for channel in pair)
-    if len(pair) < 2 or is_stated or any(v is None or v.dtype.kind != "f" for v in cells):
-        return channels
-    # East of Greenwich a longitude may count on to 360.
-    in_minutes = is_minutes(cells[0], LARGEST["latitude"]) or is_minutes(cells[1], 360.0)
-    if in_minutes == is_minutes(cells[1], LARGEST["longitude"]):
-        return channels
-    unit = MINUTES if in_minutes else "deg"
-    return channels | {"longitude": pair[1].model_copy(update={"unit": unit})}
+def _in_minutes(values, name, log):
+    """Whether numbers are degrees and minutes; a longitude is where a latitude is, as it may be small or beyond 180."""
+    latitudes = [
+        cells
+        for other, cells in log.values.items()
+        if meaning_of(words_of(other)).role == "latitude" and cells.dtype.kind == "f"
+    ]
+    if name == "latitude" or not latitudes:
+        return is_minutes(values, LARGEST[name])
+    return is_minutes(values, 360.0) or any(is_minutes(cells, 90.0) for cells in latitudes)
 
 
 def _mapped(values, channel, column):

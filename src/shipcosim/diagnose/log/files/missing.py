@@ -8,15 +8,10 @@ import numpy as np
 
 from shipcosim.diagnose.log.files.cells import without_fillers
 from shipcosim.diagnose.log.files.table import LogColumns
-from shipcosim.diagnose.log.names.vocabulary import words_of
-from shipcosim.diagnose.numerics import finite
+from shipcosim.diagnose.log.names.vocabulary import vocabulary, words_of
 
-FLAGS = frozenset("quality valid validity ok good flag status".split())
+FLAGS = frozenset(vocabulary()["flags"]["words"])
 """Words of a column that says which rows of another one are measurements."""
-_YES = FLAGS - {"quality", "flag", "status"}  # words by which 1 is good and 0 is bad
-_GOOD = frozenset("good ok valid true yes".split())
-_BAD = frozenset("bad invalid false no fault failed".split())
-_OPC = (64, 192, 255)  # quality of OPC: bad below the first number, good from the second on
 
 
 def without_missing(log: LogColumns) -> LogColumns:
@@ -37,13 +32,15 @@ def without_missing(log: LogColumns) -> LogColumns:
         # The flag of a channel, or of a sensor with several channels, begins as their names do.
         words = words_of(flag)
         of = tuple(word for word in words if word not in FLAGS)
-        if not of or len(of) == len(words) or not (bad := bad_rows(words, cells)).any():
+        bad = bad_rows(words, cells)
+        if not of or not bad.any():
             continue
-        names = [n for n in values if words_of(n)[: len(of)] == of and values[n].dtype.kind == "f"]
-        names = [name for name in names if not FLAGS & set(words_of(name))]
-        values |= {name: np.where(bad, np.nan, values[name]) for name in names}
-        if names:
-            said.append(f"'{flag}' calls {bad.sum()} rows of {', '.join(names)} bad: left empty.")
+        for name in log.values:
+            told = words_of(name)
+            is_flagged = told[: len(of)] == of and not FLAGS & set(told)
+            if is_flagged and values[name].dtype.kind == "f":
+                values[name] = np.where(bad, np.nan, values[name])
+                said.append(f"'{flag}' calls {bad.sum()} rows of '{name}' bad: left empty.")
     return replace(log, values=values, remarks=tuple(said))
 
 
@@ -64,13 +61,11 @@ def bad_rows(words: tuple[str, ...], cells: np.ndarray) -> np.ndarray:
     >>> bad_rows(("quality",), np.array(["Good", "Good", None], object)).tolist()
     [False, False, True]
     """
-    bad = np.zeros(len(cells), bool)
-    if cells.dtype.kind == "O":
-        texts = ["bad" if cell is None else str(cell).strip().lower() for cell in cells]
-        if set(texts) <= _GOOD | _BAD:
-            bad = np.isin(texts, list(_BAD))
-    elif len(known := finite(cells)) and set(known) <= {0.0, 1.0} and _YES & set(words):
-        bad = cells == 0.0
-    elif len(known) and _OPC[1] <= known.max() <= _OPC[2]:
-        bad = cells < _OPC[0]
+    told = vocabulary()["flags"]
+    texts = np.array([str(cell).lower() for cell in cells] if FLAGS & set(words) else ["unknown"])
+    is_known = {*told["good"], *told["bad"]} >= set(texts)
+    # Of a quality or status 0 may be good.
+    if 1.0 in cells and not set(words) & set(told["yes"]) or not is_known:
+        return np.zeros(len(cells), bool)
+    bad = np.isin(texts, told["bad"])
     return bad & (bad.mean() < 0.5)

@@ -6,30 +6,11 @@ import re
 
 import numpy as np
 
+from shipcosim.diagnose.log.names.vocabulary import vocabulary
 from shipcosim.diagnose.numerics import finite
 
 MINUTES = "ddmm.mmmm"
 """Spelling of the unit of latitudes and longitudes in NMEA 0183: degrees times 100 plus minutes."""
-HEMISPHERES = {
-    "latitude": {"N": 1.0, "S": -1.0},
-    "longitude": {"E": 1.0, "Ø": 1.0, "Ö": 1.0, "W": -1.0, "V": -1.0},
-}
-"""Signs of a number by the letter of its side; O is east in German and west in Spanish, so it is none."""
-_TO_SIDES = {"S": 1.0, "R": 1.0, "P": -1.0, "L": -1.0, "B": -1.0}
-_ALONG = {"F": 1.0, "AHEAD": 1.0, "A": -1.0, "R": -1.0}
-_SIDES = frozenset(
-    "NORTH SOUTH EAST WEST FWD FORWARD ASTERN AFT REV REVERSE SB STB STBD STARBOARD RIGHT PORT LEFT BB".split()
-)
-
-
-def sides_of(role: str) -> dict[str, float]:
-    """Signs by the letters that may stand behind the numbers of a role; empty where none do."""
-    if role in ("sway", "yaw_rate", "wind_from"):
-        return _TO_SIDES
-    is_along = role == "surge" or role.endswith(("_rpm", "_thrust"))
-    return _ALONG if is_along else HEMISPHERES.get(role, {})
-
-
 _TEXT = re.compile(
     r"\s*(?P<before>[NSEØÖWVnseøöwv])?\s*(?P<degrees>[+-]?\d+(?:\.\d+)?)\s*[°ºd*-]?\s*"
     r"(?:(?P<minutes>\d+(?:\.\d+)?)\s*['′’´m]?\s*(?:(?P<seconds>\d+(?:\.\d+)?)\s*(?:\"|″|''|s)?\s*)?)?"
@@ -83,15 +64,17 @@ def hemisphere_signs(cells: np.ndarray, role: str) -> np.ndarray | None:
     role : str
         Of the numbers that the column belongs to.
     """
-    if cells.dtype.kind == "f":
-        return None
-    # Signs by the first letter; every cell must be a word for a hemisphere.
     known = sides_of(role)
-    words = [str(cell).strip().upper() if cell else "" for cell in cells]
-    signs = np.array([known.get(word, known.get(word[:1], np.nan)) for word in words])
-    told = np.array([cell is not None for cell in cells])
-    is_one = told.any() and set(words) <= {"", *known} | _SIDES and np.isfinite(signs[told]).all()
-    return signs if is_one else None
+    told = [str(cell).strip().upper() for cell in cells if cell is not None]
+    if cells.dtype.kind == "f" or not told or not known.keys() >= set(told):
+        return None
+    return np.array([known.get(str(cell).strip().upper(), np.nan) for cell in cells])
+
+
+def sides_of(role: str) -> dict[str, float]:
+    """Signs by the words for sides that may stand behind the numbers of a role; empty where none do."""
+    sides = vocabulary()["sides"]
+    return sides["along" if role.endswith(("_rpm", "_thrust")) else sides["of"].get(role, "none")]
 
 
 def degrees_of_texts(cells: np.ndarray, largest: float) -> np.ndarray | None:

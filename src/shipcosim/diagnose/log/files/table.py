@@ -19,7 +19,7 @@ from shipcosim.diagnose.log.files.matlab import columns_of_matlab, is_matlab
 from shipcosim.diagnose.log.files.nmea import columns_of_sentences, holds_sentences
 from shipcosim.diagnose.log.files.refused_formats import refuse_foreign
 from shipcosim.diagnose.log.files.text import text_of
-from shipcosim.diagnose.log.files.times import seconds_of_parts, with_fractions
+from shipcosim.diagnose.log.files.times import seconds_of_parts
 from shipcosim.diagnose.log.names.units import is_unit, name_and_unit
 from shipcosim.dialects import NOTHING, cells_in, decimal_of, is_comment
 from shipcosim.errors import Problem, ShipcosimError, error_at
@@ -121,7 +121,6 @@ def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
             values[name], units[name] = found
     if decimal == ",":
         said.append("Numbers are read with a decimal comma.")
-    said += with_fractions(values)
     if "time" not in values and (found := seconds_of_parts(values)):
         parts, values["time"] = found
         units["time"] = "s"

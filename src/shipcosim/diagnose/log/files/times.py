@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from datetime import datetime
 from functools import cache
-from itertools import pairwise, product, takewhile
+from itertools import product, takewhile
 from typing import Any
 
 import numpy as np
@@ -128,29 +128,6 @@ def seconds_of(
         times = times - zone
         times = times - finite(times)[0]
     return times, said
-
-
-def with_fractions(columns: dict[str, np.ndarray]) -> list[str]:
-    """Put milliseconds that stand in a column behind stamps of whole seconds into these, in place; remarks.
-
-    Parameters
-    ----------
-    columns : dict of str to (n,) array
-        In their order.
-    """
-    for clock, name in pairwise(list(columns)):
-        stamps = columns[clock]
-        rest = columns[name]
-        is_fraction = name.lower() in _MILLISECONDS and np.isin(rest, range(1000)).all()
-        if is_fraction and all(_WHOLE_SECONDS.search(str(stamp)) for stamp in stamps):
-            both = [f"{stamp}.{int(ms):03d}" for stamp, ms in zip(stamps, rest, strict=True)]
-            columns[clock] = np.array(both, object)
-            return [f"The fractions of a second of '{clock}' stand in '{name}'."]
-    return []
-
-
-_MILLISECONDS = frozenset("ms msec millis millisecond milliseconds millisec".split())
-_WHOLE_SECONDS = re.compile(r"\d:\d\d:\d\d$")
 
 
 def is_clock_number(known: np.ndarray) -> bool:

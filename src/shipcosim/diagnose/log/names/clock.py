@@ -143,6 +143,11 @@ def _stamps(
     except ShipcosimError:
         pass  # reading says how it can be read
     guess = guess or Guess(name, "time", Channel(column=name), SURE)
+    # Stamps of whole seconds take the milliseconds from a column of their own.
+    for other, rest in log.values.items():
+        is_rest = words_of(other) in (("ms",), ("milliseconds",)) and rest.dtype.kind == "f"
+        if is_rest and "." not in str(told[0]).rpartition(":")[2] and _all_between(rest, 0.0, 1e3):
+            guess = guess.read_as({"milliseconds": other})
     # Clock times without a date take the date from a column beside it.
     is_clock = ":" in str(told[0]) and len(str(told[0]).split(":")[0].strip()) <= 2
     dates = [other for other in log.values if _is_date(other) and other != name]

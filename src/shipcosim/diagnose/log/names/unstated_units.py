@@ -12,7 +12,7 @@ from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.evidence import frame_of_angle, unit_of_rate, unit_of_speed
 from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, Guess
 from shipcosim.diagnose.log.roles import ROLES
-from shipcosim.diagnose.log.values import LARGEST, TEN_MILLIONTHS, read_together, values_of
+from shipcosim.diagnose.log.values import LARGEST, TEN_MILLIONTHS, values_of
 from shipcosim.diagnose.numerics import finite
 from shipcosim.errors import ShipcosimError
 
@@ -35,9 +35,6 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: FileLayout) -> None
     """
     # Positions first, as heading, axes and speeds are judged by them.
     _settle_degrees(chosen, log)
-    position = {role: chosen[role].channel for role in LARGEST if role in chosen}
-    for role, channel in read_together(position, log).items():
-        chosen[role] = replace(chosen[role], channel=channel)
     motion = _motion(chosen, log, form)
     _settle_heading(chosen, log, form, motion)
     _settle_axes(chosen, log, form, motion)
@@ -80,14 +77,13 @@ def _settle_degrees(chosen, log):
                 f"whole numbers beyond {largest:g}: in {TEN_MILLIONTHS}, as autopilots write",
             )
     # A position in radians looks like one in the Gulf of Guinea.
-    if all(_is_open(chosen, role) for role in LARGEST):
-        sizes = [np.abs(_finite(log.values[chosen[role].column])) for role in LARGEST]
-        limits = np.radians(list(LARGEST.values()))
-        if all(len(s) and 0.0 < s.max() <= most for s, most in zip(sizes, limits, strict=True)):
-            for role in LARGEST:
-                _guess(
-                    chosen, role, "rad", "no unit is stated, and no value is beyond pi: rad or deg"
-                )
+    is_small = [
+        _is_open(chosen, role)
+        and 0.0 < np.abs(_finite(log.values[chosen[role].column])).max(initial=0.0) <= most
+        for role, most in {"latitude": np.pi / 2.0, "longitude": np.pi}.items()
+    ]
+    for role in LARGEST if all(is_small) else ():
+        _guess(chosen, role, "rad", "no unit is stated, and no value is beyond pi: rad or deg")
 
 
 def _is_open(chosen, role):
