@@ -22,7 +22,7 @@ from shipcosim.options import CountProgress
 from shipcosim.ssp import AnyPath, System
 
 _TURNED = 15.0
-"""Error of the heading at the end of a prediction, above which a log may be of another ship. [deg] Nine runs of Gunnerus
+"""Error of the heading at the end of a prediction, above which a log may be of another ship. [deg] Nine runs of a ship
 in weather from calm to rough, whose current a log does not tell, are off by 0.7 to 5.1 deg, logs of other ships by 26 to
 60 deg."""
 _MORE_TURNED = 1.5
