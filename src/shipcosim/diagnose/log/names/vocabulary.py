@@ -38,6 +38,7 @@ def vocabulary() -> dict[str, Any]:
     return tomllib.loads((Path(__file__).parent / "names.toml").read_text(encoding="utf-8"))
 
 
+@cache
 def words_of(name: str) -> tuple[str, ...]:
     """Words of a name in lower case, short forms written out.
 
