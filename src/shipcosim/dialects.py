@@ -17,13 +17,16 @@ if TYPE_CHECKING:
 _WORDS = (
     "n/a na #n/a #na nan nat null none nil - -- --- ? * ** *** missing invalid void "
     "undefined empty nodata n.a. 1.#qnan -nan #value! #ref! #div/0! -1.#ind 1.#ind .... off "
-    "fault error bad <null> (null) "
+    "fault error bad <null> (null) #### ##### ###### #name? #num! err ovf n.v. k.a. s/d n/d --.- ---.- \\n shutdown "
 )
-NOTHING = frozenset(("", "no data", "no value", *_WORDS.split()))
+_PHRASES = (
+    "no data,no value,bad input,i/o timeout,pt created,scan off,comm fail,calc failed,sin dato"
+)
+NOTHING = frozenset(("", *_PHRASES.split(","), *_WORDS.split()))
 """Words that loggers write where they have no value, in lower case."""
 LFS_POINTER = b"version https://git-lfs.github.com/spec/"
 """Start of the file that a clone without Git LFS has instead of a large one."""
-_NUMBER = r"[+-]?(?:\d[\d.,' ]*|[.,]\d+)(?:[eEdD][+-]?\d+)?"
+_NUMBER = r"[+-]?(?:\d[\d.,'\u2019\u00a0\u202f ]*|[.,]\d+)(?:[eEdD][+-]?\d+)?"
 _STAMP = r"[+-]?\d[\d:./\-+TZ ,]*(?:[AaPp]\.?[Mm]\.?)?"
 WITH_UNIT = r"(?P<number>[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*(?P<unit>[A-Za-zµ°º%][A-Za-z0-9µ°º%/^.·-]{0,7})"
 _CLOCK = r"[+-]?\d+:\d\d:\d\d(?:\.\d+)?"

@@ -132,3 +132,97 @@ def test_of_a_file_only_the_names_are_read_before_it_is_known_to_be_a_run(name, 
         if "broken" in name:
             path.write_bytes(b"\x1f\x8bnothing")
         assert run_as_log(path, "vessel", []) == path
+
+
+def misfit(log, system):
+    """Remarks of a replay that say that the log is of another ship."""
+    found = replay_log(log, {"simulated": system})
+    return [remark for remark in found.remarks if "does not fit this ship" in remark]
+
+
+def dp_run(system, wind, current, towards, seed):
+    """A run of a DP system that goes 10 m north and turns by 30 deg, in some weather [m/s, m/s, deg]."""
+    weather = {"environment.wind_speed": wind, "environment.current_speed": current}
+    weather |= {"environment.current_to": np.radians(towards), "environment.seed": seed}
+    weather |= {"reference.x_set": 10.0, "reference.psi_set": np.radians(30.0)}
+    there = {name: value for name, value in weather.items() if _has(system, name)}
+    return sc.simulate(
+        with_values(system, there), stop_time=300.0, step_size=0.1, output_interval=0.5
+    ).table
+
+
+def _has(system, name):
+    component, _, variable = name.partition(".")
+    return component in system.components and variable in system.components[component].variables
+
+
+def as_log(run, names):
+    """A run by roles, with the thrusters under other names."""
+    log = run_as_log(run, "vessel", list(names.values()))
+    navigation = ["north", "east", "heading", "surge", "sway", "yaw_rate"]
+    columns = {role: log[role] for role in navigation}
+    for name, of in names.items():
+        for kind in ("rpm", "azimuth"):
+            if f"{of}_{kind}" in log:
+                columns[f"{name}_{kind}"] = log[f"{of}_{kind}"]
+    return log[[]].assign(columns)
+
+
+@pytest.fixture(scope="module")
+def gunnerus_open():
+    return read_system(ROOT / "ssp" / "gunnerus_open", fmus=[twin.build_stale(ROOT)])
+
+
+@pytest.mark.parametrize(
+    ("wind", "current", "towards", "seed"),
+    [(0.0, 0.0, 0.0, 1), (8.0, 0.5, 90.0, 2), (14.0, 0.3, 200.0, 3)],
+)
+def test_a_log_of_her_own_fits_a_ship_in_any_weather(gunnerus_open, wind, current, towards, seed):
+    """The log does not tell the current, which moves her by up to 18 m in a minute."""
+    held = read_system(ROOT / "ssp" / "gunnerus_dp", fmus=[twin.build_stale(ROOT)])
+    assert misfit(dp_run(held, wind, current, towards, seed), gunnerus_open) == []
+
+
+@pytest.mark.parametrize("own", ["kvlcc2_open", "otter_open"])
+def test_a_log_of_a_ship_under_way_fits_her(run, tanker, own):
+    if own == "kvlcc2_open":
+        assert misfit(run, tanker) == []
+        return
+    boat = read_system(ROOT / "ssp" / own, fmus=[twin.build_stale(ROOT)])
+    assert misfit(boat_run(boat), boat) == []
+
+
+def boat_run(boat):
+    """200 s of the Otter with changing speeds of her propellers."""
+    time = np.arange(0.0, 200.5, 0.5)
+    columns = [
+        ("left_rpm", 500.0 + 80.0 * np.sin(time / 20.0), "rpm", ""),
+        ("right_rpm", 480.0 + 60.0 * np.cos(time / 15.0), "rpm", ""),
+    ]
+    driven = make_table(time, columns)
+    return sc.simulate(
+        boat, stop_time=200.0, step_size=0.1, output_interval=0.5, inputs=driven
+    ).table
+
+
+@pytest.mark.parametrize(
+    ("system", "names"),
+    [
+        ("otter_open", {"port": "left", "starboard": "right"}),
+        ("four_azimuths", {"port": "aft_port", "starboard": "aft_starboard"}),
+        ("four_azimuths", {"port": "bow_port", "starboard": "bow_starboard"}),
+    ],
+)
+def test_a_log_of_another_ship_is_said_to_be_one_and_by_what(gunnerus_open, system, names):
+    other = read_system(ROOT / "ssp" / system, fmus=[twin.build_stale(ROOT)])
+    table = boat_run(other) if system == "otter_open" else dp_run(other, 8.0, 0.3, 90.0, 1)
+    (said,) = misfit(as_log(table, names), gunnerus_open)
+    assert "s after its starts the simulation is off by" in said
+    assert "Is it the log of another ship" in said
+
+
+def test_few_predictions_say_nothing_of_the_ship(gunnerus_open):
+    boat = read_system(ROOT / "ssp" / "otter_open", fmus=[twin.build_stale(ROOT)])
+    log = as_log(boat_run(boat), {"port": "left", "starboard": "right"})
+    found = replay_log(log, {"simulated": gunnerus_open}, horizon=90.0)
+    assert not [remark for remark in found.remarks if "does not fit" in remark]

@@ -113,10 +113,10 @@ def test_a_log_of_few_rows(tmp_path, rows):
 
 def test_a_log_whose_clock_jumps_to_the_end_of_time(tmp_path):
     text = "time,north,east,heading\n" + "".join(
-        f"{t},0.0,0.0,0\n" for t in (0, 1, 2, 3, 1e30, 5, -1e30)
+        f"{t},0.0,0.0,0\n" for t in (0, 1, 2, 3, 1e12, 5, -1e12)
     )
     found, _ = checked(tmp_path, {"log.csv": text.encode()})
-    assert "time: is 1e+30 s in row 6: is the unit right? Times are at most 2.6e+11 s" in found
+    assert "time: is 1e+12 s in row 6: is the unit right? Times are at most 2.6e+11 s" in found
 
 
 @pytest.mark.parametrize(

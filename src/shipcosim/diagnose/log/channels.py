@@ -41,8 +41,11 @@ class Channel(BaseModel):
     nanoseconds: str | None = Field(
         default=None, description="of time: column with these, beside one of seconds"
     )
+    milliseconds: str | None = Field(
+        default=None, description="of time: column with these, beside one of whole seconds"
+    )
     hemisphere: str | None = Field(
-        default=None, description="of latitude and longitude: column of N and S, E and W"
+        default=None, description="column of N and S, E and W, or of S and P for starboard and port"
     )
     quaternion: tuple[str, str, str, str] | None = Field(
         default=None,
@@ -57,6 +60,7 @@ class Channel(BaseModel):
             self.column,
             self.date,
             self.nanoseconds,
+            self.milliseconds,
             self.hemisphere,
             *(self.quaternion or ()),
         )

@@ -15,6 +15,7 @@ from shipcosim.diagnose.log.files.bags import is_bag, tables_of_bag
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.joined_tables import joined, tables_in
 from shipcosim.diagnose.log.files.long_format import brought_together, spread
+from shipcosim.diagnose.log.files.missing import without_missing
 from shipcosim.diagnose.log.files.nmea2000 import is_messages, tables_of_messages
 from shipcosim.diagnose.log.files.table import LogColumns, read_file
 from shipcosim.diagnose.log.files.times import epoch_unit
@@ -137,7 +138,7 @@ def columns_of(log: str | os.PathLike, form: FileLayout | None = None) -> LogCol
             return joined(path, tables, dict.fromkeys(tables, Channel(column="time")))
         files = tables_in(path)
         if not files:
-            return spread(read_file(path, form), form)
+            return without_missing(spread(read_file(path, form), form))
         tables = {name: columns_of(file, form) for name, file in files.items()}
         times = {
             name: next(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from shipcosim.diagnose.log.channels import Channel
@@ -14,8 +16,15 @@ from shipcosim.diagnose.log.files.positions import (
     is_minutes,
 )
 from shipcosim.diagnose.log.files.table import LogColumns
-from shipcosim.diagnose.log.files.times import EPOCHS, epoch_unit, seconds_of, seconds_of_clock
+from shipcosim.diagnose.log.files.times import (
+    EPOCHS,
+    epoch_unit,
+    is_clock_number,
+    seconds_of,
+    seconds_of_clock,
+)
 from shipcosim.diagnose.log.names.units import name_and_unit, unit_for
+from shipcosim.diagnose.log.names.vocabulary import meaning_of, words_of
 from shipcosim.diagnose.log.roles import role_of
 from shipcosim.diagnose.log.thresholds import SHORTEST_STEP
 from shipcosim.diagnose.numerics import finite, usual_rise
@@ -41,6 +50,16 @@ _NAMES = {
     "us": "microseconds",
     "ns": "nanoseconds",
 }
+_MOST_TURNED = 1080.0  # deg; where turns are counted on a log begins within it. Assumed.
+_FEW_IMPOSSIBLE = (
+    0.1  # share of a direction's values that may be impossible; else the unit is wrong. Assumed.
+)
+_USUALLY_TURNED = (
+    4.0  # times the median of a direction, above which a number is no direction. Assumed.
+)
+_HOUR = 3600.0  # s
+_SUNDAY = 6
+_PUT_ON = r"(?<![\d+-])0?[23]:00(:\d\d([.,]\d+)?)?(\s*[aA][mM])?$"  # hours to which clocks are put on, no zone behind
 _PERIODS = {86400.0: "day", 604800.0: "week"}  # s; after which clocks start anew
 _NEAR_END = 300.0  # s; within which of its end one was, and of its start it is. Assumed.
 
@@ -93,9 +112,38 @@ def values_of(
         found = f"its unit '{unit}' is none that converts to {target}."
         raise WrongUnit(Problem("", found, "Correct it, or say it in a channel file.")) from error
     values, said = _without_placeholders(values, name, column)
+    if channel.hemisphere is not None:
+        values = np.abs(values) * _signs(channel, name, log)
     # -0.0 + 0.0 is 0.0, and the sign of a zero is all that is left of a rate in too large a unit
     values = factor * (channel.sign * values + (channel.offset or -0.0)) + (zero or -0.0)
+    if role and role.is_angle and name not in LARGEST:
+        values, more = _without_leaps(values, column)
+        said += more
     return values, target, said
+
+
+def _without_leaps(values, column):
+    """Directions without numbers that none is, and remarks; raises ShipcosimError where most are such.
+
+    A direction lies within a turn or, where turns are counted on, goes on from there without a leap.
+    """
+    size = np.abs(values)
+    far = np.flatnonzero(size > _MOST_TURNED)
+    if not len(far):
+        return values, []
+    rows = size > max(_MOST_TURNED, _USUALLY_TURNED * np.median(finite(size)))
+    left = np.where(rows, np.nan, values)
+    known = finite(left)
+    is_leaping = rows.sum() < len(far) and np.abs(np.diff(known)).max() > 360.0
+    if is_leaping or rows.mean() > _FEW_IMPOSSIBLE or abs(known[0]) > _MOST_TURNED:
+        found = f"column '{column}' is {size[far[0]]:g} deg in row {far[0] + 2}, which is no direction: is the unit right?"
+        remedy = (
+            "In a channel file map = [[0, 0], [36000, 360]] reads hundredths of a degree, "
+            "and offset = -3600 takes off ten turns."
+        )
+        raise error_at("", found, remedy)
+    said = f"'{column}' is {size[far[0]]:g} deg in row {far[0] + 2} or more, which is no direction: left out."
+    return left, [said] if rows.any() else []
 
 
 def _without_placeholders(values, name, column):
@@ -181,7 +229,9 @@ def _time(channel, column, stated, log, form):
             values = _joined(log, _found(log, channel.date), values)
         read = seconds_of(values, form.dates, stated)
         if read is not None:
-            times, said = _without_summer_time(read[0])
+            times, said = _without_summer_time(read[0], values)
+            if channel.milliseconds is not None:
+                times = times + 1e-3 * _numbers(log, _found(log, channel.milliseconds))
             return times, [*read[1], *said]
     # Numbers: clock times as hhmmss, seconds with nanoseconds, counts since 1970, or a plain unit.
     numbers = _numbers(log, column)
@@ -190,6 +240,12 @@ def _time(channel, column, stated, log, form):
     if channel.nanoseconds is not None:
         return numbers + 1e-9 * _numbers(log, _found(log, channel.nanoseconds)), []
     unit = unit_for(stated, "s") if stated else ""
+    known = finite(numbers)
+    # Seconds of some minutes come by 60 to 99, which no clock shows.
+    is_long = len(known) and np.ptp(known) > 200.0 and usual_rise(known, 1e9) < 40.0
+    if not unit and is_long and is_clock_number(known):
+        times, said = seconds_of_clock(_of_clock(numbers))
+        return times, [*said, f"Numbers in '{column}' are clock times: 123519 is 12:35:19."]
     if unit in ("", "date") and (epoch := epoch_unit(numbers)) is not None:
         said = [f"Times in '{column}' are {epoch} since 1970."] if epoch != "s" or unit else []
         return numbers / EPOCHS[epoch], said
@@ -219,20 +275,36 @@ def _check_steps(column, times, factor, stated):
     raise error_at("", found, f"{remedy}." if stated else f'{remedy}, or "s".')
 
 
-def _without_summer_time(times):
-    """Stamps of a clock that is once put back by an hour, which go on, and remarks."""
+def _without_summer_time(times, texts):
+    """Stamps of a clock that is once put back or on by an hour, which go on, and remarks."""
     # One step back of nearly an hour, and no other, is the end of summer time.
     known = np.flatnonzero(np.isfinite(times))
     steps = np.diff(times[known])
     falls = np.flatnonzero(steps < 0.0)
-    usual = usual_rise(times[known], 0.0)
-    if len(falls) != 1 or not 0.0 <= steps[falls[0]] + 3600.0 <= 3.0 * usual:
+    turns = falls if len(falls) else np.flatnonzero(steps > _HOUR)
+    if len(turns) != 1:
         return times, []
-    row = int(known[falls[0] + 1])
-    on = np.where(np.arange(len(times)) >= row, times + 3600.0, times)
-    return on, [
-        f"The clock is put back by an hour before row {row + 2}, as where summer time ends: the times go on."
+    hour = float(np.copysign(_HOUR, steps[turns[0]]))
+    row = int(known[turns[0] + 1])
+    usual = usual_rise(times[known], 0.0)
+    # An hour that is left out may be lost, unless it is the one that summer time leaves out.
+    if not 0.0 <= steps[turns[0]] - hour <= 3.0 * usual or (
+        hour > 0.0 and not _begins_summer(str(texts[row]))
+    ):
+        return times, []
+    turned, when = ("on", "begins") if hour > 0.0 else ("back", "ends")
+    return np.where(np.arange(len(times)) >= row, times - hour, times), [
+        f"The clock is put {turned} by an hour before row {row + 2}, as where summer time {when}: the times go on."
     ]
+
+
+def _begins_summer(text):
+    """Whether a stamp without a zone is 2 or 3 o'clock on a Sunday."""
+    import pandas
+
+    is_day_first = not text[:4].isdigit()
+    day = pandas.to_datetime(text, dayfirst=is_day_first, errors="coerce").weekday()
+    return day == _SUNDAY and re.search(_PUT_ON, text) is not None
 
 
 def _past_the_end(times):
@@ -287,12 +359,14 @@ def _position(channel, column, stated, name, log):
             return None
     elif stated.replace(" ", "").lower() == TEN_MILLIONTHS.replace(" ", ""):
         degrees = 1e-7 * values
-    elif stated.lower() == MINUTES or (not stated and is_minutes(values, LARGEST[name])):
+    elif stated.lower() == MINUTES or (not stated and _in_minutes(values, name, log)):
         degrees = degrees_of_minutes(values)
         said = (
             []
             if stated
-            else [f"'{column}' is {name} in {MINUTES}, as it is beyond {LARGEST[name]:g}."]
+            else [
+                f"'{column}' is {name} in {MINUTES}, as positions of the log are beyond all degrees."
+            ]
         )
     elif channel.hemisphere is None:
         return None
@@ -301,13 +375,30 @@ def _position(channel, column, stated, name, log):
         degrees = conversion(unit, "deg")[0] * values
     # The hemisphere gives the sign; a sign in the numbers would count twice.
     if channel.hemisphere is not None:
-        hemisphere = _found(log, channel.hemisphere)
-        signs = hemisphere_signs(log.values[hemisphere], name)
-        if signs is None:
-            found = f"column '{hemisphere}' does not hold hemispheres."
-            raise error_at("", found, "It should hold N and S, or E and W.")
-        degrees = np.abs(degrees) * signs
+        degrees = np.abs(degrees) * _signs(channel, name, log)
     return channel.sign * degrees + channel.offset, said
+
+
+def _signs(channel, name, log):
+    """Signs by the column of sides of a channel."""
+    hemisphere = _found(log, channel.hemisphere)
+    signs = hemisphere_signs(log.values[hemisphere], name)
+    if signs is None:
+        found = f"column '{hemisphere}' does not hold hemispheres or sides of {name}."
+        raise error_at("", found, "It should hold N and S, E and W, or S and P.")
+    return signs
+
+
+def _in_minutes(values, name, log):
+    """Whether numbers are degrees and minutes; a longitude is where a latitude is, as it may be small or beyond 180."""
+    latitudes = [
+        cells
+        for other, cells in log.values.items()
+        if meaning_of(words_of(other)).role == "latitude" and cells.dtype.kind == "f"
+    ]
+    if name == "latitude" or not latitudes:
+        return is_minutes(values, LARGEST[name])
+    return is_minutes(values, 360.0) or any(is_minutes(cells, 90.0) for cells in latitudes)
 
 
 def _mapped(values, channel, column):

@@ -11,23 +11,11 @@ from shipcosim.diagnose.numerics import finite
 from shipcosim.dialects import NOTHING, WITH_UNIT
 
 _SIDES = ("N", "S", "E", "W")  # after a number of a position, no unit
-_FILLERS = (
-    -99.0,
-    -999.0,
-    -9999.0,
-    -99999.0,
-    -999999.0,
-    99.0,
-    999.0,
-    9999.0,
-    99999.0,
-    999999.0,
-    -32768.0,
-    32767.0,
-)
-"""Numbers that loggers write for missing values."""
-
-
+_FILLERS = re.compile(r"9{2,}(\.9+)?|8{4,}|3276[78]|65535|214748364[78]|4294967295")
+"""Numbers that loggers write for missing values, without their sign: nines or eights alone, ends of integers."""
+_NO_NUMBER = 1e15
+"""Times the median of a column; a larger number, such as 1e30, stands for no value. Assumed."""
+_GROUPS = r"(?<=\d)['\u2019\u00a0\u202f](?=\d{3}(?!\d))"  # between thousands in Swiss, French and Nordic numbers
 _MOST_DAMAGED = 0.01  # share of a column's cells that may be no numbers; more make it a column of texts. Assumed.
 
 
@@ -55,6 +43,7 @@ def numbers_of(name: str, cells: Any, decimal: str) -> tuple[np.ndarray, list[st
     missing = cells.isna() | text.str.lower().isin(NOTHING)
     grouping = "," if decimal == "." else "."
     plain = text.str.replace("\u2212", "-", regex=False)
+    plain = plain.str.replace(_GROUPS, "", regex=True)
     plain = plain.str.replace(r"(?<=[\d.])[dD](?=[+-]?\d+$)", "e", regex=True)
     # Remove the grouping of thousands only where the whole cell
     # has this form, then put a point for the decimal sign.
@@ -85,23 +74,31 @@ def without_fillers(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str
     """A column without the number that means 'no value' in it, and remarks.
 
     It is one of those that loggers take for it, stands there more than once, and is further from all other values
-    than these are from each other.
+    than these are from each other; or it is so large that nothing measured is, such as 1e30.
 
     Examples
     --------
-    >>> without_fillers("surge", np.array([1.0, -9999.0, 1.5, -9999.0]))[0].tolist()
-    [1.0, nan, 1.5, nan]
+    >>> without_fillers("surge", np.array([1.0, -9999.0, 1.5, -9999.0, 1e30]))[0].tolist()
+    [1.0, nan, 1.5, nan, nan]
     """
-    # A filler is a usual one, stands there at least twice, and is far outside all other values.
     known = finite(values)
-    for filler in (known.min(), known.max()) if len(known) > 2 else ():
+    if len(known) < 3:
+        return values, []
+    rows = np.abs(values) > _NO_NUMBER * max(np.median(np.abs(known)), 1.0)
+    for filler in (known.min(), known.max()):
         rest = known[known != filler]
-        if filler not in _FILLERS or len(known) - len(rest) < 2 or not len(rest):
-            continue
-        if np.abs(rest - filler).min() > max(np.ptp(rest), 10.0):
-            said = f"Column '{name}': {filler:g} means 'no value' in {len(known) - len(rest)} rows."
-            return np.where(values == filler, np.nan, values), [said]
-    return values, []
+        is_usual = len(rest) < len(known) - 1 and _FILLERS.fullmatch(f"{abs(filler):.12g}")
+        if is_usual and len(rest) and np.abs(rest - filler).min() > max(np.ptp(rest), 10.0):
+            rows |= values == filler
+    if not rows.any():
+        return values, []
+    count = int(rows.sum())
+    said = (
+        f"Column '{name}': {values[rows][0]:g} means 'no value' in {count} row{'s' * (count > 1)}."
+    )
+    # Another number may mean the same.
+    left, more = without_fillers(name, np.where(rows, np.nan, values))
+    return left, [said, *more]
 
 
 def with_unit(cells: np.ndarray, decimal: str) -> tuple[np.ndarray, str] | None:

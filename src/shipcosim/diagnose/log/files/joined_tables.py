@@ -94,6 +94,8 @@ def _below_each_other(path, tables, clocks):
             if column in clocks[name]:
                 continue
             label = f"{name}.{column}" if _needs_table(name, column, names) else column
+            if len(table.values) == 2 and column.lower() == "value":
+                label = name  # a file for each signal
             is_text = cells.dtype.kind not in "fiub"
             values[label] = np.full(
                 ends[-1], None if is_text else np.nan, object if is_text else float

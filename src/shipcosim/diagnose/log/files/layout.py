@@ -123,7 +123,7 @@ def _header(lines, above, separator, width, is_unit):
     below = None
     # Go upwards from the values: perhaps a row of units, then the row of names.
     for i in reversed(above):
-        text = lines[i].lstrip()
+        text = lines[i].lstrip(" ")
         if is_comment(text):
             text = text.lstrip("#%/! \t")
         row = _header_cells(text, separator, width)
@@ -146,15 +146,16 @@ def _header(lines, above, separator, width, is_unit):
 
 
 def _with_groups(row, above, separator):
-    """Names that stand there twice, with the groups in the row above them where all their groups differ."""
+    """Names that stand there twice or not at all, with the groups in the row above them where all groups differ."""
     groups = cells_in(above, separator)
-    if len(groups) != len(row) or separator == " " or len(set(row)) == len(row):
+    groups += [""] * (len(row) - len(groups))
+    if len(groups) != len(row) or separator == " " or (len(set(row)) == len(row) and "" not in row):
         return row
     # A group stands over its first column, and over those after it that have none.
     for i in range(1, len(groups)):
         groups[i] = groups[i] or groups[i - 1]
     names = [
-        f"{group} {name}".strip() if row.count(name) > 1 else name
+        f"{group} {name}".strip() if row.count(name) > 1 or not name else name
         for group, name in zip(groups, row, strict=True)
     ]
     return names if len(set(names)) == len(names) else row
@@ -175,7 +176,7 @@ def _header_cells(text, separator, width):
     # Columns with a separator may end in empty cells.
     if separator != " ":
         row = cells_in(text, separator)
-        while len(row) > width and not row[-1]:
+        while len(row) > width and row[-1].lower() in ("", "comment"):
             row.pop()
         return row if width - 1 <= len(row) <= width else None
     # With blanks as separators a unit belongs to its name: try several ways to split.

@@ -8,27 +8,16 @@ import numpy as np
 
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.interpolation import at_times
+from shipcosim.diagnose.log.files.missing import FLAGS, bad_rows
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.vocabulary import meaning_of, words_of
 from shipcosim.diagnose.log.rows import usable_rows
 from shipcosim.diagnose.numerics import finite
 from shipcosim.errors import error_at, suggestion
 
-_NAMES = (
-    "name",
-    "topic",
-    "signal",
-    "channel",
-    "variable",
-    "tag",
-    "key",
-    "parameter",
-    "quantity",
-    "item",
-    "field",
-)
-_NAMES += ("sensor", "message", "msg", "label", "source", "id", "measurement", "type", "path")
-_VALUES = ("value", "val", "reading", "data", "measurement", "number", "v", "y")
+_NAMES = "name topic signal channel variable tag key parameter quantity item field varname sensor message msg".split()
+_NAMES += "label source id measurement type path".split()
+_VALUES = "value varvalue val reading data measurement number v y".split()
 _MOST_NAMES = 500
 _ALONE = 0.1  # share of rows with most channels, below which rows are messages of single sensors. Assumed.
 
@@ -113,30 +102,36 @@ def _wide(log, names, value, clock, unit):
     # Rows with a name and a time; several columns of names are joined.
     frame: Any = pandas.DataFrame({column: log.values[column] for column in log.values})
     told = frame[names].notna().all(axis=1) & frame[clock].notna()
+    bad = np.zeros(len(frame), bool)
+    for flag in log.values:
+        if FLAGS >= set(words_of(flag)):
+            bad |= bad_rows(words_of(flag), log.values[flag])
+    told &= ~bad
     frame = frame[told]
     key = frame[names[0]].astype("str")
     for more in names[1:]:
         key = key + "." + frame[more].astype("str")
-    # One row for each time, in the order of the file.
-    rows, times = pandas.factorize(frame[clock])
-    count = len(times)
+    # One row for each time and one column for each name, in the order of the file; the first value is kept.
+    cells = pandas.DataFrame({"name": key, "time": frame[clock], "value": frame[value]})
+    first = cells.drop_duplicates(["name", "time"])
+    again = len(cells) - len(first)
+    times = first["time"].unique()
+    wide: Any = first.pivot(index="time", columns="name", values="value").reindex(times)
     values: dict[str, np.ndarray] = {clock: np.asarray(times)}
     units = {clock: log.units[clock]}
-    again = 0
-    # One column for each name; the first value at a time is kept.
-    for name, part in frame.groupby(key, sort=False):
-        at = rows[frame.index.get_indexer(part.index)]
-        again += len(at) - len(np.unique(at))
-        numbers: Any = pandas.to_numeric(part[value], errors="coerce")
-        is_text = numbers.isna().mean() > 0.5 and part[value].notna().any()
-        column = np.full(count, None, object) if is_text else np.full(count, np.nan)
-        column[at[::-1]] = (part[value] if is_text else numbers).to_numpy()[::-1]
-        values[str(name)] = column
-        stated = part[unit].dropna().unique() if unit else ()
-        units[str(name)] = str(stated[0]) if len(stated) == 1 else ""
+    for name in first["name"].unique():
+        there = wide[name].notna()
+        numbers: Any = pandas.to_numeric(wide[name], errors="coerce")
+        is_text = numbers.notna().sum() < 0.5 * there.sum()
+        texts = wide[name].astype(object).where(there, None)
+        values[name] = texts.to_numpy(object) if is_text else numbers.to_numpy(float)
+        stated = frame[unit][key == name].dropna().unique() if unit else ()
+        units[name] = str(stated[0]) if len(stated) == 1 else ""
     said = [
         f"One value a row: '{' and '.join(names)}' names {len(values) - 1} channels, '{value}' holds them."
     ]
+    if bad.any():
+        said.append(f"{bad.sum()} values that are called bad left out.")
     if again:
         said.append(
             f"{again} values of a channel at a time that it has one for already: the first is kept."

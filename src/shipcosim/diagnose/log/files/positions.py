@@ -6,15 +6,11 @@ import re
 
 import numpy as np
 
+from shipcosim.diagnose.log.names.vocabulary import vocabulary
 from shipcosim.diagnose.numerics import finite
 
 MINUTES = "ddmm.mmmm"
 """Spelling of the unit of latitudes and longitudes in NMEA 0183: degrees times 100 plus minutes."""
-HEMISPHERES = {
-    "latitude": {"N": 1.0, "S": -1.0},
-    "longitude": {"E": 1.0, "Ø": 1.0, "Ö": 1.0, "W": -1.0, "V": -1.0},
-}
-"""Signs of a degree by the letter of its side; O is east in German and west in Spanish, so it is none."""
 _TEXT = re.compile(
     r"\s*(?P<before>[NSEØÖWVnseøöwv])?\s*(?P<degrees>[+-]?\d+(?:\.\d+)?)\s*[°ºd*-]?\s*"
     r"(?:(?P<minutes>\d+(?:\.\d+)?)\s*['′’´m]?\s*(?:(?P<seconds>\d+(?:\.\d+)?)\s*(?:\"|″|''|s)?\s*)?)?"
@@ -59,26 +55,26 @@ def degrees_of_minutes(values: np.ndarray) -> np.ndarray:
 
 
 def hemisphere_signs(cells: np.ndarray, role: str) -> np.ndarray | None:
-    """Signs of a column of N and S, or E and W; None where it holds something else.
+    """Signs of a column of N and S, E and W, or port and starboard; None where it holds something else.
 
     Parameters
     ----------
     cells : (n,) array of str or None
         The column.
     role : str
-        ``"latitude"`` or ``"longitude"``.
+        Of the numbers that the column belongs to.
     """
-    if cells.dtype.kind == "f":
+    known = sides_of(role)
+    told = [str(cell).strip().upper() for cell in cells if cell is not None]
+    if cells.dtype.kind == "f" or not told or not known.keys() >= set(told):
         return None
-    # Signs by the first letter; every cell must be a word for a hemisphere.
-    known = HEMISPHERES[role]
-    signs = np.array(
-        [known.get(str(cell).strip().upper()[:1], np.nan) if cell else np.nan for cell in cells]
-    )
-    told = np.array([cell is not None for cell in cells])
-    words = {str(cell).strip().upper() for cell in cells if cell}
-    allowed = {*known, "NORTH", "SOUTH", "EAST", "WEST"}
-    return signs if told.any() and words <= allowed and np.isfinite(signs[told]).all() else None
+    return np.array([known.get(str(cell).strip().upper(), np.nan) for cell in cells])
+
+
+def sides_of(role: str) -> dict[str, float]:
+    """Signs by the words for sides that may stand behind the numbers of a role; empty where none do."""
+    sides = vocabulary()["sides"]
+    return sides["along" if role.endswith(("_rpm", "_thrust")) else sides["of"].get(role, "none")]
 
 
 def degrees_of_texts(cells: np.ndarray, largest: float) -> np.ndarray | None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.diagnose.log.files.cells import numbers_of, with_unit, without_fillers
+from shipcosim.diagnose.log.files.cells import numbers_of, with_unit
 from shipcosim.diagnose.log.files.excel import is_workbook, text_of_sheet
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.json_records import is_json, text_of_records
@@ -304,9 +304,5 @@ def _with_comma(columns):
 def _column(name, cells, decimal):
     """Values of a column, and remarks on them."""
     if cells.dtype.kind in "fiub":
-        return without_fillers(name, cells.to_numpy(float))
-    values, said = numbers_of(name, cells, decimal)
-    if values.dtype.kind == "f":
-        values, more = without_fillers(name, values)
-        said = [*said, *more]
-    return values, said
+        return cells.to_numpy(float), []
+    return numbers_of(name, cells, decimal)

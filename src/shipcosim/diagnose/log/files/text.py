@@ -23,8 +23,8 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
     path : Path
         Text, or such compressed by gzip, whatever its name ends in.
     encoding : str, optional
-        Of the text; else by its byte order mark, UTF-8, UTF-16 where every other byte is zero, Shift-JIS or EUC-JP where
-        these give words of logs, Windows-1252.
+        Of the text; else by its byte order mark, UTF-8, UTF-16 where every other byte is zero, Shift-JIS, EUC-JP,
+        GB 18030 or CP 949 by the words of logs that they give, Windows-1252.
 
     Raises
     ------
@@ -43,6 +43,7 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
             "Each row is a time and its values, on a line of its own.",
         )
     # A logger that loses power leaves blocks of zero bytes; no encoding has four of them within a text.
+    content = content.replace(b"UdPbC\x00", b"")  # head of a message of IEC 61162-450
     size = len(content)
     content = re.sub(rb"\x00{4,}", b"", content)
     said = [f"{size - len(content)} zero bytes left out."] if len(content) < size else []
@@ -65,12 +66,13 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
 def _encoding_of(content: bytes) -> str:
     if found := unicode_of(content):
         return found
-    # Japanese text is only believed where it has words of logs, as other encodings decode too.
-    for name in ("cp932", "euc_jp", "cp1252"):
+    # An encoding of East Asia is only believed by words of logs, as others decode too; latin-1 decodes anything.
+    counts = {}
+    for name in ("cp932", "euc_jp", "gb18030", "cp949", "cp1252", "latin-1"):
         try:
-            text = content.decode(name)
+            counts[name] = len("".join(word_parts().findall(content.decode(name))))
         except UnicodeDecodeError:
             continue
-        if name == "cp1252" or word_parts().search(text):
-            return name
-    return "latin-1"
+    best = max(counts.values())
+    western = "cp1252" if "cp1252" in counts else "latin-1"
+    return next(name for name in counts if counts[name] == best) if best else western

@@ -130,6 +130,22 @@ def seconds_of(
     return times, said
 
 
+def is_clock_number(known: np.ndarray) -> bool:
+    """Whether numbers can be hhmmss and not seconds, because minutes and seconds stay below 60.
+
+    Fractions of days run slower than any clock: their steps are below a millisecond.
+    """
+    whole = np.floor(known)
+    inside = known.min() >= 0.0 and known.max() < 240000.0
+    return bool(
+        inside
+        and (whole % 100 < 60).all()
+        and (whole // 100 % 100 < 60).all()
+        and known.max() > 100.0
+        and float(np.ptp(known)) >= 1e-3 * (len(known) - 1)
+    )
+
+
 def seconds_of_parts(columns: Mapping[str, np.ndarray]) -> tuple[list[str], np.ndarray] | None:
     """Times of which year, month, day, hour, and perhaps minute and second stand in columns beside each other.
 

@@ -7,7 +7,7 @@ import numpy as np
 from shipcosim.diagnose.log.channels import Channel
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.table import LogColumns
-from shipcosim.diagnose.log.files.times import epoch_unit, seconds_of
+from shipcosim.diagnose.log.files.times import epoch_unit, is_clock_number, seconds_of
 from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, Guess
 from shipcosim.diagnose.log.names.vocabulary import words_of
 from shipcosim.diagnose.log.values import CLOCK_NUMBER
@@ -44,9 +44,13 @@ def time_of(
     usable = [one for guess in guesses if (one := _usable(guess, log, form))]
     if not usable:
         usable = [one for name in log.values if (one := _stamps(name, log, form))]
-    # Exact names first, and clock times before dates.
+    # Exact names first, UTC before local time, and clock times before dates.
     usable.sort(
-        key=lambda g: (g.rank, log.values[g.column].dtype.kind == "O" and _is_date(g.column))
+        key=lambda g: (
+            g.rank,
+            log.values[g.column].dtype.kind == "O" and _is_date(g.column),
+            "local" in words_of(g.column),
+        )
     )
     best = usable[0] if usable else None
     rest = [g for g in guesses if best is None or g.column not in best.channel.columns]
@@ -96,7 +100,7 @@ def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
     if guess.rank == EXACT:
         return guess
     # Clock times as numbers need a name that suggests a clock.
-    if _is_clock_number(known) and set(words_of(guess.column)) & {
+    if is_clock_number(known) and set(words_of(guess.column)) & {
         "utc",
         "hhmmss",
         "clock",
@@ -119,22 +123,6 @@ def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
     return guess.read_as({"unit": unit}, rank=GUESS, why=why, unit=unit)
 
 
-def _is_clock_number(known):
-    """Whether numbers can be hhmmss and not seconds, because minutes and seconds stay below 60.
-
-    Fractions of days run slower than any clock: their steps are below a millisecond.
-    """
-    whole = np.floor(known)
-    inside = known.min() >= 0.0 and known.max() < 240000.0
-    return bool(
-        inside
-        and (whole % 100 < 60).all()
-        and (whole // 100 % 100 < 60).all()
-        and known.max() > 100.0
-        and float(np.ptp(known)) >= 1e-3 * (len(known) - 1)
-    )
-
-
 def _is_date(name):
     return "date" in words_of(name) and "time" not in words_of(name)
 
@@ -155,6 +143,11 @@ def _stamps(
     except ShipcosimError:
         pass  # reading says how it can be read
     guess = guess or Guess(name, "time", Channel(column=name), SURE)
+    # Stamps of whole seconds take the milliseconds from a column of their own.
+    for other, rest in log.values.items():
+        is_rest = words_of(other) in (("ms",), ("milliseconds",)) and rest.dtype.kind == "f"
+        if is_rest and "." not in str(told[0]).rpartition(":")[2] and _all_between(rest, 0.0, 1e3):
+            guess = guess.read_as({"milliseconds": other})
     # Clock times without a date take the date from a column beside it.
     is_clock = ":" in str(told[0]) and len(str(told[0]).split(":")[0].strip()) <= 2
     dates = [other for other in log.values if _is_date(other) and other != name]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -22,7 +23,12 @@ SURE = 1
 GUESS = 2
 UNUSED = Channel(column="-")
 _THRUSTER_UNITS = {"rpm": "rpm", "azimuth": "deg", "thrust": "N"}
-_TO_STARBOARD = ("sway", "yaw_rate")  # roles that are positive to starboard
+_OPPOSITE = {
+    "sway": "port",
+    "yaw_rate": "port",
+    "surge": "astern",
+}  # words by which a role has the other sign
+_FACTOR = re.compile(r"[*/×xX]\s*10+\b")
 _SUFFIXES = ("m/s", "deg/s", "deg", "s", "m", "rpm", "N", "%")  # units that names end in
 
 
@@ -116,7 +122,7 @@ def guesses_of(column: str, log: LogColumns, thrusters: Thrusters | None) -> lis
     # A number in a name counts sensors of a kind; with several of them each is a guess.
     found = _by_meaning(column, words, stated, values)
     bare = tuple(word for word in words if not word.isdigit())
-    if found.is_guess and bare != words:
+    if found.is_guess and bare != words and not _FACTOR.search(column):
         again = _by_meaning(column, bare, stated, values)
         if again.role not in ("", "time") and not again.is_guess:
             return [again]
@@ -158,12 +164,19 @@ def _by_meaning(column, words, stated, values):
     given = unit if unit and not stated else None
     doubt = meaning.doubt
     sign = 1
-    # Positive to port means the opposite sign of the role.
-    if doubt and role in _TO_STARBOARD and "port" in words:
-        doubt = "by its name positive to port"
+    offset = 0.0
+    # Positive to port means the opposite sign of the role, and where the wind goes to is half a turn off.
+    if doubt and _OPPOSITE.get(role) in words:
+        doubt = f"by its name positive to {_OPPOSITE[role]}"
         sign = -1
+    if doubt and role.endswith("wind_from") and words[-1] in ("to", "towards"):
+        doubt = "by its name where the wind goes to"
+        offset = 180.0
     channel = Channel(
-        column=column, unit=unit_for(given, ROLES[role].unit) if given else None, sign=sign
+        column=column,
+        unit=unit_for(given, ROLES[role].unit) if given else None,
+        sign=sign,
+        offset=offset,
     )
     return Guess(column, role, channel, GUESS if doubt else SURE, doubt, unit=unit)
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from shipcosim.diagnose.log.channels import Channel
 from shipcosim.diagnose.log.files.file_layout import FileLayout
-from shipcosim.diagnose.log.files.positions import hemisphere_signs
+from shipcosim.diagnose.log.files.positions import hemisphere_signs, sides_of
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.clock import time_of
 from shipcosim.diagnose.log.names.guesses import (
@@ -21,6 +21,7 @@ from shipcosim.diagnose.log.names.guesses import (
 from shipcosim.diagnose.log.names.units import unit_for
 from shipcosim.diagnose.log.names.unstated_units import are_axes_open, exchange_axes, settled
 from shipcosim.diagnose.log.names.vocabulary import words_of
+from shipcosim.diagnose.log.values import LARGEST
 from shipcosim.diagnose.numerics import finite
 
 _POSITIONS = (("north", "east"), ("latitude", "longitude"))
@@ -57,7 +58,7 @@ class Proposal:
         if guessed:
             return {g.role: g.channel for g in self.used}
         plain = {
-            g.role: Channel(column=g.column)
+            g.role: g.channel.model_copy(update={"unit": None})
             for g in self.used
             if g.rank == EXACT and g.role == "yaw_rate"
         }
@@ -222,11 +223,9 @@ def _by_convention_of_ros(chosen, log):
 
 
 def _with_hemispheres(chosen, log, left):
-    """Latitude and longitude with the columns of N and S, E and W that stand behind them."""
+    """Numbers with the columns of N and S, E and W, or port and starboard that stand behind them."""
     order = list(log.values)
-    for role in ("latitude", "longitude"):
-        if role not in chosen:
-            continue
+    for role in [role for role in chosen if sides_of(role)]:
         guess = chosen[role]
         # Whole degrees beside a column of minutes are only a part of a position.
         minutes = [
@@ -241,9 +240,14 @@ def _with_hemispheres(chosen, log, left):
             for name in order
             if set(words_of(name)) & {"hemisphere", "hemi", "ns", "ew", "hem"}
         ]
+        if role not in LARGEST:
+            named, after = (), [name for name in after if name not in named]
         for name in (*after, *named):
-            if hemisphere_signs(log.values[name], role) is not None:
-                chosen[role] = guess.read_as({"hemisphere": name})
+            signs = hemisphere_signs(log.values[name], role)
+            # An A alone behind a number may mean that it is active.
+            if signs is not None and (1.0 in signs or "F" not in sides_of(role)):
+                said = () if role in LARGEST else (f"its side stands in '{name}'",)
+                chosen[role] = guess.read_as({"hemisphere": name}, said=(*guess.said, *said))
                 left = [one for one in left if one.column != name]
                 break
     return left

@@ -9,9 +9,10 @@ from shipcosim.units import Unit, relation, spelled_unit
 
 _BRACKETS = re.compile(r"^(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]\s*$")
 _OTHERS = re.compile(
-    r"^(?P<name>.*?)\s*(?:\((?P<a>[^()]*)\)|\{(?P<b>[^{}]*)\}|<(?P<c>[^<>]*)>|[,/:;]\s+(?P<d>[^,/\s]\S*))\s*$"
+    r"^(?P<name>.*?)\s*(?:\((?P<a>[^()]*)\)|\{(?P<b>[^{}]*)\}|<(?P<c>[^<>]*)>|[,/:;]\s+(?P<d>[^,/\s]\S*)|(?P<e>%))\s*$"
 )
 _COUNTED = r"\((?:\+[NE]|clockwise (?:from (?:bow|true north)|towards true north))\)"
+_MULTIPLE = re.compile(r"[*/.x]10+$")  # deg*10: whether it multiplies or divides is not said
 _LONGEST_SUFFIX = 3  # words
 _NO_SUFFIX = set("n rpm 1 none raw date utc local iso text h d int grad flag".split())
 """Spellings of units that at the end of a name, after an underscore, mean something else."""
@@ -35,7 +36,9 @@ def name_and_unit(header: str) -> tuple[str, str]:
     if found := _BRACKETS.match(header):
         return found["name"].strip(), found["unit"].strip()
     if found := _OTHERS.match(header):
-        unit = next(text for text in found.group("a", "b", "c", "d") if text is not None).strip()
+        unit = next(
+            text for text in found.group("a", "b", "c", "d", "e") if text is not None
+        ).strip()
         if is_unit(unit) and found["name"].strip():
             return found["name"].strip(), unit
     return header, ""
@@ -59,6 +62,8 @@ def unit_for(spelling: str, target: str) -> str:
     ('kN', 'parsec')
     """
     spelling = spelling.strip()
+    if _MULTIPLE.search(spelling):
+        return f"multiple: {spelling}"
     # Per second an angle is rad/s: only what turns on a shaft is counted in revolutions.
     if target == "deg/s" and _plain(spelling) in ("1/s", "s-1", "s^-1", "s⁻¹"):
         return "rad/s"

@@ -76,6 +76,14 @@ def _settle_degrees(chosen, log):
                 TEN_MILLIONTHS,
                 f"whole numbers beyond {largest:g}: in {TEN_MILLIONTHS}, as autopilots write",
             )
+    # A position in radians looks like one in the Gulf of Guinea.
+    is_small = [
+        _is_open(chosen, role)
+        and 0.0 < np.abs(_finite(log.values[chosen[role].column])).max(initial=0.0) <= most
+        for role, most in {"latitude": np.pi / 2.0, "longitude": np.pi}.items()
+    ]
+    for role in LARGEST if all(is_small) else ():
+        _guess(chosen, role, "rad", "no unit is stated, and no value is beyond pi: rad or deg")
 
 
 def _is_open(chosen, role):

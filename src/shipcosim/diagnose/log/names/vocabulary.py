@@ -9,6 +9,7 @@ from typing import Any
 
 _WORDS = re.compile(r"[^\W\d_]+|\d+")
 _HUMP = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z]{2,})")
+_PERCENT = re.compile(r"%(?!\w)|(?<=.)%")  # ROS writes %time
 _SHORTEST = 3  # letters of a name that is sought within another
 
 
@@ -37,6 +38,7 @@ def vocabulary() -> dict[str, Any]:
     return tomllib.loads((Path(__file__).parent / "names.toml").read_text(encoding="utf-8"))
 
 
+@cache
 def words_of(name: str) -> tuple[str, ...]:
     """Words of a name in lower case, short forms written out.
 
@@ -53,6 +55,7 @@ def words_of(name: str) -> tuple[str, ...]:
     if not name.isascii():
         parts = vocabulary()["words"]["parts"]
         name = word_parts().sub(lambda found: f" {parts[found[0]]} ", name)
+    name = _PERCENT.sub(" percent ", name)
     found = [word.lower() for part in _HUMP.split(name) for word in _WORDS.findall(part)]
     return tuple(part for word in found for part in same.get(word, word).split())
 
