@@ -25,6 +25,9 @@ from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
 from shipcosim.models.core.kinematics import to_ned
 from shipcosim.models.core.motion import Motion
 
+DAMPING = ("X_u", "Y_v", "N_r", "X_uu", "Y_modvv", "N_modrr")
+"""Numbers of a hull by which the water takes energy out: zero or negative."""
+
 
 def null_gains(
     problem: IdentificationProblem,
@@ -154,6 +157,10 @@ def drawn_within_tolerances(
         share = rng.standard_normal(shape)
         for path, size in direction.items():
             values[path] = values.get(path, model.get(path)) + size * share
+    # A wide tolerance reaches beyond zero, but no ship is driven by her damping.
+    for path, drawn in values.items():
+        if path.rpartition(".")[2] in DAMPING:
+            values[path] = np.minimum(drawn, 0.0)
     return model.with_values(values)
 
 

@@ -7,7 +7,11 @@ import pytest
 from diagnose import twin
 from diagnose.twin import fits, problem
 
-from shipcosim.diagnose.explanation.null_distribution import healthy_records, null_gains
+from shipcosim.diagnose.explanation.null_distribution import (
+    drawn_within_tolerances,
+    healthy_records,
+    null_gains,
+)
 from shipcosim.models.core.motion import Motion
 
 COUNT = 6
@@ -106,3 +110,11 @@ def test_a_tolerance_that_is_wider_makes_healthy_ships_differ_more():
         off.append(np.std(found, axis=0).mean())
     assert off[1] > 1.2 * off[0]
     assert twin.model().tolerances == tolerances
+
+
+def test_no_drawn_ship_is_driven_by_her_damping_however_wide_its_tolerance():
+    ship = twin.model()
+    wide = {"vessel.X_u": 1e4, "vessel.N_r": 1e6, "vessel.X_uu": 4e3}
+    drawn = drawn_within_tolerances(ship.with_tolerances(wide), (400,), np.random.default_rng(3))
+    for path in wide:
+        assert np.max(drawn.get(path)) == 0.0 and np.min(drawn.get(path)) < ship.get(path)
