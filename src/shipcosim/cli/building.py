@@ -52,7 +52,8 @@ def build_named(
         for n in names
         if n not in known
     ]
-    jobs = [(_build, path, out) for name, path in sources.items() if not names or name in names]
+    fmus = out / "fmus"
+    jobs = [(build_fmu, path, fmus) for name, path in sources.items() if not names or name in names]
     jobs += [(_pack, path, out) for name, path in systems.items() if not names or name in names]
     built = []
     for done, (job, path, target) in enumerate(jobs, start=1):
@@ -149,10 +150,6 @@ def _parameters_in_systems(project: Path) -> dict[str, list[dict[str, Any]]]:
             found.setdefault(component.fmu.path.stem, []).append(given)
             together[-1] = given | together[-1]
     return {name: found.get(name, together) for name in library.fmu_sources(project)}
-
-
-def _build(folder: Path, out: Path) -> Path:
-    return build_fmu(folder, out / "fmus")
 
 
 def _pack(folder: Path, out: Path) -> Path:

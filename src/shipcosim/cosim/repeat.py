@@ -53,8 +53,9 @@ def repeat(
     # Read the system again, with the FMUs that were swapped in the run.
     if not isinstance(system, System):
         folders = [Path(folder) for folder in fmus or [Path("build") / "fmus"]]
+        # The first folder that has a file; its name alone if none has.
         swapped = {
-            name: _in(folders, file)
+            name: next((f / file for f in folders if (f / file).is_file()), Path(file))
             for name, file in json.loads(facts.get("swapped", "{}")).items()
         }
         system = read_system(
@@ -85,11 +86,6 @@ def repeat(
     # What the run was called, changed and did not reach is no part of the scenario that is made here.
     about_run = ("scenario", "changed", "not_reached", "judged_on", "remarks")
     return again.assign_attrs({name: facts[name] for name in about_run if name in facts})
-
-
-def _in(folders, file):
-    """Path of an FMU in the first folder that has it; its name alone if none has."""
-    return next((folder / file for folder in folders if (folder / file).is_file()), Path(file))
 
 
 def _differences(facts, system, inputs):

@@ -188,14 +188,11 @@ def _screw(
     # Missing thrust from power by DNV-ST-0111, or missing power from thrust by its inverse.
     usual = bollard_thrust(kind, D, number(one.power)) if one.power else None
     thrust = one.thrust.value if one.thrust else float(usual.value if usual else 0.0)
-    power = one.power.value if one.power else 1000.0 / D / 0.95 * (thrust / _dnv(kind)) ** 1.5
+    of_kind = float(bollard_thrust(kind, 1.0, 1000.0 / 0.95).value)
+    power = one.power.value if one.power else 1000.0 / D / 0.95 * (thrust / of_kind) ** 1.5
     # Missing speed from a usual thrust coefficient.
     rpm = one.rpm.value if one.rpm else float(shaft_speed(kind, D, thrust, density).value)
     return Screw(kind=kind, diameter=D, power=power, thrust=thrust, rpm=rpm, density=density)
-
-
-def _dnv(kind: str) -> float:
-    return float(bollard_thrust(kind, 1.0, 1000.0 / 0.95).value)
 
 
 def _said(one: FixedPropeller | Azimuth | Tunnel) -> str:

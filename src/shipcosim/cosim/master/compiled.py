@@ -456,7 +456,8 @@ class _CompiledLoop:
             ]
             setattr(made, f"n_{name}s", len(found))
             for column, part in enumerate(("place", "exchange", "row")):
-                setattr(made, f"{name}_{part}", self._whole(row[column] for row in found))
+                numbers = np.array([row[column] for row in found], dtype=np.int64)
+                setattr(made, f"{name}_{part}", self._pointer(numbers))
         return made
 
     def _stepped_by_python(self, number: int, k: int) -> int:
@@ -507,6 +508,3 @@ class _CompiledLoop:
     def _pointer(self, array, kept=None):
         (self._kept if kept is None else kept).append(array)
         return array.ctypes.data_as(P)
-
-    def _whole(self, numbers):
-        return self._pointer(np.array(list(numbers), dtype=np.int64))

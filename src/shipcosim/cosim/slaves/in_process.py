@@ -74,7 +74,9 @@ class DirectCalls:
         """See `Slave.getter`."""
         # The shell binds names to references once; each call then only reads attributes.
         get_values = self.target.prepared_getter(kind, _references(variables))
-        pack = _packer(buffer, "d" if kind == "Real" else "i")
+        # Packing is quicker than ``buffer[:] = values``.
+        layout = struct.Struct(f"{len(buffer)}{'d' if kind == 'Real' else 'i'}")
+        pack = partial(layout.pack_into, buffer, 0)
 
         def get_all():
             try:
@@ -124,11 +126,6 @@ class DirectCalls:
     def _failed(self, error):
         self._log(ERROR, str(error))
         return ERROR
-
-
-def _packer(buffer, code):
-    """Function that writes its arguments into a buffer, quicker than ``buffer[:] = arguments``."""
-    return partial(struct.Struct(f"{len(buffer)}{code}").pack_into, buffer, 0)
 
 
 def _references(variables):

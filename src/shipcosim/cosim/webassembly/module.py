@@ -59,9 +59,12 @@ def make_module(plan: Plan, scenario: Scenario, progress: CountProgress | None =
     """
     check_installed()
     texts = texts_of(plan.system, progress)
-    # Components with the same text share its functions.
+    # Components with the same text share its functions; a text has its GUID in it.
     prefixes = {text: f"fmu{n}_" for n, text in enumerate(dict.fromkeys(texts.values()))}
-    of_component = {name: (prefixes[text], _guid(text)) for name, text in texts.items()}
+    of_component = {
+        name: (prefixes[text], text.partition('#define GUID "')[2].partition('"')[0])
+        for name, text in texts.items()
+    }
     wiring = Wiring(plan, scenario, of_component)
     desk = "\n".join(
         [
@@ -125,11 +128,6 @@ def _written(cls: Any, component: Component) -> str:
     with understood(package):
         variant = variant_of(cls, component.start, cls.default_step_size)
         return source_of_model(cls, component.fmu.path.stem, [variant], words)
-
-
-def _guid(text: str) -> str:
-    """The GUID that a text was written with."""
-    return text.partition('#define GUID "')[2].partition('"')[0]
 
 
 def _runtime(name: str) -> str:

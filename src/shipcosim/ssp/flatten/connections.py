@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from shipcosim.ssp.flatten.conversions import Flow, advance
 from shipcosim.ssp.flatten.hierarchy import Hierarchy
-from shipcosim.ssp.flatten.ports import Key, Port, Wire
+from shipcosim.ssp.flatten.ports import Key, Wire
 from shipcosim.ssp.read.structure import End
 from shipcosim.ssp.xml.document import Findings
 from shipcosim.ssp.xml.values import Value
@@ -66,7 +66,9 @@ def connect(tree: Hierarchy, findings: Findings) -> tuple[Connection, ...]:
     incoming = _incoming(tree, findings)
     connections = []
     for key, port in tree.ports.items():
-        if key in incoming and _is_end(key, port):
+        # A value is used at inputs of components and outputs of the root; elsewhere it is passed on.
+        is_end = port.owner == "component" or (port.owner == "system" and key.path == ())
+        if key in incoming and is_end:
             wires = _way(key, incoming, findings)
             # Nested connectors and dictionaries disappear: one connection from first source to last
             # target.
@@ -87,11 +89,6 @@ def _incoming(tree: Hierarchy, findings: Findings) -> dict[Key, Wire]:
         else:
             incoming[wire.target] = wire
     return incoming
-
-
-def _is_end(key: Key, port: Port) -> bool:
-    """True if a value is used at this port, not passed on."""
-    return port.owner == "component" or (port.owner == "system" and key.path == ())
 
 
 def _way(key: Key, incoming: Mapping[Key, Wire], findings: Findings) -> list[Wire]:

@@ -65,7 +65,11 @@ class ConnectionReader:
         for element in elements:
             # Both ends of a connection, in the order of the file.
             ends = {local(part): part for part in element if local(part)}
-            shown = " - ".join(_shown(part) for part in element if local(part))
+            shown = " - ".join(
+                f"{part.get('simulator') or part.get('function')}.{part.get('name')}"
+                for part in element
+                if local(part)
+            )
             place = self.document.place(element, shown)
             if element.get("powerBond"):
                 self.findings.remark(
@@ -244,10 +248,6 @@ class ConnectionReader:
 
     def _has(self, end: End) -> bool:
         return end[1] in self._fmu(end[0]).variables
-
-
-def _shown(element: etree._Element) -> str:
-    return f"{element.get('simulator') or element.get('function')}.{element.get('name')}"
 
 
 def _counted(variables: int, groups: int) -> str:

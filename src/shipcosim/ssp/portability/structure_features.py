@@ -29,15 +29,10 @@ def prefixes(subject: Subject) -> Found:
         for part in document.root.iter(etree.Element):
             uri = etree.QName(part).namespace
             if uri in wanted and part.prefix != wanted[uri]:
-                yield (
-                    document.place(part),
-                    f"<{_shown(part)}> instead of <{wanted[uri]}:{local(part)}>",
-                )
+                name = local(part)
+                shown = f"{part.prefix}:{name}" if part.prefix else name
+                yield document.place(part), f"<{shown}> instead of <{wanted[uri]}:{name}>"
                 break
-
-
-def _shown(part: etree._Element) -> str:
-    return f"{part.prefix}:{local(part)}" if part.prefix else local(part)
 
 
 def version_2(subject: Subject) -> Found:
