@@ -8,22 +8,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from shipcosim.diagnose.explanation.form import learnt
+from shipcosim.diagnose.explanation.form import learnt, with_learnt_form
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.explanation.search import ExplainedLog, at_first_sight, explain
 from shipcosim.diagnose.explanation.unmodelled import is_healthy, unmodelled_gains
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.inference.thresholds import MOST_CAUSES, UNMODELLED
+from shipcosim.diagnose.log.checks.samples import LIFELESS
 from shipcosim.diagnose.log.checks.wind import leaps
 from shipcosim.diagnose.log.mislabels import (
-    DRIVES,
-    THRUSTER_LABELS,
     WIND_LABELS,
     finding_of,
     possible,
 )
 from shipcosim.diagnose.log.repair import repaired
+from shipcosim.diagnose.log.roles import NAVIGATION
 from shipcosim.diagnose.log_faults.clock import clock_by_response, with_rate
 from shipcosim.diagnose.log_faults.held_inputs import held_inputs, is_contradicted
 from shipcosim.diagnose.log_faults.input_labels import (
@@ -34,6 +34,7 @@ from shipcosim.diagnose.log_faults.input_labels import (
 )
 from shipcosim.diagnose.log_faults.navigation_labels import relabelled
 from shipcosim.diagnose.log_faults.thresholds import (
+    EXPLAINED_WALK,
     FAULT,
     MOST_INPUT_FAULTS,
     MOST_TRIED,
@@ -56,10 +57,10 @@ def corrected(found: Identification) -> Identification:
 
 def with_measured_inputs(found: Identification) -> Identification:
     """The log without rows in which a channel of thrusters or wind keeps a value that the ship contradicts."""
-    # A channel that is held can look like a wrong label of its thruster: first without these labels.
-    others = tuple(fault for fault in found.faults if not _is_label_of_a_drive(fault))
+    # A channel that is held can look like a wrong label of it: first without labels of inputs.
+    others = tuple(fault for fault in found.faults if not _is_label_of_an_input(fault))
     is_labelled = len(others) < len(found.faults)
-    if is_labelled and held_inputs(found.repaired, found.ship):
+    if is_labelled and held_inputs(_without(found, others), found.ship):
         plain = _repaired(found, others)
         cut = _without_held_inputs(plain)
         if cut is not plain:
@@ -67,8 +68,8 @@ def with_measured_inputs(found: Identification) -> Identification:
     return _without_held_inputs(found)
 
 
-def _is_label_of_a_drive(fault):
-    return fault.cause in THRUSTER_LABELS and all(role.endswith(DRIVES) for role in fault.channels)
+def _is_label_of_an_input(fault):
+    return fault.mislabel is not None and not set(fault.channels) & {"time", *NAVIGATION}
 
 
 def _without_held_inputs(found):
@@ -79,7 +80,8 @@ def _without_held_inputs(found):
         return found
     for gap in held:
         cut = _repaired(found, (*found.faults, gap))
-        if is_contradicted(gap, found.repaired, learnt(cut.problem)):
+        # A wind that never changes while she sails is no apparent wind, and leaves no other rows.
+        if gap.note == LIFELESS or is_contradicted(gap, found.repaired, learnt(cut.problem)):
             found = cut
     return found
 
@@ -202,43 +204,49 @@ def with_right_connections(found: Identification) -> Identification:
     return found
 
 
-def with_right_inputs(explained: ExplainedLog) -> ExplainedLog:
-    """The log with mislabelled channels of thrusters and wind corrected, where it is not healthy; explained again."""
+def with_right_inputs(explained: ExplainedLog, plain: Identification) -> ExplainedLog:
+    """The log with mislabelled channels of thrusters and wind corrected, where it is not healthy; explained again.
+
+    They are sought on the `plain` ship, of the model's form: one that is learnt from wrong channels hides where they
+    are wrong.
+    """
     known = len(explained.identification.faults)
     for _ in range(MOST_INPUT_FAULTS):
-        better = None if explained.is_healthy else _with_right_input(explained)
+        better = None if explained.is_healthy else _with_right_input(explained, plain)
         if better is None:
             break
         *others, fault = better.identification.faults[known:]
         if any(set(fault.channels) & set(other.channels) for other in others):
             break  # what a channel already corrected cannot be again: something else is wrong with it
         explained = better
+        plain = replace(_relabelled(plain, fault), faults=better.identification.faults)
     return explained
 
 
-def _with_right_input(explained):
+def _with_right_input(explained, plain):
     """The log with the likeliest fault of thrusters' or the wind's channels corrected; None if there is none.
 
     The ends of a segment are rough until they are settled, so the likeliest fault is settled before it is compared with
     all causes; further ones only where they are better than those even so.
     """
-    found = explained.identification
     best = explained.fits[0]
     # Candidates by their likelihood about the present motion, each then identified anew.
     candidates = []
-    for fault in suspected_inputs(found.repaired, found.problem)[:MOST_TRIED]:
-        again = _relabelled(found, fault)
+    for fault in suspected_inputs(plain.repaired, plain.problem)[:MOST_TRIED]:
+        again = _relabelled(plain, fault)
         candidates.append((at_first_sight(again.problem), fault, again.problem))
     # A fault must at least beat the log as it is, and after settling the best fit with causes.
-    least = min(best.score, at_first_sight(found.problem) + FAULT) if candidates else 0.0
+    least = at_first_sight(plain.problem) + FAULT if candidates else 0.0
     for score, fault, problem in sorted(candidates, key=lambda entry: -entry[0]):
         if score < least:
             return None
-        least = best.score
-        # Settle the segment before the costly comparison with all causes.
-        fault, right = _with_settled_segment(replace(found, problem=problem), fault)
-        shows = _shows_at_its_ends(found.repaired, fault)
-        if at_first_sight(right.problem) < best.score or not shows:
+        least = max(least, best.score)
+        # Settle the segment, and learn the form of the ship from right channels, before the costly comparison with
+        # all causes.
+        fault, right = _with_settled_segment(replace(plain, problem=problem), fault)
+        right = with_learnt_form(right)
+        shows = _shows_at_its_ends(plain.repaired, fault)
+        if at_first_sight(right.problem) < best.score or not shows or not _is_calm(right.problem):
             continue
         # Fit causes beside the fault. It must gain over the best fit without it.
         fits = tuple(explain(right.problem))
@@ -251,9 +259,15 @@ def _with_right_input(explained):
             )
             for fit in close
         ):
-            right = replace(right, faults=(*found.faults, fault))
+            right = replace(right, faults=(*plain.faults, fault))
             return ExplainedLog(right, fits, is_healthy(right.problem, fits[0]))
     return None
+
+
+def _is_calm(problem):
+    """Whether a force that nobody explains wanders no faster than on a ship that is explained."""
+    walk = np.asarray(problem.noise.walk)[:2]
+    return bool((walk < EXPLAINED_WALK).all())
 
 
 def _repaired(found, faults, noise=None):

@@ -25,6 +25,7 @@ from shipcosim.diagnose.log.mislabels import (
     drive_channels,
     exchanged,
     finding_of,
+    late,
     negative,
     possible,
     undone,
@@ -33,6 +34,7 @@ from shipcosim.diagnose.log.rows import arrays_of
 from shipcosim.diagnose.log_faults.thresholds import (
     BESIDE_AN_END,
     FIRST_MOVE,
+    LAGS_TRIED,
     LEAST_ROW_GAIN,
     MOST_PLACES,
     PART_GAIN,
@@ -44,6 +46,13 @@ from shipcosim.diagnose.log_faults.thresholds import (
 from shipcosim.diagnose.numerics import running_sums
 from shipcosim.diagnose.ship.inputs import Record, record_of, with_inputs_of
 from shipcosim.diagnose.ship.instruments import LAGS
+
+
+def _opposite(log):
+    return {"wind_from": np.mod(log["wind_from"] + 180.0, 360.0)}
+
+
+WHERE_TO = Mislabel("frame", ("wind_from",), "wind_from is where the wind goes to", _opposite)
 
 
 def suspected_inputs(log: xarray.Dataset, problem: IdentificationProblem) -> list[Finding]:
@@ -214,14 +223,16 @@ def _mislabels(log, model):
                 for group in ([pairs] if len(pairs) == 1 else [pairs, pairs[1:]])
                 if group
             ]
-    # Wrong signs of speed, thrust and azimuth.
+    # Wrong signs of speed, thrust and azimuth, and each of these channels late.
     for name in model.thrusters:
-        found += [negative(role) for role in drive_channels(name, log)]
+        for role in drive_channels(name, log):
+            found.append(negative(role))
+            found += [late((role,), ("the other channels",), lag) for lag in LAGS_TRIED]
     # Labels of the wind that involve the motion need its channels.
     if "wind_from" in log:
         motion = all(role in log for role in ("heading", "surge", "sway"))
         labels = WIND_LABELS if motion else (negative("wind_from"),)
-        found += possible(labels, log)
+        found += possible((*labels, WHERE_TO), log)
     return found
 
 
