@@ -14,7 +14,7 @@ from shipcosim.diagnose.explanation.search import ExplainedLog, at_first_sight, 
 from shipcosim.diagnose.explanation.unmodelled import is_healthy, unmodelled_gains
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.inference.problem import identification_problem
-from shipcosim.diagnose.inference.thresholds import MOST_CAUSES, UNMODELLED
+from shipcosim.diagnose.inference.thresholds import EXPLAINED_WALK, MOST_CAUSES, UNMODELLED
 from shipcosim.diagnose.log.checks.samples import LIFELESS
 from shipcosim.diagnose.log.checks.wind import leaps
 from shipcosim.diagnose.log.mislabels import (
@@ -34,7 +34,6 @@ from shipcosim.diagnose.log_faults.input_labels import (
 )
 from shipcosim.diagnose.log_faults.navigation_labels import relabelled
 from shipcosim.diagnose.log_faults.thresholds import (
-    EXPLAINED_WALK,
     FAULT,
     MOST_INPUT_FAULTS,
     MOST_TRIED,
@@ -58,7 +57,12 @@ def corrected(found: Identification) -> Identification:
 def with_measured_inputs(found: Identification) -> Identification:
     """The log without rows in which a channel of thrusters or wind keeps a value that the ship contradicts."""
     # A channel that is held can look like a wrong label of it: first without labels of inputs.
-    others = tuple(fault for fault in found.faults if not _is_label_of_an_input(fault))
+    navigation = {"time", *NAVIGATION}
+    others = tuple(
+        fault
+        for fault in found.faults
+        if fault.mislabel is None or set(fault.channels) & navigation
+    )
     is_labelled = len(others) < len(found.faults)
     if is_labelled and held_inputs(_without(found, others), found.ship):
         plain = _repaired(found, others)
@@ -66,10 +70,6 @@ def with_measured_inputs(found: Identification) -> Identification:
         if cut is not plain:
             return cut
     return _without_held_inputs(found)
-
-
-def _is_label_of_an_input(fault):
-    return fault.mislabel is not None and not set(fault.channels) & {"time", *NAVIGATION}
 
 
 def _without_held_inputs(found):
@@ -233,10 +233,10 @@ def _with_right_input(explained, plain):
     # Candidates by their likelihood about the present motion, each then identified anew.
     candidates = []
     for fault in suspected_inputs(plain.repaired, plain.problem)[:MOST_TRIED]:
-        again = _relabelled(plain, fault)
-        candidates.append((at_first_sight(again.problem), fault, again.problem))
-    # A fault must at least beat the log as it is, and after settling the best fit with causes.
-    least = at_first_sight(plain.problem) + FAULT if candidates else 0.0
+        problem = _relabelled(plain, fault).problem
+        candidates.append((at_first_sight(problem), fault, problem))
+    # In its rough segment a fault must beat the log as it is, once settled the best fit with causes.
+    least = at_first_sight(plain.problem) if candidates else 0.0
     for score, fault, problem in sorted(candidates, key=lambda entry: -entry[0]):
         if score < least:
             return None
@@ -245,8 +245,10 @@ def _with_right_input(explained, plain):
         # all causes.
         fault, right = _with_settled_segment(replace(plain, problem=problem), fault)
         right = with_learnt_form(right)
+        # Her wind must change with another unit, and beside the fault no force may wander.
         shows = _shows_at_its_ends(plain.repaired, fault)
-        if at_first_sight(right.problem) < best.score or not shows or not _is_calm(right.problem):
+        shows &= max(right.problem.noise.walk[:2]) < EXPLAINED_WALK
+        if at_first_sight(right.problem) < best.score or not shows:
             continue
         # Fit causes beside the fault. It must gain over the best fit without it.
         fits = tuple(explain(right.problem))
@@ -262,12 +264,6 @@ def _with_right_input(explained, plain):
             right = replace(right, faults=(*plain.faults, fault))
             return ExplainedLog(right, fits, is_healthy(right.problem, fits[0]))
     return None
-
-
-def _is_calm(problem):
-    """Whether a force that nobody explains wanders no faster than on a ship that is explained."""
-    walk = np.asarray(problem.noise.walk)[:2]
-    return bool((walk < EXPLAINED_WALK).all())
 
 
 def _repaired(found, faults, noise=None):

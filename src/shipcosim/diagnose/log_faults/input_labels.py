@@ -30,7 +30,7 @@ from shipcosim.diagnose.log.mislabels import (
     possible,
     undone,
 )
-from shipcosim.diagnose.log.rows import arrays_of
+from shipcosim.diagnose.log.rows import arrays_of, inside
 from shipcosim.diagnose.log_faults.thresholds import (
     BESIDE_AN_END,
     FIRST_MOVE,
@@ -41,6 +41,7 @@ from shipcosim.diagnose.log_faults.thresholds import (
     SEARCH_STEP,
     SEGMENT_GAIN,
     SHORTEST_INPUT,
+    SHORTEST_LABEL,
     WHOLE,
 )
 from shipcosim.diagnose.numerics import running_sums
@@ -53,6 +54,17 @@ def _opposite(log):
 
 
 WHERE_TO = Mislabel("frame", ("wind_from",), "wind_from is where the wind goes to", _opposite)
+
+
+def _late(role, seconds):
+    """A thruster's channel that comes late; its last rows, of which nothing is logged, stay as they are."""
+    label = late((role,), ("the other channels",), seconds)
+
+    def undo(log):
+        is_last = log["time"] + seconds > log["time"][-1]
+        return {role: np.where(is_last, log[role], label.undo(log)[role])}
+
+    return replace(label, undo=undo)
 
 
 def suspected_inputs(log: xarray.Dataset, problem: IdentificationProblem) -> list[Finding]:
@@ -77,7 +89,13 @@ def suspected_inputs(log: xarray.Dataset, problem: IdentificationProblem) -> lis
     # undone everywhere, and the segment of largest sum.
     for mislabel in _mislabels(log, problem.model):
         gain = _by_row(problem, record_of(with_label(log, mislabel), problem.model)) - base
-        total, finding = where_best(gain, mislabel, problem.record)
+        is_lag = mislabel.cause == "channel_lag"
+        shortest = SHORTEST_LABEL if is_lag else SHORTEST_INPUT
+        total, finding = where_best(gain, mislabel, problem.record, shortest)
+        if is_lag:
+            # A lag shows at every move, an error of the model at one: the less telling half counts.
+            halves = np.array_split(gain[inside(problem.record.time, finding.segments)], 2)
+            total = 2.0 * min(half.sum() for half in halves)
         if total > LEAST_ROW_GAIN:
             found.append((total, finding))
     return [finding for _, finding in sorted(found, key=lambda entry: -entry[0])]
@@ -227,7 +245,7 @@ def _mislabels(log, model):
     for name in model.thrusters:
         for role in drive_channels(name, log):
             found.append(negative(role))
-            found += [late((role,), ("the other channels",), lag) for lag in LAGS_TRIED]
+            found += [_late(role, lag) for lag in LAGS_TRIED]
     # Labels of the wind that involve the motion need its channels.
     if "wind_from" in log:
         motion = all(role in log for role in ("heading", "surge", "sway"))

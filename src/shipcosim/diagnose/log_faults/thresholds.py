@@ -16,9 +16,6 @@ MOST_TRIED = 3
 """Mislabels of thrusters and wind that are tried, the likeliest first."""
 MOST_INPUT_FAULTS = 2
 """Faults of thrusters' and the wind's channels in one log. Assumed."""
-EXPLAINED_WALK = 1e-5
-"""Random walk of the unexplained force, by mass, on a ship that is explained once a channel is right. [m/s2.5] Of 12
-developing logs (independent truth, seeds 700 to 714) right ones reached 9e-6, those of a wrong name had 1e-5 to 3e-5."""
 ROUNDS_OF_SEGMENT = 2
 """Times that the segment of a mislabel is refined about the motion that it gives."""
 
