@@ -135,24 +135,19 @@ def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
     steady = given.fits[0].score - _cost(given)
     # The same search with other noise or form, as the result must not hang on these.
     sought = [(one, _clear_tries(one)) for one in (given, *_otherwise(given, plain))]
-    likely = [(one, tries[0]) for one, tries in sought if tries]
-    if likely and max(found.problem.noise.walk[:2]) > EXPLAINED_WALK:
+    one, tries = max(sought, key=_worth)
+    if tries and max(found.problem.noise.walk[:2]) > EXPLAINED_WALK:
         # Noise that was tuned without the course hides it: each side is weighed beside its own noise.
-        one, best = max(likely, key=lambda pair: pair[1].score - _cost(pair[0]))
-        tuned = _with_noise(one, tuned_noise(one.identification.problem, best.fit))
+        tuned = _with_noise(one, tuned_noise(one.identification.problem, tries[0].fit))
         sought.append((tuned, _clear_tries(tuned)))
         first = given.fits[0]
         rival = _with_noise(given, tuned_noise(found.problem, first)).identification.problem
         again = fitted(rival, first.hypotheses, first.values)
         steady = max(steady, again.score - _cost(given))
-    enough = [
-        (one, tries)
-        for one, tries in sought
-        if tries and tries[0].score - _cost(one) >= steady + COURSE_GAIN
-    ]
+    enough = [pair for pair in sought if _worth(pair) >= steady + COURSE_GAIN]
     if not enough:
         return given
-    explained, tries = max(enough, key=lambda pair: pair[1][0].score - _cost(pair[0]))
+    explained, tries = max(enough, key=_worth)
     problem = explained.identification.problem
     # Fewer causes are preferred where they explain the log nearly as well.
     best = next(
@@ -173,6 +168,12 @@ def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
         unmodelled_gains(problem, best.fit),
     )
     return _of_its_rows(explained, best.of, course)
+
+
+def _worth(pair: tuple[ExplainedLog, list[_Fitted]]) -> float:
+    """Log-evidence of a log with the likeliest of some courses. [nats]"""
+    explained, tries = pair
+    return tries[0].score - _cost(explained) if tries else -np.inf
 
 
 def _rivals(

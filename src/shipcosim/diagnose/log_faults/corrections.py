@@ -145,18 +145,12 @@ def _with_right_wind_label(found, place):
     # A fault throughout of which only a segment is left
     # needs evidence from the ship, else it is dropped.
     shrunk = fault.segments and not found.faults[place].segments
-    if shrunk and not _is_told_by_the_ship(right.problem, as_logged.repaired):
+    about = right.problem
+    logged = record_of(as_logged.repaired, about.model)
+    if shrunk and likelihood(about, about.record) <= likelihood(about, logged) + PART_GAIN:
         problem = identification_problem(as_logged.repaired, found.ship, found.causes)
         return replace(as_logged, faults=(*before, *after), problem=problem)
     return replace(right, faults=(*before, fault, *after))
-
-
-def _is_told_by_the_ship(problem, logged):
-    """Whether the ship's response supports the corrected label and not the logged one."""
-    return (
-        likelihood(problem, problem.record)
-        > likelihood(problem, record_of(logged, problem.model)) + PART_GAIN
-    )
 
 
 def _likeliest_direction(as_logged, fault):
@@ -252,14 +246,13 @@ def _with_right_input(explained, plain):
             continue
         # Fit causes beside the fault. It must gain over the best fit without it.
         fits = tuple(explain(right.problem))
-        close = [fit for fit in fits[:3] if fit.score > best.score + _least_gain(fault, best)]
+        enough = best.score + _least_gain(fault, best)
         # Whether no unmodelled error stands out beside a fit.
         if any(
-            (
-                len(fit.hypotheses) <= MOST_CAUSES
-                and max(unmodelled_gains(right.problem, fit).values()) < UNMODELLED
-            )
-            for fit in close
+            fit.score > enough
+            and len(fit.hypotheses) <= MOST_CAUSES
+            and max(unmodelled_gains(right.problem, fit).values()) < UNMODELLED
+            for fit in fits[:3]
         ):
             right = replace(right, faults=(*plain.faults, fault))
             return ExplainedLog(right, fits, is_healthy(right.problem, fits[0]))

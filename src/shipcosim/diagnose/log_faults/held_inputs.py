@@ -86,5 +86,4 @@ def is_contradicted(finding: Finding, log: xarray.Dataset, problem: Identificati
 
 def _squares(problem, fit):
     """Squared innovations of each row with a fit."""
-    white = innovations(explained(fit.linear, fit.left), problem.noise, fit.record).white
-    return (white[..., 0] ** 2).sum(-1)
+    return innovations(explained(fit.linear, fit.left), problem.noise, fit.record).squares

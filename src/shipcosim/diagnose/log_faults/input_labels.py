@@ -48,12 +48,12 @@ from shipcosim.diagnose.numerics import running_sums
 from shipcosim.diagnose.ship.inputs import Record, record_of, with_inputs_of
 from shipcosim.diagnose.ship.instruments import LAGS
 
-
-def _opposite(log):
-    return {"wind_from": np.mod(log["wind_from"] + 180.0, 360.0)}
-
-
-WHERE_TO = Mislabel("frame", ("wind_from",), "wind_from is where the wind goes to", _opposite)
+WHERE_TO = Mislabel(
+    "frame",
+    ("wind_from",),
+    "wind_from is where the wind goes to",
+    lambda log: {"wind_from": np.mod(log["wind_from"] + 180.0, 360.0)},
+)
 
 
 def _late(role, seconds):
@@ -273,9 +273,7 @@ def _by_row(problem, record):
     # Whitened innovations give the Gaussian log-likelihood
     # of each row. The prior's cost is spread evenly.
     left = innovations(explained(linear, theta), problem.noise, record)
-    return -0.5 * (
-        (left.white[..., 0] ** 2).sum(-1) + left.log_determinant + (theta**2).sum() / linear.rows
-    )
+    return -0.5 * (left.squares + left.log_determinant + (theta**2).sum() / linear.rows)
 
 
 def where_best(
