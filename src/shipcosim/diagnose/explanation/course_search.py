@@ -135,16 +135,17 @@ def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
     steady = given.fits[0].score - _cost(given)
     # The same search with other noise or form, as the result must not hang on these.
     sought = [(one, _clear_tries(one)) for one in (given, *_otherwise(given, plain))]
+    enough = [pair for pair in sought if _worth(pair) >= steady + COURSE_GAIN]
     one, tries = max(sought, key=_worth)
-    if tries and max(found.problem.noise.walk[:2]) > EXPLAINED_WALK:
+    if tries and not enough and max(found.problem.noise.walk[:2]) > EXPLAINED_WALK:
         # Noise that was tuned without the course hides it: each side is weighed beside its own noise.
         tuned = _with_noise(one, tuned_noise(one.identification.problem, tries[0].fit))
-        sought.append((tuned, _clear_tries(tuned)))
         first = given.fits[0]
         rival = _with_noise(given, tuned_noise(found.problem, first)).identification.problem
         again = fitted(rival, first.hypotheses, first.values)
         steady = max(steady, again.score - _cost(given))
-    enough = [pair for pair in sought if _worth(pair) >= steady + COURSE_GAIN]
+        pair = tuned, _clear_tries(tuned)
+        enough = [pair] if _worth(pair) >= steady + COURSE_GAIN else []
     if not enough:
         return given
     explained, tries = max(enough, key=_worth)
