@@ -255,6 +255,6 @@ def verdict_on(problem: Identification, progress: Progress) -> JudgedLog:
     identification = with_learnt_form(plain)
     progress("which causes explain it?")
     explained = with_settled_form(with_causes(identification))
-    explained = with_course(with_right_inputs(explained), plain)
+    explained = with_course(with_right_inputs(explained, plain), plain)
     progress("what do healthy ships look like?")
     return with_craft(judged(explained))

@@ -40,10 +40,10 @@ from shipcosim.diagnose.inference.fitting import (
     prepared,
     theta_of,
 )
-from shipcosim.diagnose.inference.innovations import inner_products
+from shipcosim.diagnose.inference.innovations import Noise, inner_products
 from shipcosim.diagnose.inference.linearisation import Regressor, moved
 from shipcosim.diagnose.inference.parts import InParts, beside, linearised_by_parts
-from shipcosim.diagnose.inference.problem import identification_problem
+from shipcosim.diagnose.inference.problem import identification_problem, tuned_noise
 from shipcosim.diagnose.inference.regressors import placed, regressors_of, screening_regressors
 from shipcosim.diagnose.inference.thresholds import (
     APART,
@@ -52,6 +52,7 @@ from shipcosim.diagnose.inference.thresholds import (
     COURSE_GAIN,
     DEVIATIONS,
     ENOUGH,
+    EXPLAINED_WALK,
     FORM_COST,
     LIKELIEST_COURSES,
     MEASURED_WHILE_PRESENT,
@@ -133,15 +134,21 @@ def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
     # Log-evidence of steady causes, less the cost of another form: the score to beat.
     steady = given.fits[0].score - _cost(given)
     # The same search with other noise or form, as the result must not hang on these.
-    sought = ((one, _clear_tries(one)) for one in (given, *_otherwise(given, plain)))
-    enough = [
-        (one, tries)
-        for one, tries in sought
-        if tries and tries[0].score - _cost(one) >= steady + COURSE_GAIN
-    ]
+    sought = [(one, _clear_tries(one)) for one in (given, *_otherwise(given, plain))]
+    enough = [pair for pair in sought if _worth(pair) >= steady + COURSE_GAIN]
+    one, tries = max(sought, key=_worth)
+    if tries and not enough and max(found.problem.noise.walk[:2]) > EXPLAINED_WALK:
+        # Noise that was tuned without the course hides it: each side is weighed beside its own noise.
+        tuned = _with_noise(one, tuned_noise(one.identification.problem, tries[0].fit))
+        first = given.fits[0]
+        rival = _with_noise(given, tuned_noise(found.problem, first)).identification.problem
+        again = fitted(rival, first.hypotheses, first.values)
+        steady = max(steady, again.score - _cost(given))
+        pair = tuned, _clear_tries(tuned)
+        enough = [pair] if _worth(pair) >= steady + COURSE_GAIN else []
     if not enough:
         return given
-    explained, tries = max(enough, key=lambda pair: pair[1][0].score - _cost(pair[0]))
+    explained, tries = max(enough, key=_worth)
     problem = explained.identification.problem
     # Fewer causes are preferred where they explain the log nearly as well.
     best = next(
@@ -162,6 +169,12 @@ def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
         unmodelled_gains(problem, best.fit),
     )
     return _of_its_rows(explained, best.of, course)
+
+
+def _worth(pair: tuple[ExplainedLog, list[_Fitted]]) -> float:
+    """Log-evidence of a log with the likeliest of some courses. [nats]"""
+    explained, tries = pair
+    return tries[0].score - _cost(explained) if tries else -np.inf
 
 
 def _rivals(
@@ -218,8 +231,16 @@ def _otherwise(given: ExplainedLog, plain: Identification) -> Iterator[Explained
     walk = np.minimum(plain.problem.noise.walk, CALM_WALK * np.array([1.0, 1.0, WALK_IN_YAW]))
     if np.any(walk < 0.9 * np.asarray(plain.problem.noise.walk)):
         noise = replace(plain.problem.noise, walk=walk)
-        calm = prepared(replace(plain.problem, noise=noise), rounds=1)
-        yield replace(given, identification=replace(plain, problem=calm), fits=(fitted(calm),))
+        yield _with_noise(replace(given, identification=plain), noise)
+
+
+def _with_noise(explained: ExplainedLog, noise: Noise) -> ExplainedLog:
+    """The log with another noise, without a cause."""
+    found = explained.identification
+    problem = prepared(replace(found.problem, noise=noise), rounds=1)
+    return replace(
+        explained, identification=replace(found, problem=problem), fits=(fitted(problem),)
+    )
 
 
 def _cost(explained: ExplainedLog) -> float:

@@ -64,6 +64,11 @@ class Innovations(NamedTuple):
     log_determinant: np.ndarray
     filtered: np.ndarray = np.empty(0)
 
+    @property
+    def squares(self) -> np.ndarray:
+        """Sum of the squared innovations of the log in each row."""
+        return (self.white[..., 0] ** 2).sum(-1)
+
 
 def innovations(linear: Linear | InParts, noise: Noise, record: Record) -> Innovations:
     """Filter every column.

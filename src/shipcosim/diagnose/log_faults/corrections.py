@@ -8,22 +8,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from shipcosim.diagnose.explanation.form import learnt
+from shipcosim.diagnose.explanation.form import learnt, with_learnt_form
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.explanation.search import ExplainedLog, at_first_sight, explain
 from shipcosim.diagnose.explanation.unmodelled import is_healthy, unmodelled_gains
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.inference.problem import identification_problem
-from shipcosim.diagnose.inference.thresholds import MOST_CAUSES, UNMODELLED
+from shipcosim.diagnose.inference.thresholds import EXPLAINED_WALK, MOST_CAUSES, UNMODELLED
+from shipcosim.diagnose.log.checks.samples import LIFELESS
 from shipcosim.diagnose.log.checks.wind import leaps
 from shipcosim.diagnose.log.mislabels import (
-    DRIVES,
-    THRUSTER_LABELS,
     WIND_LABELS,
     finding_of,
     possible,
 )
 from shipcosim.diagnose.log.repair import repaired
+from shipcosim.diagnose.log.roles import NAVIGATION
 from shipcosim.diagnose.log_faults.clock import clock_by_response, with_rate
 from shipcosim.diagnose.log_faults.held_inputs import held_inputs, is_contradicted
 from shipcosim.diagnose.log_faults.input_labels import (
@@ -56,19 +56,20 @@ def corrected(found: Identification) -> Identification:
 
 def with_measured_inputs(found: Identification) -> Identification:
     """The log without rows in which a channel of thrusters or wind keeps a value that the ship contradicts."""
-    # A channel that is held can look like a wrong label of its thruster: first without these labels.
-    others = tuple(fault for fault in found.faults if not _is_label_of_a_drive(fault))
+    # A channel that is held can look like a wrong label of it: first without labels of inputs.
+    navigation = {"time", *NAVIGATION}
+    others = tuple(
+        fault
+        for fault in found.faults
+        if fault.mislabel is None or set(fault.channels) & navigation
+    )
     is_labelled = len(others) < len(found.faults)
-    if is_labelled and held_inputs(found.repaired, found.ship):
+    if is_labelled and held_inputs(_without(found, others), found.ship):
         plain = _repaired(found, others)
         cut = _without_held_inputs(plain)
         if cut is not plain:
             return cut
     return _without_held_inputs(found)
-
-
-def _is_label_of_a_drive(fault):
-    return fault.cause in THRUSTER_LABELS and all(role.endswith(DRIVES) for role in fault.channels)
 
 
 def _without_held_inputs(found):
@@ -79,7 +80,8 @@ def _without_held_inputs(found):
         return found
     for gap in held:
         cut = _repaired(found, (*found.faults, gap))
-        if is_contradicted(gap, found.repaired, learnt(cut.problem)):
+        # A wind that never changes while she sails is no apparent wind, and leaves no other rows.
+        if gap.note == LIFELESS or is_contradicted(gap, found.repaired, learnt(cut.problem)):
             found = cut
     return found
 
@@ -143,18 +145,12 @@ def _with_right_wind_label(found, place):
     # A fault throughout of which only a segment is left
     # needs evidence from the ship, else it is dropped.
     shrunk = fault.segments and not found.faults[place].segments
-    if shrunk and not _is_told_by_the_ship(right.problem, as_logged.repaired):
+    about = right.problem
+    logged = record_of(as_logged.repaired, about.model)
+    if shrunk and likelihood(about, about.record) <= likelihood(about, logged) + PART_GAIN:
         problem = identification_problem(as_logged.repaired, found.ship, found.causes)
         return replace(as_logged, faults=(*before, *after), problem=problem)
     return replace(right, faults=(*before, fault, *after))
-
-
-def _is_told_by_the_ship(problem, logged):
-    """Whether the ship's response supports the corrected label and not the logged one."""
-    return (
-        likelihood(problem, problem.record)
-        > likelihood(problem, record_of(logged, problem.model)) + PART_GAIN
-    )
 
 
 def _likeliest_direction(as_logged, fault):
@@ -202,56 +198,63 @@ def with_right_connections(found: Identification) -> Identification:
     return found
 
 
-def with_right_inputs(explained: ExplainedLog) -> ExplainedLog:
-    """The log with mislabelled channels of thrusters and wind corrected, where it is not healthy; explained again."""
+def with_right_inputs(explained: ExplainedLog, plain: Identification) -> ExplainedLog:
+    """The log with mislabelled channels of thrusters and wind corrected, where it is not healthy; explained again.
+
+    They are sought on the `plain` ship, of the model's form: one that is learnt from wrong channels hides where they
+    are wrong.
+    """
     known = len(explained.identification.faults)
     for _ in range(MOST_INPUT_FAULTS):
-        better = None if explained.is_healthy else _with_right_input(explained)
+        better = None if explained.is_healthy else _with_right_input(explained, plain)
         if better is None:
             break
         *others, fault = better.identification.faults[known:]
         if any(set(fault.channels) & set(other.channels) for other in others):
             break  # what a channel already corrected cannot be again: something else is wrong with it
         explained = better
+        plain = replace(_relabelled(plain, fault), faults=better.identification.faults)
     return explained
 
 
-def _with_right_input(explained):
+def _with_right_input(explained, plain):
     """The log with the likeliest fault of thrusters' or the wind's channels corrected; None if there is none.
 
     The ends of a segment are rough until they are settled, so the likeliest fault is settled before it is compared with
     all causes; further ones only where they are better than those even so.
     """
-    found = explained.identification
     best = explained.fits[0]
     # Candidates by their likelihood about the present motion, each then identified anew.
     candidates = []
-    for fault in suspected_inputs(found.repaired, found.problem)[:MOST_TRIED]:
-        again = _relabelled(found, fault)
-        candidates.append((at_first_sight(again.problem), fault, again.problem))
-    # A fault must at least beat the log as it is, and after settling the best fit with causes.
-    least = min(best.score, at_first_sight(found.problem) + FAULT) if candidates else 0.0
+    for fault in suspected_inputs(plain.repaired, plain.problem)[:MOST_TRIED]:
+        problem = _relabelled(plain, fault).problem
+        candidates.append((at_first_sight(problem), fault, problem))
+    # In its rough segment a fault must beat the log as it is, once settled the best fit with causes.
+    least = at_first_sight(plain.problem) if candidates else 0.0
     for score, fault, problem in sorted(candidates, key=lambda entry: -entry[0]):
         if score < least:
             return None
-        least = best.score
-        # Settle the segment before the costly comparison with all causes.
-        fault, right = _with_settled_segment(replace(found, problem=problem), fault)
-        shows = _shows_at_its_ends(found.repaired, fault)
+        least = max(least, best.score)
+        # Settle the segment, and learn the form of the ship from right channels, before the costly comparison with
+        # all causes.
+        fault, right = _with_settled_segment(replace(plain, problem=problem), fault)
+        right = with_learnt_form(right)
+        # Her wind must change with another unit, and beside the fault no force may wander.
+        shows = _shows_at_its_ends(plain.repaired, fault)
+        shows &= max(right.problem.noise.walk[:2]) < EXPLAINED_WALK
         if at_first_sight(right.problem) < best.score or not shows:
             continue
         # Fit causes beside the fault. It must gain over the best fit without it.
         fits = tuple(explain(right.problem))
-        close = [fit for fit in fits[:3] if fit.score > best.score + _least_gain(fault, best)]
+        enough = best.score + _least_gain(fault, best)
         # Whether no unmodelled error stands out beside a fit.
         if any(
-            (
-                len(fit.hypotheses) <= MOST_CAUSES
-                and max(unmodelled_gains(right.problem, fit).values()) < UNMODELLED
-            )
-            for fit in close
+            fit.score > enough
+            and len(fit.hypotheses) <= MOST_CAUSES
+            and max(unmodelled_gains(right.problem, fit).values()) < UNMODELLED
+            for fit in fits[:3]
         ):
-            right = replace(right, faults=(*found.faults, fault))
+            right = replace(right, faults=(*plain.faults, fault))
             return ExplainedLog(right, fits, is_healthy(right.problem, fits[0]))
     return None
 

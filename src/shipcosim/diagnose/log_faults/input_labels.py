@@ -25,25 +25,46 @@ from shipcosim.diagnose.log.mislabels import (
     drive_channels,
     exchanged,
     finding_of,
+    late,
     negative,
     possible,
     undone,
 )
-from shipcosim.diagnose.log.rows import arrays_of
+from shipcosim.diagnose.log.rows import arrays_of, inside
 from shipcosim.diagnose.log_faults.thresholds import (
     BESIDE_AN_END,
     FIRST_MOVE,
+    LAGS_TRIED,
     LEAST_ROW_GAIN,
     MOST_PLACES,
     PART_GAIN,
     SEARCH_STEP,
     SEGMENT_GAIN,
     SHORTEST_INPUT,
+    SHORTEST_LABEL,
     WHOLE,
 )
 from shipcosim.diagnose.numerics import running_sums
 from shipcosim.diagnose.ship.inputs import Record, record_of, with_inputs_of
 from shipcosim.diagnose.ship.instruments import LAGS
+
+WHERE_TO = Mislabel(
+    "frame",
+    ("wind_from",),
+    "wind_from is where the wind goes to",
+    lambda log: {"wind_from": np.mod(log["wind_from"] + 180.0, 360.0)},
+)
+
+
+def _late(role, seconds):
+    """A thruster's channel that comes late; its last rows, of which nothing is logged, stay as they are."""
+    label = late((role,), ("the other channels",), seconds)
+
+    def undo(log):
+        is_last = log["time"] + seconds > log["time"][-1]
+        return {role: np.where(is_last, log[role], label.undo(log)[role])}
+
+    return replace(label, undo=undo)
 
 
 def suspected_inputs(log: xarray.Dataset, problem: IdentificationProblem) -> list[Finding]:
@@ -68,7 +89,13 @@ def suspected_inputs(log: xarray.Dataset, problem: IdentificationProblem) -> lis
     # undone everywhere, and the segment of largest sum.
     for mislabel in _mislabels(log, problem.model):
         gain = _by_row(problem, record_of(with_label(log, mislabel), problem.model)) - base
-        total, finding = where_best(gain, mislabel, problem.record)
+        is_lag = mislabel.cause == "channel_lag"
+        shortest = SHORTEST_LABEL if is_lag else SHORTEST_INPUT
+        total, finding = where_best(gain, mislabel, problem.record, shortest)
+        if is_lag:
+            # A lag shows at every move, an error of the model at one: the less telling half counts.
+            halves = np.array_split(gain[inside(problem.record.time, finding.segments)], 2)
+            total = 2.0 * min(half.sum() for half in halves)
         if total > LEAST_ROW_GAIN:
             found.append((total, finding))
     return [finding for _, finding in sorted(found, key=lambda entry: -entry[0])]
@@ -214,14 +241,16 @@ def _mislabels(log, model):
                 for group in ([pairs] if len(pairs) == 1 else [pairs, pairs[1:]])
                 if group
             ]
-    # Wrong signs of speed, thrust and azimuth.
+    # Wrong signs of speed, thrust and azimuth, and each of these channels late.
     for name in model.thrusters:
-        found += [negative(role) for role in drive_channels(name, log)]
+        for role in drive_channels(name, log):
+            found.append(negative(role))
+            found += [_late(role, lag) for lag in LAGS_TRIED]
     # Labels of the wind that involve the motion need its channels.
     if "wind_from" in log:
         motion = all(role in log for role in ("heading", "surge", "sway"))
         labels = WIND_LABELS if motion else (negative("wind_from"),)
-        found += possible(labels, log)
+        found += possible((*labels, WHERE_TO), log)
     return found
 
 
@@ -244,9 +273,7 @@ def _by_row(problem, record):
     # Whitened innovations give the Gaussian log-likelihood
     # of each row. The prior's cost is spread evenly.
     left = innovations(explained(linear, theta), problem.noise, record)
-    return -0.5 * (
-        (left.white[..., 0] ** 2).sum(-1) + left.log_determinant + (theta**2).sum() / linear.rows
-    )
+    return -0.5 * (left.squares + left.log_determinant + (theta**2).sum() / linear.rows)
 
 
 def where_best(

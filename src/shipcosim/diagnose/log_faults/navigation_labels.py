@@ -179,7 +179,7 @@ def _by_row(problem, record):
     found = innovations(
         linearised_by_parts(motion, record, problem.model, []), problem.noise, record
     )
-    return -0.5 * ((found.white[..., 0] ** 2).sum(-1) + found.log_determinant)
+    return -0.5 * (found.squares + found.log_determinant)
 
 
 def _density(finding, problem):

@@ -25,6 +25,8 @@ LEAST_ROW_GAIN = 10.0
 """Log-likelihood over the rows of its segment above which a mislabel is tried. [nats] Assumed."""
 SHORTEST_INPUT = 60.0
 """Shortest segment in which an input is wrong. [s] Assumed."""
+LAGS_TRIED = (2.0, 4.0, 6.0, 9.0)
+"""Times by which the channel of one thruster may come late. [s] Assumed; a lag in between is found by its neighbour."""
 WHOLE = 0.85
 """Share of the log above which a segment is taken as all of it. Assumed."""
 BESIDE_AN_END = 4

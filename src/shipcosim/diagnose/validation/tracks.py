@@ -103,7 +103,7 @@ def tracks_by_models(record: Record, models: Mapping[str, ShipModel], horizon: f
     rows, count, found = *_segments(record, horizon), {}
     for name, model in models.items():
         # Smoothed measurements give the start; inputs are those of the log without delay.
-        seen = _seen(record, model, horizon)
+        seen = _seen(record, horizon)
         driven, neutral = replayable(record, model, seen)
         start = true_motion(at_rows(seen, rows), model)
         ahead = readings(predicted(start, rows, driven, neutral, range(1, count + 1)), model)
@@ -164,7 +164,7 @@ def tracks_by_systems(
 
 def _cosimulated(record, model, one, rows, horizon, progress):
     """Predictions of one system from some rows."""
-    seen = _seen(record, model, horizon)
+    seen = _seen(record, horizon)
     driven, neutral = replayable(record, model, seen)
     # The system's instruments have errors of their own: take them out of the start values.
     errors, lag = _instruments(one)
@@ -218,7 +218,7 @@ def _segments(record: Record, horizon: float) -> tuple[np.ndarray, int]:
     return np.array(rows), count
 
 
-def _seen(record: Record, model: ShipModel, horizon: float) -> Motion:
+def _seen(record: Record, horizon: float) -> Motion:
     return first_motion(record, smooth=min(4.0, SMOOTHED_SHARE * horizon))
 
 

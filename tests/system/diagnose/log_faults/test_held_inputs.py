@@ -50,6 +50,14 @@ def test_a_held_channel_that_the_ship_contradicts_is_a_gap(channels, is_zero):
     assert gaps(log) == [(channels, (FIRST, LAST))]
 
 
+@pytest.mark.parametrize("role, value", [("wind_speed", 0.0), ("wind_from", 40.0)])
+def test_a_wind_that_never_changes_is_a_gap(role, value):
+    log = with_noise(twin.logs()["healthy"])
+    log = log.assign({role: log[role].copy(data=np.full(log.sizes["time"], value))})
+    (found,) = gaps(log)
+    assert found[0] == ("wind_speed", "wind_from")
+
+
 def test_a_thruster_that_stands_still_is_no_gap(monkeypatch):
     commands = twin.commands
 

@@ -8,6 +8,7 @@ from diagnose import twin
 
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
 from shipcosim.diagnose.log_faults.input_labels import (
+    WHERE_TO,
     best_run,
     suspected_inputs,
     with_label,
@@ -89,6 +90,20 @@ def test_swapped_twins_are_found_by_their_channels():
     assert set(finding.channels) == {role for pair in pairs for role in pair}
     for role in finding.channels:
         np.testing.assert_array_equal(right[role].values, healthy[role].values)
+
+
+def test_a_wind_direction_that_is_where_the_wind_goes_is_found():
+    healthy = twin.logs()["healthy"]["wind_from"].values
+    finding, right = best(changed({"wind_from": np.mod(healthy + 180.0, 360.0)}, part=False))
+    assert (finding.cause, finding.note, finding.segments) == ("frame", WHERE_TO.sentence, ())
+    np.testing.assert_allclose(right["wind_from"], np.mod(healthy, 360.0))
+
+
+def test_the_late_channel_of_one_thruster_is_found():
+    speed = twin.logs()["healthy"]["starboard_rpm"].values
+    finding, _ = best(changed({"starboard_rpm": np.r_[speed[:6], speed[:-6]]}, part=False))
+    assert (finding.cause, finding.channels) == ("channel_lag", ("starboard_rpm",))
+    assert "6.0 s later" in finding.note
 
 
 @pytest.mark.parametrize("name", ["healthy", "thrust_loss"])
