@@ -131,7 +131,7 @@ class Cluster(Workers):
 
     def __init__(self, plan: Plan, engine: str, address: str):
         with imported("--scheduler", "Dask is not installed.", "cluster"):
-            from distributed import Client
+            from distributed import Client  # pyright: ignore[reportMissingImports]
         # A cluster that ends is told in one sentence, not by tracebacks of the client's tasks.
         for name in ("distributed.client", "distributed.core", "distributed.utils"):
             logging.getLogger(name).setLevel(logging.CRITICAL)
@@ -175,8 +175,8 @@ class Cluster(Workers):
 
     def is_lost(self, error: BaseException) -> bool:
         """See `Workers`."""
-        from distributed import KilledWorker
-        from distributed.comm.core import CommClosedError
+        from distributed import KilledWorker  # pyright: ignore[reportMissingImports]
+        from distributed.comm.core import CommClosedError  # pyright: ignore[reportMissingImports]
 
         return isinstance(error, (KilledWorker, CommClosedError, CancelledError))
 

@@ -70,7 +70,7 @@ class DirectCalls:
 
         return set_all
 
-    def getter(self, kind: str, variables: Variables, buffer: np.ndarray) -> Call:
+    def getter(self, kind: str, variables: Variables, buffer: Any) -> Call:
         """See `Slave.getter`."""
         # The shell binds names to references once; each call then only reads attributes.
         get_values = self.target.prepared_getter(kind, _references(variables))
