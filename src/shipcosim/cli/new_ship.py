@@ -207,10 +207,9 @@ def _study(ship: Described) -> str:
     """A study of failures: each thruster stops, in wind from all sides."""
     from shipcosim.ships.control import units_for_dp
 
-    event = '[{{ time = 200.0, override = {{ "{name}.failed" = true }} }}]'
     cases = [
-        f'    {{ label = "{unit.name} stops", events = {event.format(name=unit.name)} }},'
-        for unit in units_for_dp(ship)
+        f'    {{ label = "{name} stops", events = [{{ time = 200.0, override = {{ "{name}.failed" = true }} }}] }},'
+        for name in (unit.name for unit in units_for_dp(ship))
     ]
     return FAILURES.format(name=ship.name, cases="\n".join(cases))
 

@@ -104,7 +104,8 @@ def _misfit(tracks: Tracks) -> tuple[str, ...]:
     still = errors_of(Tracks(end, tracks.measured, start), (1.0,)).assign_coords(after=off["after"])
     turns = off["heading"] > np.maximum(_TURNED, _MORE_TURNED * still["heading"])
     is_other = (turns | (off["position"] > _DRIFTED * end)) & (off["position"] > still["position"])
-    if not is_other.all() or start.popitem()[1].sizes["segment"] < _FEWEST:
+    (one, *_) = tracks.predicted.values()
+    if not is_other.all() or one.sizes["segment"] < _FEWEST:
         return ()
     shown = [
         f"{e['heading'][-1, 0]:.0f} deg and {e['position'][-1, 0]:.3g} m" for e in (off, still)

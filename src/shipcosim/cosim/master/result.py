@@ -163,8 +163,7 @@ def fingerprint(system: System) -> str:
     """SHA-256 of a system's wiring: components, connections, connectors; without start values."""
     wiring = {
         "components": [
-            (c.name, c.step_size, *(() if c.implementation == "any" else (c.implementation,)))
-            for c in system.components.values()
+            (c.name, c.step_size, *_interface_asked_for(c)) for c in system.components.values()
         ],
         "connections": [
             (c.source, c.target, c.factor, c.offset, list((c.mapping or {}).items()), c.initial)
@@ -174,3 +173,7 @@ def fingerprint(system: System) -> str:
         "outputs": [(s.name, s.type, s.unit) for s in system.outputs.values()],
     }
     return hashlib.sha256(json.dumps(wiring, default=str).encode()).hexdigest()
+
+
+def _interface_asked_for(component):
+    return () if component.implementation == "any" else (component.implementation,)

@@ -51,12 +51,8 @@ _NAMES = {
     "ns": "nanoseconds",
 }
 _MOST_TURNED = 1080.0  # deg; where turns are counted on a log begins within it. Assumed.
-_FEW_IMPOSSIBLE = (
-    0.1  # share of a direction's values that may be impossible; else the unit is wrong. Assumed.
-)
-_USUALLY_TURNED = (
-    4.0  # times the median of a direction, above which a number is no direction. Assumed.
-)
+_FEW_IMPOSSIBLE = 0.1  # share of impossible directions, above which the unit is wrong. Assumed.
+_USUALLY_TURNED = 4.0  # times the median of a direction; a number above is none. Assumed.
 _HOUR = 3600.0  # s
 _SUNDAY = 6
 _PUT_ON = r"(?<![\d+-])0?[23]:00(:\d\d([.,]\d+)?)?(\s*[aA][mM])?$"  # hours to which clocks are put on, no zone behind

@@ -64,17 +64,17 @@ def with_measured_inputs(found: Identification) -> Identification:
         if fault.mislabel is None or set(fault.channels) & navigation
     )
     is_labelled = len(others) < len(found.faults)
-    if is_labelled and held_inputs(_without(found, others), found.ship):
+    held = held_inputs(_without(found, others), found.ship) if is_labelled else []
+    if held:
         plain = _repaired(found, others)
-        cut = _without_held_inputs(plain)
+        cut = _without_held_inputs(plain, held)
         if cut is not plain:
             return cut
-    return _without_held_inputs(found)
+    return _without_held_inputs(found, held_inputs(found.repaired, found.ship))
 
 
-def _without_held_inputs(found):
+def _without_held_inputs(found, held):
     """The log without held channels that the ship contradicts; itself where she is explained without that."""
-    held = held_inputs(found.repaired, found.ship)
     logged = learnt(found.problem) if held else found.problem
     if not held or is_healthy(logged, explain(logged, most=1)[0]):
         return found

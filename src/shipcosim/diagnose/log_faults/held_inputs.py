@@ -16,11 +16,10 @@ from shipcosim.diagnose.inference.fitting import IdentificationProblem, prepared
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.parts import explained
 from shipcosim.diagnose.inference.thresholds import UNMODELLED
-from shipcosim.diagnose.log.checks.samples import HELD, LIFELESS, held_segments
+from shipcosim.diagnose.log.checks.samples import HELD, LIFELESS, held_segments, is_constant
 from shipcosim.diagnose.log.mislabels import drive_channels
 from shipcosim.diagnose.log.rows import inside
 from shipcosim.diagnose.log_faults.thresholds import HELD_ALIKE, HELD_EXCESS
-from shipcosim.diagnose.numerics import finite
 from shipcosim.diagnose.ship.inputs import with_inputs_of
 from shipcosim.diagnose.ship.model import ShipModel
 
@@ -43,7 +42,7 @@ def held_inputs(log: xarray.Dataset, model: ShipModel) -> list[Finding]:
     found = {}
     # A wind that is the same in every row is none that was measured: she meets another one as she moves.
     wind = tuple(role for role in _WIND[:2] if role in log)
-    if any(np.unique(finite(log[role].values)).size == 1 for role in wind):
+    if any(is_constant(log[role].values) for role in wind):
         whole = (float(time[0]), float(time[-1]))
         found[wind] = log_fault("gap", wind, LIFELESS, (whole,), 0.99)
     for role, segments in held.items():

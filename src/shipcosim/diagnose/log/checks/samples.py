@@ -118,7 +118,7 @@ def lifeless(log: dict) -> list[Finding]:
     log : dict of (n,) arrays
         As in `gaps`.
     """
-    constant = [role for role in NAVIGATION if role in log and _is_constant(log[role])]
+    constant = [role for role in NAVIGATION if role in log and is_constant(log[role])]
     # Motion that other channels show: change of position, turning, and speed.
     alive = {role for role in NAVIGATION if role in log and _changes(log[role])}
     moved = bool(alive & {"north", "east"})
@@ -140,7 +140,8 @@ def lifeless(log: dict) -> list[Finding]:
     return [log_fault("gap", roles, LIFELESS, whole)] if roles else []
 
 
-def _is_constant(values):
+def is_constant(values: np.ndarray) -> bool:
+    """Whether enough values of a channel are there, and all are the same."""
     values = finite(values)
     is_one = len(values) >= FEWEST_CONSTANT and np.ptp(values) == 0.0
     return (

@@ -61,11 +61,13 @@ def bad_rows(words: tuple[str, ...], cells: np.ndarray) -> np.ndarray:
     >>> bad_rows(("quality",), np.array(["Good", "Good", None], object)).tolist()
     [False, False, True]
     """
+    none = np.zeros(len(cells), bool)
     told = vocabulary()["flags"]
-    texts = np.array([str(cell).lower() for cell in cells] if FLAGS & set(words) else ["unknown"])
-    is_known = {*told["good"], *told["bad"]} >= set(texts)
     # Of a quality or status 0 may be good.
-    if 1.0 in cells and not set(words) & set(told["yes"]) or not is_known:
-        return np.zeros(len(cells), bool)
+    if not FLAGS & set(words) or (1.0 in cells and not set(words) & set(told["yes"])):
+        return none
+    texts = np.array([str(cell).lower() for cell in cells])
+    if not {*told["good"], *told["bad"]} >= set(texts):
+        return none
     bad = np.isin(texts, told["bad"])
     return bad & (bad.mean() < 0.5)

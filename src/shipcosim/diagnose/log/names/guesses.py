@@ -23,11 +23,7 @@ SURE = 1
 GUESS = 2
 UNUSED = Channel(column="-")
 _THRUSTER_UNITS = {"rpm": "rpm", "azimuth": "deg", "thrust": "N"}
-_OPPOSITE = {
-    "sway": "port",
-    "yaw_rate": "port",
-    "surge": "astern",
-}  # words by which a role has the other sign
+_OPPOSITE = {"sway": "port", "yaw_rate": "port", "surge": "astern"}  # words for the other sign
 _FACTOR = re.compile(r"[*/×xX]\s*10+\b")
 _SUFFIXES = ("m/s", "deg/s", "deg", "s", "m", "rpm", "N", "%")  # units that names end in
 
