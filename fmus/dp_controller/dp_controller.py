@@ -5,7 +5,7 @@ from shipcosim.fmi import Fmu, Input, Output, Parameters
 from shipcosim.models.control import observer, voting
 from shipcosim.models.control import pid as control
 from shipcosim.models.core.kinematics import to_body
-from shipcosim.models.core.maths import number
+from shipcosim.models.core.maths import choose, number
 from shipcosim.models.core.sampling import samples_due
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.ship.mast import MastParameters
@@ -124,10 +124,10 @@ class DpController(Fmu):
         self.taken += 1
         allocated = (self.tau_X_allocated, self.tau_Y_allocated, self.tau_N_allocated)
         period = self.noise.sample_period
-        fixes = (
-            self._fixes()
-            if self.position_time_meas > self.voting.position_time
-            else self.voting.positions.fixes
+        fixes = choose(
+            self.position_time_meas > self.voting.position_time,
+            self._fixes,
+            lambda: self.voting.positions.fixes,
         )
         self.voting, estimate = voting.step(
             t,

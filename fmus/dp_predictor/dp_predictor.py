@@ -6,6 +6,7 @@ from shipcosim.interfaces.predictor import HORIZONS, Prediction, thrust_is_lost
 from shipcosim.models.allocation import pseudo_inverse
 from shipcosim.models.control.pid import ControlParameters
 from shipcosim.models.control.reference import ReferenceParameters
+from shipcosim.models.core.maths import choose
 from shipcosim.models.prediction import controlled
 
 
@@ -22,10 +23,10 @@ class DpPredictor(KineticPredictor):
         return super().begin(known)
 
     def predict(self, state, known):
-        motions = (
-            self.reckoned(state, known)
-            if known.goal is None or thrust_is_lost(known)
-            else self._held(state, known)
+        motions = choose(
+            known.no_goal | thrust_is_lost(known),
+            lambda: self.reckoned(state, known),
+            lambda: self._held(state, known),
         )
         return Prediction(motions, self.regions.positions, self.regions.headings)
 

@@ -194,7 +194,9 @@ class MotionPredictor(Fmu):
 
     def _known(self):
         ship = Motion(self.x_hat, self.y_hat, self.psi_hat, self.u_hat, self.v_hat, self.r_hat)
-        known = Known(
+        place = (self.x_d, self.y_d, self.psi_d)
+        rates = (self.x_d_dot, self.y_d_dot, self.r_d)
+        return Known(
             ship,
             (self.tau_X_bias, self.tau_Y_bias, self.tau_N_bias),
             (self.tau_X_allocated, self.tau_Y_allocated, self.tau_N_allocated),
@@ -202,14 +204,11 @@ class MotionPredictor(Fmu):
                 self.wind_speed_meas, self.wind_from_meas, ship.u, ship.v, ship.r, mast=self.mast
             ),
             1.0 - self.wind_rejected,
+            Desired(*place, *rates, self.x_d_ddot, self.y_d_ddot, self.r_d_dot),
+            (self.x_goal, self.y_goal, self.psi_goal),
+            self.wave_frequency_hat,
+            no_goal=self.x_goal == NO_GOAL,
         )
-        if self.x_goal == NO_GOAL:
-            return known
-        place = (self.x_d, self.y_d, self.psi_d)
-        rates = (self.x_d_dot, self.y_d_dot, self.r_d)
-        desired = Desired(*place, *rates, self.x_d_ddot, self.y_d_ddot, self.r_d_dot)
-        goal = self.x_goal, self.y_goal, self.psi_goal
-        return known._replace(desired=desired, goal=goal, wave_frequency=self.wave_frequency_hat)
 
     def _show(self, known, t):
         # Numbers of Python raise where a prediction diverges; arrays and C go on with NaN.

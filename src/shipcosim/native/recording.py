@@ -15,7 +15,7 @@ import numpy as np
 
 from shipcosim.native.number_rows import Flat, made_like
 from shipcosim.native.side_effects import anything
-from shipcosim.native.symbols import Maths, Symbol, Untraceable
+from shipcosim.native.symbols import Maths, Symbol, Untraceable, kind_of
 
 MOST_PATHS = 200
 """Ways through one step beyond which a component is no longer recorded."""
@@ -60,6 +60,8 @@ class Block:
         In the order in which they are computed.
     known : dict
         The same by operation and operands: what is computed twice is one value.
+    parts : list
+        What loops and branches in it gave, in their order: another pass over this block finds them again.
     condition : Symbol or None
         Decides between `yes` and `no`.
     result : Any
@@ -69,6 +71,7 @@ class Block:
     number: int = field(default_factory=itertools.count().__next__)
     values: list[Symbol] = field(default_factory=list)
     known: dict = field(default_factory=dict)
+    parts: list = field(default_factory=list)
     parent: Block | None = None
     condition: Symbol | None = None
     yes: Block | None = None
@@ -100,6 +103,39 @@ class RecordedLoop:
     body: Block
 
 
+@dataclass(eq=False)
+class RecordedBranch:
+    """Two bodies of which a condition chooses one; the values after them are joined.
+
+    Attributes
+    ----------
+    condition : Symbol
+        Chooses `yes` or `no`.
+    yes, no : Block
+        What computes the results: lists, at the ends of their ways.
+    """
+
+    condition: Symbol
+    yes: Block
+    no: Block
+
+
+@dataclass(eq=False)
+class RecordedMap:
+    """A body that is computed once for each row of some arrays.
+
+    Attributes
+    ----------
+    count : int
+        Number of rows.
+    body : Block
+        What computes the results of a row: lists, at the ends of its ways.
+    """
+
+    count: int
+    body: Block
+
+
 class Recording:
     """All values that a function computes, as a tree of blocks.
 
@@ -118,8 +154,12 @@ class Recording:
         Constant numbers that are looked up by an index.
     calls : list of Call
         Functions that stay in Python.
-    loops : list of RecordedLoop
+    loops : dict of int to RecordedLoop
         Recorded loops.
+    branches : dict of int to RecordedBranch
+        Recorded choices whose two ways come together again.
+    maps : dict of int to RecordedMap
+        Recorded loops over rows.
     relied_on : list of Symbol
         Values that must be what they are in the example.
     said : dict of int to Symbol
@@ -137,7 +177,10 @@ class Recording:
         self._arguments: dict[int, tuple[Symbol, ...]] = {}
         self.tables: list[np.ndarray] = []
         self.calls: list[Call] = []
-        self.loops: list[RecordedLoop] = []
+        self.loops: dict[int, RecordedLoop] = {}
+        self.branches: dict[int, RecordedBranch] = {}
+        self.maps: dict[int, RecordedMap] = {}
+        self._new_number = itertools.count().__next__
         self.relied_on: list[Symbol] = []
         self.count = 0
         self.said: dict[int, Symbol] = {}
@@ -151,6 +194,7 @@ class Recording:
         self._prefix: tuple[bool, ...] = ()
         self._taken: list[bool] = []
         self._due: list[tuple[bool, ...]] = []
+        self._passed: Counter[int] = Counter()
 
     def record(self, function: Callable[[], Any], parent: Block | None = None) -> Block:
         """Run a function once for each way through it; each way ends with its result.
@@ -162,20 +206,22 @@ class Recording:
         Untraceable
         """
         # Recordings nest (a loop's body has its own ways), so keep the state of the outer one.
-        before = self.block, self._answers, self._prefix, self._taken, self._due
+        before = self.block, self._answers, self._prefix, self._taken, self._due, self._passed
         root = Block(parent=parent)
         self._due = [()]
         ways = 0
-        # Depth first: each pass follows a prefix of answers, then answers yes. `decide` notes the
-        # other answers for later passes.
+        # Each pass follows a prefix of answers, then answers yes. `decide` notes the other answers
+        # for later passes; the shortest come first, so that too many ways are seen early.
         while self._due:
-            self._prefix = self._due.pop()
+            self._prefix = self._due.pop(0)
             self._taken = []
+            self._passed = before[-1].copy()
             self.block = root
             # Answers of the outer way also hold inside.
             self._answers = dict(before[1])
             ways += 1
-            if ways > self.most_ways:
+            # Each way that is due is one more: stop as soon as they are too many.
+            if ways + len(self._due) > self.most_ways:
                 # The line that asks most tells the author what to change.
                 (where, _), *_ = self._asked.most_common(1)
                 raise Untraceable(
@@ -199,11 +245,24 @@ class Recording:
                 for number in result.numbers:
                     self.refuse_left_behind(number)
             self.block.result = result
-        self.block, self._answers, self._prefix, self._taken, self._due = before
+        self.block, self._answers, self._prefix, self._taken, self._due, self._passed = before
         return root
+
+    def _once(self, record: Callable[[], Any]) -> Any:
+        """What a part of this block gave in an earlier pass over it, or gives now."""
+        block = self.block
+        place = self._passed[block.number]
+        self._passed[block.number] += 1
+        if place == len(block.parts):
+            block.parts.append(record())
+        return block.parts[place]
 
     def repeat(self, going: Callable[[Any], Any], turn: Callable[[Any], Any], state: Any) -> Any:
         """Record a loop; return the state after it."""
+        numbers = self._once(lambda: self._recorded_loop(going, turn, state))
+        return made_like(state, iter(numbers))
+
+    def _recorded_loop(self, going, turn, state) -> list[Symbol]:
         # The state is carried: at each turn the body sees new symbols in place of its numbers.
         flat = Flat(state)
         parent = self.block
@@ -211,7 +270,7 @@ class Recording:
         # Repeat the recording until the kinds of the state stay the same. A number may start as an
         # integer and become a float in the body.
         while True:
-            number = len(self.loops)
+            number = self._new_number()
             self._starts[number] = flat.numbers
             carried = [
                 self.fresh("carried", kind, number, place) for place, kind in enumerate(kinds)
@@ -236,12 +295,123 @@ class Recording:
                 break
             kinds = wider
         # The loop itself is a value, so that it is computed in its place among the others.
-        self.loops.append(RecordedLoop(flat.numbers, carried, condition, body))
+        self.loops[number] = RecordedLoop(flat.numbers, carried, condition, body)
         self.fresh("loop", "d", number)
-        return made_like(
-            state,
-            iter([self.fresh("after", kind, number, place) for place, kind in enumerate(kinds)]),
-        )
+        return [self.fresh("after", kind, number, place) for place, kind in enumerate(kinds)]
+
+    def choose(
+        self, condition: Symbol, then: Callable[[], Any], otherwise: Callable[[], Any]
+    ) -> Any:
+        """Record both of two functions; return the result of the one that the condition chooses."""
+        # What is known on this way, or fixed in the code, needs no branch.
+        if condition.number in self._answers or self.is_choice(condition):
+            return then() if self.decide(condition) else otherwise()
+        value, numbers = self._once(lambda: self._recorded_branch(condition, then, otherwise))
+        return made_like(value, iter(numbers))
+
+    def _recorded_branch(self, condition, then, otherwise) -> tuple[Any, list]:
+        # Inside, the same question has this answer.
+        outer = self._answers
+        self._answers = outer | {condition.number: True}
+        yes, of_yes = self._part(then)
+        self._answers = outer | {condition.number: False}
+        no, of_no = self._part(otherwise)
+        self._answers = outer
+        value, flat = _of_one_shape([*of_yes, *of_no])
+        # The branch itself is a value, so that it is computed in its place among the others.
+        number = self._new_number()
+        self.branches[number] = RecordedBranch(condition, yes, no)
+        self.fresh("branch", "d", number)
+        return value, [self._joined(number, place) for place in range(len(flat.leaves))]
+
+    def _joined(self, number: int, place: int) -> Any:
+        """A number behind a branch: the same on all ways, or one that each way has set."""
+        branch = self.branches[number]
+        found = [*results_of(branch.yes, place), *results_of(branch.no, place)]
+        first = found[0]
+        if isinstance(first, Symbol):
+            is_common = first.block in self.block.lineage and all(one is first for one in found)
+        else:
+            # As texts: 0.0 and -0.0 are equal numbers.
+            is_common = {(type(one), repr(one)) for one in found} == {(type(first), repr(first))}
+        if is_common:
+            return first
+        return self.fresh("joined", _common_kind(found), number, place)
+
+    def mapped(self, function: Callable, columns: Sequence[Any]) -> list[Any]:
+        """Record a function of one number of each column; return its results for all rows."""
+        value, rows = self._once(lambda: self._recorded_map(function, columns))
+        return [made_like(value, iter(row)) for row in rows]
+
+    def _recorded_map(self, function, columns) -> tuple[Any, list]:
+        # The columns become arrays before the loop, which reads them by its index.
+        for column in columns:
+            self._stored(Flat(column).numbers)
+        number = self._new_number()
+        index = self.fresh("index", "i", number)
+        body, made = self._part(lambda: function(*(self.row_of(one, index) for one in columns)))
+        value, flat = _of_one_shape(made)
+        self.maps[number] = RecordedMap(len(columns[0]), body)
+        # The loop itself is a value, so that it is computed in its place among the others.
+        self.fresh("map", "d", number)
+        places = range(len(flat.leaves))
+        kinds = [_common_kind(results_of(body, place)) for place in places]
+        return value, [
+            [self.fresh("mapped", kinds[k], number, k, row) for k in places]
+            for row in range(len(columns[0]))
+        ]
+
+    def _part(self, function: Callable[[], Any]) -> tuple[Block, list[tuple[Any, Flat]]]:
+        """Record a part of a step; return it and its results, one for each way without an error."""
+        made = []
+
+        def run():
+            value = function()
+            made.append((value, Flat(value)))
+            return made[-1][1]
+
+        return self.record(run, self.block), made
+
+    def row_of(self, table: Any, index: Symbol) -> Any:
+        """The row of a table, or element of a sequence, at a symbolic index."""
+        if isinstance(table, np.ndarray):
+            shape = table.shape[1:]
+            found = self._read(table.ravel(), index, math.prod(shape))
+            return np.array(found, dtype=object).reshape(shape) if shape else found[0]
+        row, flat = _of_one_shape([(row, Flat(row)) for row in table])
+        # Negative indices count from the end of a sequence, as in Python.
+        index = Maths.where(index < 0, index + len(table), index)
+        return made_like(row, iter(self._read(Flat(table).numbers, index, len(flat.leaves))))
+
+    def _read(self, numbers: Sequence[Any], index: Symbol, width: int) -> list[Symbol]:
+        """The numbers of the row at an index, of rows that lie one behind the other."""
+        op, base = self._stored(numbers)
+        # Constant tables and arrays hold floats.
+        is_array = isinstance(numbers, np.ndarray)
+        kinds = [
+            "d" if is_array else _common_kind(numbers[column::width]) for column in range(width)
+        ]
+        return [
+            self.value(op, kind, index, base, width, column) for column, kind in enumerate(kinds)
+        ]
+
+    def _stored(self, numbers: Sequence[Any]) -> tuple[str, Any]:
+        """Where numbers lie in sequence: the operation that reads one by an index, and its operand."""
+        is_constant = isinstance(numbers, np.ndarray) and numbers.dtype != object
+        if is_constant or not any(isinstance(one, Symbol) for one in numbers):
+            return "row", self.table(np.asarray(numbers, dtype=float))
+        first = numbers[0]
+        if isinstance(first, Symbol) and first.op in ("load", "kept"):
+            *before, place = first.operands
+            in_sequence = (
+                isinstance(one, Symbol)
+                and (one.op, one.operands) == (first.op, (*before, place + k))
+                for k, one in enumerate(numbers)
+            )
+            if all(in_sequence):
+                return f"{first.op}_row", first.operands
+        # All others are copied to an array.
+        return "array_row", self.value("array", "d", *numbers)
 
     def decide(self, condition: Symbol) -> bool:
         """Answer a question of Python's on this way."""
@@ -352,8 +522,8 @@ class Recording:
     def guarded(self, symbol: Symbol) -> int:
         """The value in the example, as a constant of the code; C gives up where it differs."""
         # A loop changes its values at each turn; no single number can be guarded.
-        if any(one.op in ("carried", "after") for one in symbol.sources()):
-            raise Untraceable("it asks for a whole number that follows from a loop")
+        if any(one.op in OF_LOOPS for one in symbol.sources()):
+            raise Untraceable("it asks for a whole number that follows from a loop or a choice")
         found = int(self.example(symbol))
         # C tests the guard at run time, and the record notes on which numbers it relies.
         self.value("guard", "d", symbol, found)
@@ -392,10 +562,23 @@ class Recording:
             return Flat(self.calls[operands[0]].result).numbers[operands[1]]
         if op in ("carried", "after"):  # as at the start of the loop
             return self.example(self._starts[operands[0]][operands[1]])
+        if op == "joined":
+            branch = self.branches[operands[0]]
+            end = branch.yes if self.example(branch.condition) else branch.no
+            while end.condition is not None:
+                following = end.yes if self.example(end.condition) else end.no
+                assert following is not None
+                end = following
+            if not isinstance(end.result, Flat):
+                raise Untraceable("a choice ends with an error in the example")
+            return self.example(end.result.numbers[operands[1]])
         if op == "row":
             index, table, width, column = operands
             # A row of a table: elements lie row by row.
             return float(self.tables[table][self.example(index) * width + column])
+        if op == "array_row":
+            index, array, width, column = operands
+            return self.example(array.operands[int(self.example(index)) * width + column])
         if op == "load_row":
             index, (place,), width, column = operands
             return float(self.memory[place + self.example(index) * width + column])
@@ -405,6 +588,32 @@ class Recording:
         if op not in EXAMPLES:
             raise Untraceable(f"it asks for a whole number that follows from '{op}'")
         return EXAMPLES[op](*(self.example(one) for one in operands))
+
+
+OF_LOOPS = ("carried", "after", "joined", "index", "mapped")
+"""Operations whose values follow from a loop or a choice."""
+
+
+def _of_one_shape(made: Sequence[tuple[Any, Flat]]) -> tuple[Any, Flat]:
+    """The first of some values that are taken apart; C has fixed variables, so all have its shape."""
+    if not made:
+        raise Untraceable("a part of it ends with an error on all ways")
+    _, first = made[0]
+    for _, other in made[1:]:
+        if not other.same_shape(first):
+            raise Untraceable(f"its values have two shapes: {first.difference(other)}")
+    return made[0]
+
+
+def _common_kind(numbers: Sequence[Any]) -> str:
+    """Kind of a variable that may have any of some numbers."""
+    kinds = {kind_of(one) for one in numbers}
+    return kinds.pop() if len(kinds) == 1 else "d"
+
+
+def results_of(root: Block, place: int) -> list[Any]:
+    """The numbers at a place of the results, one for each way without an error."""
+    return [end.result.numbers[place] for end in ends(root) if isinstance(end.result, Flat)]
 
 
 def ends(block: Block) -> Iterator[Block]:

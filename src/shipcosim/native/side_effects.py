@@ -38,6 +38,8 @@ FORBIDDEN = {"open", "print", "input", "exec", "eval", "compile", "__import__", 
 READS = {"sys.audit", "posix.fspath", "nt.fspath"}
 """What Python calls first where a file or a folder is read."""
 RANDOM = "numpy.random"
+OWN = "shipcosim.native"
+"""Package that records."""
 
 
 @contextmanager
@@ -58,7 +60,8 @@ def only_arithmetic(code: str) -> Iterator[None]:
     allowed = MODULES | {code}
 
     def watch(frame: Any, event: str, function: Any) -> None:
-        if event != "c_call":
+        # The recording itself runs inside the step and may do more; most calls are its own.
+        if event != "c_call" or frame.f_globals.get("__name__", "").startswith(OWN):
             return
         # A method of a compiled type has no module; its object's type has one.
         module = function.__module__ or type(getattr(function, "__self__", None)).__module__
@@ -71,14 +74,10 @@ def only_arithmetic(code: str) -> Iterator[None]:
             "release",
         ):
             return  # the lock of a cached property
-        # The recording itself runs inside the step and may do more.
-        is_own = frame.f_globals.get("__name__", "").startswith("shipcosim.native")
-        if is_own or (
-            # Random numbers would be drawn once, while recording, and then be constants.
-            module.partition(".")[0] in allowed
-            and not module.startswith(RANDOM)
-            and not (module == "builtins" and function.__name__ in FORBIDDEN)
-        ):
+        # Random numbers would be drawn once, while recording, and then be constants.
+        is_random = module.startswith(RANDOM)
+        is_forbidden = module == "builtins" and function.__name__ in FORBIDDEN
+        if module.partition(".")[0] in allowed and not is_random and not is_forbidden:
             return
         name = f"{module}.{function.__name__}"
         if name in READS:

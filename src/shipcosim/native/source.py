@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 from shipcosim.native.array_statements import FEWEST, Statement, Term, goes_on, loop_of
 from shipcosim.native.error_texts import said
 from shipcosim.native.number_rows import Flat
-from shipcosim.native.recording import Block, RecordedLoop, Recording
+from shipcosim.native.recording import Block, RecordedLoop, Recording, ends, results_of
 from shipcosim.native.symbols import Symbol, kind_of
 from shipcosim.native.trace import Step
 
@@ -78,6 +79,12 @@ BINARY = {
 }
 
 
+ARRAYS = {"carried": "c", "after": "c", "joined": "b", "mapped": "r"}
+"""Letters of the arrays in which loops, branches and maps hold their numbers."""
+OVERWRITTEN = ("load", "kept", "carried")
+"""Values that lie where results are written."""
+
+
 def source_of(step: Step) -> str:
     """Write the C text of a component with the function ``step``.
 
@@ -95,8 +102,8 @@ def kept_sizes(recording: Recording) -> list[tuple[int, int]]:
 class Writer:
     """Writes the blocks of a recording as C."""
 
-    apart: tuple[str, ...] = ("guard", "call", "loop", "carried")
-    """Values without an assignment of their own; a carried one is declared at the head of its loop."""
+    apart: tuple[str, ...] = ("guard", "call", "loop", "carried", "branch", "map", "index", "array")
+    """Values without an assignment of their own."""
 
     def __init__(self, step: Step):
         self.step = step
@@ -108,13 +115,14 @@ class Writer:
         self.results = [first + size[0] for first, size in zip(firsts, self.sizes, strict=False)]
         # Only values that a result depends on are written; this keeps the C text short.
         self.used = _used(step)
-        # Values that are needed after a loop keep their variable, even if the body ignores them.
-        self.after = {
-            symbol.operands
-            for block in _all_blocks(step.root, step.recording)
-            for symbol in block.values
-            if symbol.op == "after" and symbol.number in self.used
-        }
+        # Of the numbers that loops, branches and maps hold, only those that are used have a place.
+        used_places: dict[str, set[int]] = defaultdict(set)
+        for block in _all_blocks(step.root, step.recording):
+            for symbol in block.values:
+                if symbol.op in ARRAYS and symbol.number in self.used:
+                    number, place, *_ = symbol.operands
+                    used_places[f"{ARRAYS[symbol.op]}{number}"].add(place)
+        self._places = {array: sorted(places) for array, places in used_places.items()}
         self._elements: dict[int, Term] = {}  # where a value is found that has no variable
         self._stored = _stored(step)
         self.lines: list[str] = []
@@ -181,6 +189,8 @@ class Writer:
     def term(self, value: Any) -> Term:
         """Where the C text finds a symbol or number."""
         if isinstance(value, Symbol):
+            if value.op == "index":
+                return Term(f"i{value.operands[0]}")
             return self._elements.get(value.number) or Term(_name(value))
         return Term(literal(value), is_literal=True)
 
@@ -257,21 +267,36 @@ class Writer:
             self._call(operands, depth)
         elif op == "loop":
             self._loop(self.recording.loops[operands[0]], operands[0], depth)
+        elif op == "branch":
+            self._branch(operands[0], depth)
+        elif op == "map":
+            self._map(operands[0], depth)
+        elif op == "array":
+            self._put(depth, f"double a{symbol.number}[{len(operands)}];")
+            self._write(f"a{symbol.number}", enumerate(operands), depth)
 
     def _place_of(self, symbol: Symbol) -> Term | None:
         """Where a value lies in the memory until the results are written; None where it has to be kept."""
         # C computes with whole numbers for truth values, and a result may be written over its source.
-        if symbol.kind == "b" or symbol.number in self._stored:
+        is_written_over = symbol.number in self._stored and symbol.op in OVERWRITTEN
+        if symbol.kind == "b" or is_written_over:
             return None
         return self._in_memory(symbol)
 
     def _in_memory(self, symbol: Symbol) -> Term | None:
-        """Where a value lies in the memory before the step; None where it is computed."""
+        """Where a value lies in the memory before the step, or behind a branch; None where it is computed."""
         if symbol.op == "load":
             return Term("m", self._place(symbol.operands[0]))
         if symbol.op == "kept":
             call, place = symbol.operands
             return Term("k", self.results[call] + place)
+        if symbol.op in ARRAYS:
+            number, place, *row = symbol.operands
+            array = f"{ARRAYS[symbol.op]}{number}"
+            places = self._places[array]
+            # The results of a map lie row by row.
+            before = row[0] * len(places) if row else 0
+            return Term(array, before + places.index(place))
         return None
 
     def _statement(self, symbol: Symbol) -> Statement:
@@ -288,12 +313,13 @@ class Writer:
         operands = symbol.operands
         if (found := self._in_memory(symbol)) is not None:
             return f"{found.base}[{{}}]", [Term("", found.index)]
-        if op == "after":
-            return f"c{operands[0]}_{operands[1]}", []
         # A row of a table: its elements lie row by row.
         if op == "row":
             index, table, width, column = operands
             return f"table_{table}[(long){{}} * {width} + {{}}]", [index, Term("", column)]
+        if op == "array_row":
+            index, array, width, column = operands
+            return f"a{array.number}[(long){{}} * {width} + {{}}]", [index, Term("", column)]
         if op in ("load_row", "kept_row"):
             index, (*call, place), width, column = operands
             base = (
@@ -334,22 +360,17 @@ class Writer:
         self._put(depth, f"if (call(host, {number}, {where})) {{ {again}return {GIVEN_UP}; }}")
 
     def _loop(self, loop: RecordedLoop, number, depth):
-        # Carried values that nobody reads need no variable.
-        needed = [
-            place
-            for place, symbol in enumerate(loop.carried)
-            if symbol.number in self.used or (number, place) in self.after
-        ]
-        for place in needed:
-            symbol = loop.carried[place]
-            start = loop.start[place]
-            self._put(depth, f"{_type(symbol)} c{number}_{place} = {self.operand(start)};")
+        # Carried values that nobody reads need no place.
+        array = f"c{number}"
+        places = self._places[array]
+        self._put(depth, f"double {array}[{len(places)}];")
+        self._write(array, ((k, loop.start[place]) for k, place in enumerate(places)), depth)
         # The condition is a block of statements, so C loops forever and breaks where it fails.
         self._put(depth, "for (;;) {")
-        # Each turn sees the values as constants; the variables change at its end, all together.
-        for place, symbol in enumerate(loop.carried):
-            if symbol.number in self.used:
-                self._put(depth + 1, f"const {_type(symbol)} {_name(symbol)} = c{number}_{place};")
+        # A value that moves to another place is kept until all are written.
+        for symbol in loop.carried:
+            if symbol.number in self.used and self._place_of(symbol) is None:
+                self._put(depth + 1, _declared(self._statement(symbol)))
         self._put(depth + 1, "int going;")
         self._block(loop.going, depth + 1, self._decide)
         # The body ends by writing the carried values that it has changed.
@@ -359,13 +380,48 @@ class Writer:
             if isinstance(result, Exception):
                 self._put(inner, self._fail(result))
                 return
-            for place in needed:
-                after = result.numbers[place]
-                if after is not loop.carried[place]:
-                    self._put(inner, f"c{number}_{place} = {self.operand(after)};")
+            changed = (
+                (k, result.numbers[place])
+                for k, place in enumerate(places)
+                if result.numbers[place] is not loop.carried[place]
+            )
+            self._write(array, changed, inner)
 
         self._block(loop.body, depth + 1, turn)
         self._put(depth, "}")
+
+    def _branch(self, number, depth):
+        branch = self.recording.branches[number]
+        places = self._places[f"b{number}"]
+        self._put(depth, f"double b{number}[{len(places)}];")
+        finish = self._results_to(f"b{number}", places)
+        self._put(depth, f"if ({self.operand(branch.condition)}) {{")
+        self._block(branch.yes, depth + 1, finish)
+        self._put(depth, "} else {")
+        self._block(branch.no, depth + 1, finish)
+        self._put(depth, "}")
+
+    def _map(self, number, depth):
+        places = self._places[f"r{number}"]
+        count = self.recording.maps[number].count
+        self._put(depth, f"double r{number}[{count * len(places)}];")
+        self._put(depth, f"for (int i{number} = 0; i{number} < {count}; i{number}++) {{")
+        # The results of a row lie behind those of the row before.
+        self._put(depth + 1, f"double *row = r{number} + {len(places)} * i{number};")
+        self._block(self.recording.maps[number].body, depth + 1, self._results_to("row", places))
+        self._put(depth, "}")
+
+    def _results_to(self, array, places):
+        """What ends a way of a part: its results at some places go to an array."""
+
+        def finish(result, depth):
+            if isinstance(result, Exception):
+                self._put(depth, self._fail(result))
+            else:
+                numbers = ((k, result.numbers[place]) for k, place in enumerate(places))
+                self._write(array, numbers, depth)
+
+        return finish
 
     def _decide(self, result, depth):
         if isinstance(result, Exception):
@@ -405,14 +461,19 @@ def literal(value: Any) -> str:
 
 
 def _stored(step: Step) -> set[int]:
-    """Indices of values that are results unchanged, such as values that only change their place."""
-    return {
-        number.number
-        for block in _all_blocks(step.root, step.recording)
-        if isinstance(block.result, list)
-        for _, number in block.result
-        if isinstance(number, Symbol)
-    }
+    """Numbers of values that are results unchanged, such as values that only change their place."""
+    moved: set[int] = set()
+    for block in _all_blocks(step.root, step.recording):
+        if isinstance(block.result, list):
+            moved.update(one.number for _, one in block.result if isinstance(one, Symbol))
+    for loop in step.recording.loops.values():
+        for end in ends(loop.body):
+            if isinstance(end.result, Flat):
+                pairs = zip(end.result.numbers, loop.carried, strict=True)
+                moved.update(
+                    one.number for one, old in pairs if isinstance(one, Symbol) and one is not old
+                )
+    return moved
 
 
 def _used(step: Step) -> set[int]:
@@ -421,29 +482,31 @@ def _used(step: Step) -> set[int]:
     due: list[Any] = []
 
     # Roots: guards, conditions, and the results or error texts at the ends of all ways.
-    def note(block: Block):
+    def note(block: Block, with_results: bool = True):
         due.extend(symbol for symbol in block.values if symbol.op == "guard")
         if block.condition is not None:
             due.append(block.condition)
-            note(_of(block.yes))
-            note(_of(block.no))
+            note(_of(block.yes), with_results)
+            note(_of(block.no), with_results)
             return
         result = block.result
-        if isinstance(result, list):
-            due.extend(number for _, number in result)
-        elif isinstance(result, Exception):
+        if isinstance(result, Exception):
             due.extend(said(result, step.recording))
-        elif hasattr(result, "numbers"):
+        elif not with_results:
+            return
+        elif isinstance(result, list):
+            due.extend(number for _, number in result)
+        elif isinstance(result, Flat):
             due.extend(result.numbers)
         else:
             due.append(result)
 
     note(step.root)
-    # Calls and loops are values of their own; find them by the number that their results name.
+    # Calls, loops and branches are values of their own; find them by the number that their results name.
     made: dict[tuple, list[Symbol]] = {}
     for block in _all_blocks(step.root, step.recording):
         for symbol in block.values:
-            if symbol.op in ("call", "loop"):
+            if symbol.op in ("call", "loop", "branch", "map"):
                 made.setdefault((symbol.op, symbol.operands[0]), []).append(symbol)
     # Go from the roots to all operands.
     while due:
@@ -463,12 +526,34 @@ def _used(step: Step) -> set[int]:
             due.extend(loop.start)
             note(loop.going)
             note(loop.body)
+        # A value behind a branch needs the branch, and what its ways set it to.
+        elif value.op == "joined":
+            number, place = value.operands
+            due.extend(made["branch", number])
+            branch = step.recording.branches[number]
+            due.extend([*results_of(branch.yes, place), *results_of(branch.no, place)])
+        elif value.op == "mapped":
+            number, place, _ = value.operands
+            due.extend(made["map", number])
+            due.extend(results_of(step.recording.maps[number].body, place))
+        elif value.op == "map":
+            note(step.recording.maps[value.operands[0]].body, with_results=False)
+        elif value.op == "branch":
+            branch = step.recording.branches[value.operands[0]]
+            due.append(branch.condition)
+            note(branch.yes, with_results=False)
+            note(branch.no, with_results=False)
     return used
 
 
-# The main tree and the trees of all loops.
+# The main tree and the trees of all loops and branches.
 def _all_blocks(root: Block, recording: Recording):
-    roots = [root, *(block for loop in recording.loops for block in (loop.going, loop.body))]
+    roots = [root]
+    for loop in recording.loops.values():
+        roots += [loop.going, loop.body]
+    for branch in recording.branches.values():
+        roots += [branch.yes, branch.no]
+    roots += [one.body for one in recording.maps.values()]
     while roots:
         block = roots.pop()
         yield block

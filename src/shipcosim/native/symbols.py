@@ -310,12 +310,17 @@ class Maths:
         return symbol.recording.repeat(going, turn, state)
 
     @staticmethod
+    def choose(condition: Symbol, then: Callable, otherwise: Callable) -> Any:
+        """See `Recording.choose`."""
+        return condition.recording.choose(condition, then, otherwise)
+
+    @staticmethod
     def acts(value: Any, neutral: float) -> bool:
         """True if a parameter can have an effect; always true if it is fixed in the code."""
         symbol = first_symbol(value)
-        return not (isinstance(symbol, Symbol) and symbol.recording.stands_alone) or bool(
-            value != neutral
-        )
+        if symbol is None or not symbol.recording.stands_alone:
+            return True
+        return symbol.recording.acts(value, neutral)
 
     @staticmethod
     def repeat_of(fmu: Any, going: Callable, turn: Callable) -> None:
@@ -390,63 +395,13 @@ class Maths:
 
     @staticmethod
     def row_of(table: Any, index: Symbol) -> Any:
-        """The row of a table, or element of a sequence, at a symbolic index."""
-        recording = index.recording
-        # Constant numbers: a table in C, read at the index.
-        if isinstance(table, np.ndarray) and table.dtype != object:
-            flat = recording.table(table)
-            width = int(np.prod(table.shape[1:], dtype=int))
-            found = [
-                recording.value("row", "d", index, flat, width, column) for column in range(width)
-            ]
-            return (
-                np.array(found, dtype=object).reshape(table.shape[1:])
-                if table.ndim > 1
-                else found[0]
-            )
-        # Values that lie in sequence in the memory are read at the index too.
-        if (place := _consecutive(table)) is not None:
-            op, first, shape = place
-            width = int(np.prod(shape[1:], dtype=int))
-            found = [
-                recording.value(op, "d", index, first, width, column) for column in range(width)
-            ]
-            return np.array(found, dtype=object).reshape(shape[1:]) if len(shape) > 1 else found[0]
-        # Anything else: choose among all elements by comparison. Negative indices count from the
-        # end, as in Python.
-        chosen = table[-1]
-        for number in range(len(table) - 2, -1, -1):
-            chosen = _chosen(
-                (index == number) | (index == number - len(table)), table[number], chosen
-            )
-        return chosen
+        """See `Recording.row_of`."""
+        return index.recording.row_of(table, index)
 
-
-def _consecutive(table):
-    """Operation, first operand and shape of an array that lies in sequence in the memory."""
-    if not isinstance(table, np.ndarray):
-        return None
-    elements = table.ravel().tolist()
-    first = elements[0]
-    if not isinstance(first, Symbol) or first.op not in ("load", "kept"):
-        return None
-    # Each element must be the one behind the last, in the same memory.
-    *before, place = first.operands
-    for number, element in enumerate(elements):
-        if not isinstance(element, Symbol) or (element.op, element.operands) != (
-            first.op,
-            (*before, place + number),
-        ):
-            return None
-    return f"{first.op}_row", first.operands, table.shape
-
-
-def _chosen(condition, a, b):
-    """Choose between two values of the same structure."""
-    if isinstance(a, tuple):
-        parts = [_chosen(condition, one, other) for one, other in zip(a, b, strict=True)]
-        return type(a)._make(parts) if hasattr(a, "_make") else tuple(parts)  # pyright: ignore
-    return Maths.where(condition, a, b)
+    @staticmethod
+    def mapped(function: Callable, columns: Sequence[Any]) -> list[Any]:
+        """See `Recording.mapped`."""
+        return _first(*columns).recording.mapped(function, columns)
 
 
 def primitive(

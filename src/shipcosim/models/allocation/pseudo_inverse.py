@@ -5,6 +5,7 @@ into commands.
 """
 
 import functools
+import math
 import operator
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -20,7 +21,7 @@ from shipcosim.models.allocation.units import (
     no_thrust,
     unit_effect,
 )
-from shipcosim.models.core.maths import Arithmetic, clip, where
+from shipcosim.models.core.maths import Arithmetic, clip, is_single, repeat, row_of, where
 from shipcosim.models.core.memoize import kept
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import required
@@ -194,8 +195,8 @@ def solved(tau: Load, free: list, missing: Arithmetic, inverses: tuple) -> list:
     X, Y, N = tau
     # Number of the set of free units; for one number its inverse is known.
     chosen = free[0] + 2.0 * free[1] + 4.0 * free[2] + missing
-    if isinstance(chosen, float):
-        return [a * X + b * Y + c * N for a, b, c in inverses[int(chosen)]]
+    if is_single(chosen):
+        return [a * X + b * Y + c * N for a, b, c in row_of(inverses, math.floor(chosen))]
     # Many numbers: elements may have different sets, so try all sixteen.
     found = [0.0 * X] * len(inverses[0])
     for number, rows in enumerate(inverses):
@@ -329,22 +330,28 @@ def within_limits(
     ----------
     Assumed.
     """
-    free = [where(usable, 1.0, 0.0) for usable in available]
-    thrusts = held = [0.0] * len(limits)
-    # Each round holds the units that are beyond a limit.
-    for _ in limits:
+
+    # Each round holds the units that are beyond a limit, and asks the others for the rest.
+    def solved_once(state):
+        rounds, held, free, *_ = state
         # Solve for the free units, with the load that the held ones leave.
         found = solve(missed(tau, held, effect), free)
         given = [clip(f, *limit) for f, limit in zip(found, limits, strict=True)]
         thrusts = [f + g for f, g in zip(held, given, strict=True)]
-        # Stop when no unit is beyond its limit, in any element.
         over = [abs(f - g) > tolerance for f, g in zip(found, given, strict=True)]
-        anywhere = functools.reduce(operator.or_, over)
-        if not (anywhere.any() if hasattr(anywhere, "any") else anywhere):
-            break
-        # Hold the units beyond a limit, and ask the others for the rest.
         held = [where(o, g, f) for o, g, f in zip(over, given, held, strict=True)]
         free = [where(o, 0.0, f) for o, f in zip(over, free, strict=True)]
+        return rounds + 1, held, free, thrusts, functools.reduce(operator.or_, over)
+
+    # Stop when no unit is beyond its limit, in any element.
+    def goes_on(state):
+        over = state[-1]
+        anywhere = over.any() if hasattr(over, "any") else over
+        return anywhere & (state[0] < len(limits))
+
+    free = [where(usable, 1.0, 0.0) for usable in available]
+    held = [0.0] * len(limits)
+    *_, thrusts, _ = repeat(goes_on, solved_once, solved_once((0, held, free, held, True)))
     return thrusts
 
 

@@ -212,27 +212,31 @@ def design(ship: DpShip, parameters: ObserverParameters) -> ObserverConstants:
     # Tables over the wave frequency, because the filter follows the sea.
     p = parameters
     frequencies = np.linspace(p.wave_frequency_min, p.wave_frequency_max, FREQUENCIES)
-    pace = np.minimum(1.0, frequencies / p.full_frequency)
-    # Scaling with the pace p: motion with p⁻², disturbance with p³, bias drift with p⁵, as their
-    # units.
-    horizontal = AxisNoise(
-        p.position_period,
-        p.position_delay,
-        p.position_noise,
-        p.velocity_noise,
-        p.wave_motion / pace**2,
-        p.velocity_disturbance * pace**3,
-        p.bias_drift * pace**5,
-    )
-    yaw = AxisNoise(
-        p.heading_period,
-        p.heading_delay,
-        p.heading_noise,
-        p.rate_noise,
-        p.wave_yaw / pace**2,
-        p.rate_disturbance * pace**3,
-        p.bias_drift_yaw * pace**5,
-    )
+
+    def noise_at(frequency):
+        pace = minimum(1.0, frequency / p.full_frequency)
+        # Scaling with the pace p: motion with p⁻², disturbance with p³, bias drift with p⁵, as
+        # their units.
+        horizontal = AxisNoise(
+            p.position_period,
+            p.position_delay,
+            p.position_noise,
+            p.velocity_noise,
+            p.wave_motion / pace**2,
+            p.velocity_disturbance * pace**3,
+            p.bias_drift * pace**5,
+        )
+        yaw = AxisNoise(
+            p.heading_period,
+            p.heading_delay,
+            p.heading_noise,
+            p.rate_noise,
+            p.wave_yaw / pace**2,
+            p.rate_disturbance * pace**3,
+            p.bias_drift_yaw * pace**5,
+        )
+        return horizontal, yaw
+
     # Inverse of the coupled sway-yaw block [M22 M26; M26 M66] in closed form.
     determinant = ship.mass_sway * ship.mass_yaw - ship.mass_sway_yaw * ship.mass_sway_yaw
     inverse = (
@@ -242,7 +246,7 @@ def design(ship: DpShip, parameters: ObserverParameters) -> ObserverConstants:
         ship.mass_sway / determinant,
     )
     return ObserverConstants(
-        filter_table(frequencies, p.wave_damping, p.sample_period, horizontal, yaw), inverse
+        filter_table(frequencies, p.wave_damping, p.sample_period, noise_at), inverse
     )
 
 

@@ -14,7 +14,7 @@ from shipcosim.models.control.compass_voting import CompassVote, CompassVotingPa
 from shipcosim.models.control.observer import Measurement, StateEstimate
 from shipcosim.models.control.position_voting import PositionVote, PositionVotingParameters
 from shipcosim.models.core.kinematics import to_ned
-from shipcosim.models.core.maths import Arithmetic, exp, minimum, where
+from shipcosim.models.core.maths import Arithmetic, choose, exp, minimum, where
 from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.environment.wind_loads import WindParameters, wind_loads
@@ -161,50 +161,59 @@ def step(
     tuple of VotingState and Estimate
         State; and the estimate, moved to where positions are after dead reckoning.
     """
-    positions = state.positions
-    compasses = state.compasses
-    air = state.wind
     # A message is new if its time differs from the last one's.
     heading_since = telegrams.heading_time - state.heading_time
     position_since = telegrams.position_time - state.position_time
     wind_since = telegrams.wind_time - state.wind_time
+    unchanged = state.positions.unchanged
+    quiet_positions = minimum(minimum(unchanged[0], unchanged[1]), unchanged[2])
+    # The observer's heading at the time of the message, wave motion included.
+    psi = (
+        estimate.psi
+        + estimate.yaw_wave
+        - (t - telegrams.heading_time) * (estimate.r + estimate.r_wave)
+    )
     # Compasses first: the heading is needed for the velocity of the positions.
-    if heading_since > 0.0:
-        quiet = minimum(
-            minimum(positions.unchanged[0], positions.unchanged[1]), positions.unchanged[2]
-        )
-        # The observer's heading at the time of the message, wave motion included.
-        psi = (
-            estimate.psi
-            + estimate.yaw_wave
-            - (t - telegrams.heading_time) * (estimate.r + estimate.r_wave)
-        )
-        compasses = compass_voting.step(
-            compasses,
+    compasses = choose(
+        heading_since > 0.0,
+        lambda: compass_voting.step(
+            state.compasses,
             telegrams.compasses,
             telegrams.r,
             psi,
-            quiet,
+            quiet_positions,
             heading_since,
             parameters=parameters,
-        )
+        ),
+        lambda: state.compasses,
+    )
     quiet = minimum(*compasses.unchanged)
+
     # Positions: fade the shift of an earlier realignment first, and move the estimate with it.
-    if position_since > 0.0:
-        positions, north, east = position_voting.faded(
-            positions, position_since, parameters=parameters
+    def with_new_positions():
+        faded, north, east = position_voting.faded(
+            state.positions, position_since, parameters=parameters
         )
-        estimate = estimate._replace(x=estimate.x + north, y=estimate.y + east)
-        at = _at(estimate, t - telegrams.position_time)
-        fixes = telegrams.positions
-        positions = position_voting.step(
-            t, positions, fixes, at, quiet, position_since, parameters=parameters
+        moved = estimate._replace(x=estimate.x + north, y=estimate.y + east)
+        at = _at(moved, t - telegrams.position_time)
+        voted = position_voting.step(
+            t, faded, telegrams.positions, at, quiet, position_since, parameters=parameters
         )
+        return voted, moved
+
+    positions, estimate = choose(
+        position_since > 0.0, with_new_positions, lambda: (state.positions, estimate)
+    )
     # The anemometer counts as stuck only if other sensors change.
-    if wind_since > 0.0:
-        quiet = minimum(quiet, positions.unchanged[0])
-        air = _wind(air, telegrams.wind, quiet, wind_since, parameters, estimate, mast, wind)
-    came = 1.0 if position_since > 0.0 else 0.0, 1.0 if heading_since > 0.0 else 0.0
+    quiet_all = minimum(quiet, positions.unchanged[0])
+    air = choose(
+        wind_since > 0.0,
+        lambda: _wind(
+            state.wind, telegrams.wind, quiet_all, wind_since, parameters, estimate, mast, wind
+        ),
+        lambda: state.wind,
+    )
+    came = where(position_since > 0.0, 1.0, 0.0), where(heading_since > 0.0, 1.0, 0.0)
     return VotingState(positions, compasses, air, telegrams.r, *telegrams[4:], *came), estimate
 
 

@@ -9,13 +9,13 @@ References
 Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, section 13.4.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from shipcosim.models.core.interpolation import EvenTable, even_table, interp_even
-from shipcosim.models.core.maths import Arithmetic, library_of, times
-from shipcosim.models.core.memoize import kept
+from shipcosim.models.core.maths import Arithmetic, library_of, mapped, times
 
 
 class AxisGains(NamedTuple):
@@ -218,8 +218,7 @@ def filter_table(
     frequencies: np.ndarray,
     damping: float,
     sample_period: float,
-    horizontal: AxisNoise,
-    yaw: AxisNoise,
+    noise_at: Callable[[Arithmetic], tuple[AxisNoise, AxisNoise]],
 ) -> EvenTable:
     """Wave models and gains over a range of frequencies, for `filter_at`.
 
@@ -231,35 +230,28 @@ def filter_table(
         Relative damping of the wave model. [1]
     sample_period : float
         Period of the observer. [s]
-    horizontal, yaw : AxisNoise
-        Assumptions of the filters of surge and sway, and of yaw.
+    noise_at : callable
+        From a frequency to the assumptions of the filters of surge and sway, and of yaw.
 
     Returns
     -------
     EvenTable
         The table.
     """
-    # The model over one sample, and backwards over the ages of the measurements.
-    spans = sample_period, -horizontal.delay, -yaw.delay
-    columns = [column for span in spans for column in wave_transition(span, frequencies, damping)]
-    columns += [
-        column for noise in (horizontal, yaw) for column in _gains(frequencies, damping, noise)
-    ]
-    return even_table(frequencies, *columns)
 
+    def columns(frequency):
+        horizontal, yaw = noise_at(frequency)
+        # The model over one sample, and backwards over the ages of the measurements.
+        spans = sample_period, -horizontal.delay, -yaw.delay
+        models = [part for span in spans for part in wave_transition(span, frequency, damping)]
+        gains = [axis_gains(frequency, damping, noise) for noise in (horizontal, yaw)]
+        return [*models, *gains[0], *gains[1]]
 
-def _gains(frequencies, damping, noise):
-    """Gains of one axis over the frequencies; one by one while the computation is recorded."""
-    if not hasattr(library_of(frequencies), "kept"):
-        return axis_gains(frequencies, damping, noise)
-    per_frequency = zip(frequencies, noise.wave, noise.disturbance, noise.bias_drift, strict=True)
-    rows = [_gains_at(one, damping, *noise[:4], *others) for one, *others in per_frequency]
-    return [np.array(column) for column in zip(*rows, strict=True)]
-
-
-@kept(1)
-def _gains_at(frequency, damping, *noise):
-    return axis_gains(frequency, damping, AxisNoise(*noise))
+    # All frequencies at once, but one by one while the computation is recorded.
+    if hasattr(library_of(frequencies), "mapped"):
+        rows = mapped(columns, frequencies)
+        return even_table(frequencies, *map(np.array, zip(*rows, strict=True)))
+    return even_table(frequencies, *columns(frequencies))
 
 
 def filter_at(frequency: Arithmetic, table: EvenTable) -> WaveFilter:

@@ -5,7 +5,6 @@ to go: so it is run along the horizon, by the functions that it runs on itself.
 """
 
 from dataclasses import dataclass
-from math import ceil
 from typing import NamedTuple
 
 from shipcosim.models.allocation import pseudo_inverse
@@ -16,11 +15,11 @@ from shipcosim.models.control.observer import DpShip, StateEstimate
 from shipcosim.models.control.pid import ControlParameters, ControlState
 from shipcosim.models.control.reference import ReferenceParameters, ReferenceState
 from shipcosim.models.core.kinematics import to_body, to_ned
-from shipcosim.models.core.maths import exp, times
+from shipcosim.models.core.maths import exp
 from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.core.parameters import quantity, required
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
-from shipcosim.models.prediction.dead_reckoning import advance
+from shipcosim.models.prediction.dead_reckoning import advance, at_horizons
 from shipcosim.models.prediction.predictor_inputs import Known
 from shipcosim.models.prediction.surroundings import Surroundings
 from shipcosim.models.ship.hull import HullParameters, hull_loads
@@ -128,22 +127,15 @@ def predict(
     """
     # Start with all parts of the loop at the present state.
     now = _start(known, surroundings, wind, loop)
-    before = 0.0
-    predictions = []
     # A thruster without thrust now is taken as missing for the whole horizon.
     available = tuple(abs(thrust) > NOTHING for thrust in now.allocated.thrusts)
-    for horizon in horizons:
-        # Equal steps up to each horizon, none longer than allowed.
-        steps = int(ceil((horizon - before) / longest_step))
-        h = (horizon - before) / steps
-        now = times(
-            steps,
-            lambda now, h=h: _later(now, known, surroundings, available, h, hull, wind, loop),
-            now,
-        )
-        predictions.append(Motion(*now.motion[:6]))
-        before = horizon
-    return tuple(predictions)
+    return at_horizons(
+        lambda now, h: _later(now, known, surroundings, available, h, hull, wind, loop),
+        lambda now: Motion(*now.motion[:6]),
+        now,
+        horizons=horizons,
+        longest_step=longest_step,
+    )
 
 
 def _start(known, around, wind, loop):

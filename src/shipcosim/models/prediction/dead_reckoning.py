@@ -1,11 +1,13 @@
 """Dead reckoning: future motion if thrust, wind, current and remaining force stay constant."""
 
+from collections.abc import Callable
 from math import ceil
+from typing import Any
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.integrate import midpoint_motion
 from shipcosim.models.core.kinematics import to_body
-from shipcosim.models.core.maths import times, where
+from shipcosim.models.core.maths import row_of, times, where
 from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.prediction.predictor_inputs import Known
@@ -65,21 +67,65 @@ def predict(
     delivered = known.thrusters[0] + X, known.thrusters[1] + Y, known.thrusters[2] + N
     # Integrate in the frame of the water, since hull loads depend on velocity through it.
     motion = (*ship, *through_water(ship.psi, ship.u, ship.v, *current))
-    thrusters = delivered
-    predictions = []
-    before = 0.0
-    # Equal steps up to each horizon, none longer than allowed.
-    for horizon in horizons:
-        steps = int(ceil((horizon - before) / longest_step))
+    return at_horizons(
+        lambda now, h: advance(now, delivered, surroundings, h, hull=hull, wind=wind),
+        lambda now: Motion(*now[:6]),
+        motion,
+        horizons=horizons,
+        longest_step=longest_step,
+    )
+
+
+def at_horizons(
+    later: Callable[[Any, Any], Any],
+    motion_of: Callable[[Any], Motion],
+    state: Any,
+    *,
+    horizons: tuple[float, ...],
+    longest_step: float,
+) -> tuple[Motion, ...]:
+    """Advance a state to each horizon, in equal steps that are none longer than allowed.
+
+    Parameters
+    ----------
+    later : callable
+        ``later(state, h)`` gives the state a step later. [as state]
+    motion_of : callable
+        From a state to the motion that is shown.
+    state : any
+        Where it begins. [any units]
+    horizons : tuple of float, increasing
+        How far ahead. [s]
+    longest_step : float
+        Longest step. [s]
+
+    Returns
+    -------
+    tuple of Motion
+        One per horizon.
+
+    References
+    ----------
+    Definition.
+    """
+
+    # A loop over the stretches, so that compiled code has the step once.
+    def stretch(reached):
+        number, before, state, predictions = reached
+        horizon = row_of(horizons, number)
+        steps = ceil((horizon - before) / longest_step)
         h = (horizon - before) / steps
-        motion = times(
-            steps,
-            lambda now, h=h: advance(now, thrusters, surroundings, h, hull=hull, wind=wind),
-            motion,
+        state = times(steps, lambda now: later(now, h), state)
+        found = motion_of(state)
+        predictions = tuple(
+            Motion(*(where(number == place, *pair) for pair in zip(found, old, strict=True)))
+            for place, old in enumerate(predictions)
         )
-        predictions.append(Motion(*motion[:6]))
-        before = horizon
-    return tuple(predictions)
+        return number + 1, horizon, state, predictions
+
+    begin = 0, 0.0, state, (motion_of(state),) * len(horizons)
+    *_, predictions = times(len(horizons), stretch, begin)
+    return predictions
 
 
 def advance(

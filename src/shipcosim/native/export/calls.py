@@ -7,6 +7,7 @@ from typing import Any
 
 from shipcosim.native.number_rows import Flat, made_like
 from shipcosim.native.recording import Block, Call, Recording, typed
+from shipcosim.native.symbols import Symbol, Untraceable
 
 
 class ExportRecording(Recording):
@@ -14,6 +15,22 @@ class ExportRecording(Recording):
 
     stands_alone = True
     most_ways = 60
+
+    def __init__(self, *arguments: Any):
+        super().__init__(*arguments)
+        self._acting: set[int] = set()
+
+    def acts(self, value: Any, neutral: float) -> bool:
+        """Whether a parameter has an effect, as a question of the code."""
+        question = value != neutral
+        if isinstance(question, Symbol) and not self.is_choice(question):
+            # Each answer is possible with each other: n questions have 2^n ways.
+            self._acting.add(question.number)
+            if 2 ** len(self._acting) > self.most_ways:
+                raise Untraceable(
+                    f"it leaves out what has no effect: {len(self._acting)} parameters decide"
+                )
+        return bool(question)
 
 
 @dataclass(frozen=True, eq=False)
