@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 from shipcosim.fmi import Input, Output, Parameters
 from shipcosim.interfaces.thrust_allocator import LoadRequest, ThrustAllocator
 from shipcosim.models.allocation.power import PowerParameters, granted_power, thrust_shares
-from shipcosim.models.core.maths import where
+from shipcosim.models.core.maths import choose, minimum, where
 from shipcosim.models.core.motion import Load
 from shipcosim.models.propulsion.failures import PLENTY
 
@@ -82,11 +82,14 @@ class NamedAllocator(ThrustAllocator, NamedThrusters):
     def _usable(self) -> tuple[tuple, dict[str, Any]]:
         """A unit that is available and has any power can be used, within the share that power leaves of its thrust."""
         buses = (self.bus_a_power, self.bus_b_power)
-        shares = (1.0, 1.0, 1.0)
-        granted = (PLENTY, PLENTY, PLENTY)
-        if min(buses) < PLENTY:
+
+        def limited():
             granted = granted_power(self.used, buses, parameters=self.power)
-            shares = thrust_shares(granted, parameters=self.power)
+            return granted, thrust_shares(granted, parameters=self.power)
+
+        granted, shares = choose(
+            minimum(*buses) < PLENTY, limited, lambda: ((PLENTY,) * 3, (1.0, 1.0, 1.0))
+        )
         self.port_power_limit, self.starboard_power_limit, self.tunnel_power_limit = granted
         taken = zip(
             (self.port_power, self.starboard_power, self.tunnel_power),

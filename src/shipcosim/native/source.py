@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import defaultdict, deque
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -195,9 +195,28 @@ class Writer:
         return Term(literal(value), is_literal=True)
 
     def _values(self, symbols: Sequence[Symbol], depth: int):
-        """Write values in order, those that make an array as a loop."""
+        """Write values, those that make an array as a loop."""
+        plain: list[Symbol] = []
+        for symbol in symbols:
+            # What lies in the memory anyway needs no variable.
+            if (place := self._place_of(symbol)) is not None:
+                self._elements[symbol.number] = place
+            elif symbol.op in self.apart:
+                self._assignments(plain, depth)
+                plain = []
+                self._value(symbol, depth)
+            else:
+                plain.append(symbol)
+        self._assignments(plain, depth)
+
+    def _assignments(self, symbols: Sequence[Symbol], depth: int):
+        """Write assignments; one that goes on with a loop comes before others, where its operands are known."""
         run: list[Statement] = []
         numbers: list[int] = []
+        missing = {symbol.number for symbol in symbols}
+        alike: dict[tuple, deque[Symbol]] = defaultdict(deque)
+        for symbol in symbols:
+            alike[symbol.op, symbol.kind].append(symbol)
 
         def written():
             for number, term in zip(numbers, self._put_run(run, depth), strict=False):
@@ -205,15 +224,7 @@ class Writer:
             run.clear()
             numbers.clear()
 
-        for symbol in symbols:
-            # What lies in the memory anyway needs no variable.
-            if (place := self._place_of(symbol)) is not None:
-                self._elements[symbol.number] = place
-                continue
-            if symbol.op in self.apart:
-                written()
-                self._value(symbol, depth)
-                continue
+        def write(symbol):
             new = self._statement(symbol)
             # Two statements may have the same form by chance: the second can begin a longer run.
             if len(run) == 2 and not goes_on(run, new):
@@ -224,6 +235,22 @@ class Writer:
                 new = self._statement(symbol)
             run.append(new)
             numbers.append(symbol.number)
+            missing.discard(symbol.number)
+
+        def next_turn(due):
+            while due and due[0].number not in missing:
+                due.popleft()
+            # A sum of products: all products first, then the sum.
+            is_known = due and not any(
+                isinstance(one, Symbol) and one.number in missing for one in due[0].operands
+            )
+            return due[0] if is_known and goes_on(run, self._statement(due[0])) else None
+
+        for symbol in symbols:
+            following = symbol if symbol.number in missing else None
+            while following is not None:
+                write(following)
+                following = next_turn(alike[symbol.op, symbol.kind])
         written()
 
     def _put_run(self, run: Sequence[Statement], depth: int) -> list[Term]:
@@ -347,8 +374,7 @@ class Writer:
             or "0"
         )
         self._put(depth, f"if ({same}) {{")
-        for i, a in enumerate(arguments):
-            self._put(depth + 1, f"k[{first + i}] = {self.operand(a)};")
+        self._write("k", ((first + i, a) for i, a in enumerate(arguments)), depth + 1)
         # After a failed call the arguments must not look valid: NaN forces the next call.
         again = f"k[{first}] = NAN; " if arguments else ""
         where = f"k + {first}, k + {self.results[number]}"

@@ -13,7 +13,7 @@ from shipcosim.scenario import read_scenario
 IN_PYTHON = {
     "dead_reckoning": "it reads files",
     "docking_predictor": "it reads files",
-    "helmsman": "ways through a step",
+    "helmsman": "fairway.py",
     "paper_i_allocator": "it reads files",
     "paper_v_allocator": "it reads files",
 }

@@ -351,7 +351,7 @@ def within_limits(
 
     free = [where(usable, 1.0, 0.0) for usable in available]
     held = [0.0] * len(limits)
-    *_, thrusts, _ = repeat(goes_on, solved_once, solved_once((0, held, free, held, True)))
+    *_, thrusts, _ = repeat(goes_on, solved_once, (0, held, free, held, True))
     return thrusts
 
 

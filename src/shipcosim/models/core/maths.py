@@ -382,14 +382,14 @@ def repeat(going: Callable[[Any], Any], turn: Callable[[Any], Any], state: Any) 
     >>> repeat(lambda n: n < 10, lambda n: 2 * n, 3)
     12
     """
-    # A recorded condition must become a loop in the compiled code.
-    condition = going(state)
-    if (own := getattr(condition, "maths", None)) is not None:
-        return own.repeat(going, turn, state)
-    while condition:
-        state = turn(state)
+    while True:
         condition = going(state)
-    return state
+        # A recorded condition must become a loop in the compiled code, at whatever turn it begins.
+        if (own := getattr(condition, "maths", None)) is not None:
+            return own.repeat(going, turn, state)
+        if not condition:
+            return state
+        state = turn(state)
 
 
 def times(count: Any, turn: Callable[[Any], Any], state: Any) -> Any:

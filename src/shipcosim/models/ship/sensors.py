@@ -19,6 +19,7 @@ from shipcosim.angles import wrap
 from shipcosim.models.core.maths import (
     Arithmetic,
     atan2,
+    choose,
     exp,
     hypot,
     maximum,
@@ -361,15 +362,17 @@ def step(
 def _ticked(state, truth, failures, p, mast):
     """State after one more tick; each channel whose turn it is takes a sample."""
     k = state.taken
-    positions = state.positions
     headings = state.headings
     wind = state.wind
+
     # Positions: every so many ticks. Errors and drifts move on by one sample period.
-    if k % p.clocks[0][0] == 0:
+    def with_positions():
         numbers = _numbers(p, k, 0)
         rates = [rate for failure in failures.positions for rate in failure[4:]]
-        positions = _moved(positions, numbers, p.position_wander, rates, p.position_period)
-        positions = _noted(positions, _fixes(positions, numbers, truth, failures, p))
+        moved = _moved(state.positions, numbers, p.position_wander, rates, p.position_period)
+        return _noted(moved, _fixes(moved, numbers, truth, failures, p))
+
+    positions = choose(k % p.clocks[0][0] == 0, with_positions, lambda: state.positions)
     # Headings and yaw rate: at every tick, since theirs is the clock.
     numbers = _numbers(p, k, 1)
     rates = [failure.rate for failure in failures.compasses]
@@ -377,9 +380,12 @@ def _ticked(state, truth, failures, p, mast):
     headings = _noted(headings, _headings(headings, numbers, truth, failures, p))
     # The anemometer measures at every tick: the oldest sample of its mean gives way to the newest.
     count = minimum(wind.count + 1.0, float(len(wind.components)))
-    wind = Anemometer((*wind.components[1:], _air(truth, mast)), count, wind.history)
-    if k % p.clocks[2][0] == 0:
-        wind = _noted(wind, _wind(wind, _numbers(p, k, 2), failures, p))
+    averaged = Anemometer((*wind.components[1:], _air(truth, mast)), count, wind.history)
+    wind = choose(
+        k % p.clocks[2][0] == 0,
+        lambda: _noted(averaged, _wind(averaged, _numbers(p, k, 2), failures, p)),
+        lambda: averaged,
+    )
     return SensorState(
         k + 1, positions, headings, wind, _telegrams(k, positions, headings, wind, p)
     )
