@@ -18,9 +18,9 @@ class DpPredictor(KineticPredictor):
     units = Parameters(pseudo_inverse.AllocationParameters)
     observer = Parameters(controlled.ObserverAhead)
 
-    def begin(self, known):
+    def start(self):
         self.design = pseudo_inverse.design(self.units)
-        return super().begin(known)
+        super().start()
 
     def predict(self, state, known):
         motions = choose(

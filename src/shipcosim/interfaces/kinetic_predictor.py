@@ -30,21 +30,19 @@ class KineticPredictor(MotionPredictor):
 
     def begin(self, known: Known) -> Surroundings:
         """Nothing but the wind is known at the start."""
-        return self._estimated(surroundings.unknown(known, hull=self.hull, parameters=self.assumed))
+        return surroundings.unknown(known, hull=self.hull, parameters=self.assumed)
 
     def follow(self, state: Surroundings, known: Known, since: float) -> Surroundings:
         """Surroundings as `surroundings.step` has them."""
         models = {"hull": self.hull, "wind": self.wind, "ship": self.ship}
-        return self._estimated(
-            surroundings.step(state, known, since, **models, parameters=self.assumed)
-        )
+        return surroundings.step(state, known, since, **models, parameters=self.assumed)
 
     def reckoned(self, state: Surroundings, known: Known) -> tuple[Motion, ...]:
         """Motion at the horizons with the thrust of now held."""
         ahead = {"horizons": HORIZONS, "longest_step": self.longest_step}
         return dead_reckoning.predict(known, state, **ahead, hull=self.hull, wind=self.wind)
 
-    def _estimated(self, state):
+    def show_state(self, state: Surroundings) -> None:
+        """Write the estimated wind, current and remaining load."""
         self.wind_north, self.wind_east, self.current_north, self.current_east = state[:4]
         self.force_north, self.force_east, self.moment = state[4:7]
-        return state

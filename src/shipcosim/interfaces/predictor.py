@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models.control.pid import Desired
-from shipcosim.models.core.maths import maximum, where
+from shipcosim.models.core.maths import choose, maximum, where
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.sampling import samples_due
 from shipcosim.models.prediction.predictor_inputs import Known
@@ -192,6 +192,9 @@ class MotionPredictor(Fmu):
         """Prediction from a state, and what is known at the same time."""
         raise NotImplementedError(f"{type(self).__name__} has no predict(self, state, known)")
 
+    def show_state(self, state: Any) -> None:
+        """Write outputs that show the state; there are none unless an FMU has some."""
+
     def _known(self):
         ship = Motion(self.x_hat, self.y_hat, self.psi_hat, self.u_hat, self.v_hat, self.r_hat)
         place = (self.x_d, self.y_d, self.psi_d)
@@ -221,6 +224,10 @@ class MotionPredictor(Fmu):
         for motion in motions:
             for value in motion[:3]:
                 is_sound = is_sound & (abs(value) < FARTHEST)
+        # After what has diverged it begins again: wind and current may be no number either.
+        state = self.state
+        self.state = choose(is_sound, lambda: state, lambda: self.begin(known))
+        self.show_state(self.state)
         foreseen = Motion(
             *(where(is_sound, *pair) for pair in zip(motions[0], known.ship, strict=True))
         )
@@ -238,11 +245,12 @@ class MotionPredictor(Fmu):
                 setattr(self, output, where(is_sound, value, getattr(self, output)))
 
     def _show_nothing(self, known, t, error):
-        """Keep the prediction before, and begin again: wind and current may be no number either."""
+        """Keep the prediction before, and begin again, as where a prediction is no number."""
         if not self.has_diverged:
             self.log(
                 f"the prediction at t = {t:.9g} s diverges ({error}): none is shown", "warning"
             )
         self.has_diverged = True
         self.state = self.begin(known)
+        self.show_state(self.state)
         self.awaited = (*self.awaited[1:], (inf, known.ship))

@@ -224,33 +224,44 @@ class Writer:
             run.clear()
             numbers.clear()
 
-        def write(symbol):
-            new = self._statement(symbol)
-            # Two statements may have the same form by chance: the second can begin a longer run.
-            if len(run) == 2 and not goes_on(run, new):
-                self._put(depth, _declared(run.pop(0)))
-                numbers.pop(0)
-            if run and not goes_on(run, new):
-                written()
-                new = self._statement(symbol)
+        def add(symbol, new):
             run.append(new)
             numbers.append(symbol.number)
             missing.discard(symbol.number)
 
-        def next_turn(due):
+        def write(symbol):
+            new = self._statement(symbol)
+            fits = not run or goes_on(run, new)
+            # Two statements may have the same form by chance: the second can begin a longer run.
+            if not fits and len(run) == 2:
+                self._put(depth, _declared(run.pop(0)))
+                numbers.pop(0)
+                fits = goes_on(run, new)
+            if not fits:
+                written()
+                new = self._statement(symbol)
+            add(symbol, new)
+
+        def goes_on_with(due):
+            """Add the next value of an operation if it goes on with the loop; say whether it does."""
             while due and due[0].number not in missing:
                 due.popleft()
             # A sum of products: all products first, then the sum.
-            is_known = due and not any(
+            if not due or any(
                 isinstance(one, Symbol) and one.number in missing for one in due[0].operands
-            )
-            return due[0] if is_known and goes_on(run, self._statement(due[0])) else None
+            ):
+                return False
+            new = self._statement(due[0])
+            fits = goes_on(run, new)
+            if fits:
+                add(due.popleft(), new)
+            return fits
 
         for symbol in symbols:
-            following = symbol if symbol.number in missing else None
-            while following is not None:
-                write(following)
-                following = next_turn(alike[symbol.op, symbol.kind])
+            if symbol.number in missing:
+                write(symbol)
+                while goes_on_with(alike[symbol.op, symbol.kind]):
+                    pass
         written()
 
     def _put_run(self, run: Sequence[Statement], depth: int) -> list[Term]:

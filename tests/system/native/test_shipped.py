@@ -5,9 +5,12 @@ from dataclasses import replace
 import pytest
 from typer.testing import CliRunner
 
+import shipcosim
 from shipcosim.cli.app import app
 from shipcosim.cosim.systems import system_of
 from shipcosim.cosim.webassembly.module import NotForPages, texts_of
+from shipcosim.native import component
+from shipcosim.native.source import source_of
 from shipcosim.scenario import read_scenario
 
 IN_PYTHON = {
@@ -39,6 +42,25 @@ def test_all_components_of_all_scenarios_have_c_code_but_those_that_the_docs_nam
     assert set(found) == set(IN_PYTHON)
     for name, reason in found.items():
         assert IN_PYTHON[name] in reason
+
+
+def test_the_c_text_of_the_dp_system_stays_short(root, monkeypatch):
+    file = root / "scenarios" / "four_corner.toml"
+    exported = {n: text.count("\n") for n, text in texts_of(system_of(read_scenario(file))).items()}
+    # What the engine records is counted in a run of a second that takes no record from the cache.
+    recorded = []
+
+    def counted(step):
+        text = source_of(step)
+        recorded.append(text.count("\n"))
+        return text
+
+    monkeypatch.setattr(component, "source_of", counted)
+    monkeypatch.setattr(component, "kept_record", lambda *_: None)
+    shipcosim.run(str(file), engine="native", until=1.0)
+    print("C text of four_corner:", sum(exported.values()), exported, sum(recorded), recorded)
+    assert len(recorded) == len(exported)
+    assert sum(exported.values()) < 36_000 and sum(recorded) < 10_500
 
 
 @pytest.mark.parametrize(

@@ -36,7 +36,8 @@ def interp(x: Arithmetic, xs: Sequence[float], ys: Sequence[float]) -> Arithmeti
             return ys[0]
         if x >= xs[-1]:
             return ys[-1]
-        i = bisect_right(xs, x) - 1
+        # No number is beyond all abscissae: the result is none either.
+        i = min(bisect_right(xs, x), len(xs) - 1) - 1
         return ys[i] + (ys[i + 1] - ys[i]) * (x - xs[i]) / (xs[i + 1] - xs[i])
     # Recorded numbers bring their own interpolation, arrays use NumPy's, tensors the one below.
     library = library_of(x)
@@ -69,7 +70,7 @@ def interp_columns(x: Arithmetic, xs: Sequence[float], *columns: Sequence[float]
     if x >= xs[-1]:
         return [ys[-1] for ys in columns]
     # One search serves all columns.
-    i = bisect_right(xs, x)
+    i = min(bisect_right(xs, x), len(xs) - 1)
     share = (x - xs[i - 1]) / (xs[i] - xs[i - 1])
     return [ys[i - 1] + (ys[i] - ys[i - 1]) * share for ys in columns]
 

@@ -48,6 +48,14 @@ class Procedure:
     outputs: frozenset[int] = frozenset()
 
 
+def described(call: Call) -> str:
+    """A text that is equal for calls of which `procedure_of` makes the same."""
+    given = Flat(call.arguments)
+    function = call.function
+    parts = function.__module__, function.__qualname__, given.structure, given.leaves, given.numbers
+    return repr((*parts, call.changing))
+
+
 def procedure_of(call: Call) -> Procedure:
     """Record a function with cached results."""
     given = Flat(call.arguments)

@@ -10,7 +10,7 @@ from typing import Any
 
 from shipcosim.native.array_statements import Term
 from shipcosim.native.error_texts import parts
-from shipcosim.native.export.calls import procedure_of
+from shipcosim.native.export.calls import described, procedure_of
 from shipcosim.native.export.variants import Variant
 from shipcosim.native.source import Writer, kept_sizes, literal
 from shipcosim.native.symbols import Symbol
@@ -125,7 +125,7 @@ class ModelWriter(Writer):
     first_kept : int
         Where the results that it keeps begin.
     others : dict of str to str
-        Functions that are written already: names by their texts.
+        Functions that are written already: names by their texts, and by the calls.
     """
 
     apart = (*Writer.apart, "primitive")
@@ -156,9 +156,13 @@ class ModelWriter(Writer):
         """Write the function and, before it, the functions that it calls."""
         called = []
         for call in self.recording.calls:
-            name, text = _Procedure(procedure_of(call), self._words, self._others).named_function()
-            self._names.append(name)
-            called.append(text)
+            # Start and step make the same calls: each is recorded once.
+            made = described(call)
+            if made not in self._others:
+                procedure = _Procedure(procedure_of(call), self._words, self._others)
+                self._others[made], text = procedure.named_function()
+                called.append(text)
+            self._names.append(self._others[made])
         self._block(self.step.root, 1, self._finish)
         # Without optimisation very long functions compile in seconds; they run seldom.
         much = "PLAIN " if len(self.lines) > MUCH else ""

@@ -19,6 +19,12 @@ def test_interpolation_meets_the_table_and_is_constant_beyond_it():
     ]
 
 
+def test_no_number_gives_no_number_in_every_arithmetic():
+    xs, ys = (0.0, 1.0, 3.0), (2.0, 4.0, 0.0)
+    assert np.isnan([interp(np.nan, xs, ys), *interp_columns(np.nan, xs, ys)]).all()
+    assert np.isnan(interp(np.array([np.nan]), xs, ys)).all()
+
+
 def test_columns_interpolated_together_are_columns_interpolated_alone():
     xs, columns = (0.0, 1.0, 3.0), ((2.0, 4.0, 0.0), (-1.0, 0.0, 7.0))
     for x in (-1.0, 0.0, 0.3, 1.0, 2.9, 3.0, 5.0):
