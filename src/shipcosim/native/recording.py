@@ -7,7 +7,7 @@ import math
 import operator
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -383,19 +383,19 @@ class Recording:
         index = Maths.where(index < 0, index + len(table), index)
         return made_like(row, iter(self._read(Flat(table).numbers, index, len(flat.leaves))))
 
-    def _read(self, numbers: Sequence[Any], index: Symbol, width: int) -> list[Symbol]:
+    def _read(self, numbers: Sequence[Any] | np.ndarray, index: Symbol, width: int) -> list[Symbol]:
         """The numbers of the row at an index, of rows that lie one behind the other."""
         op, base = self._stored(numbers)
         # Constant tables and arrays hold floats.
-        is_array = isinstance(numbers, np.ndarray)
-        kinds = [
-            "d" if is_array else _common_kind(numbers[column::width]) for column in range(width)
-        ]
+        if isinstance(numbers, np.ndarray):
+            kinds = ["d"] * width
+        else:
+            kinds = [_common_kind(numbers[column::width]) for column in range(width)]
         return [
             self.value(op, kind, index, base, width, column) for column, kind in enumerate(kinds)
         ]
 
-    def _stored(self, numbers: Sequence[Any]) -> tuple[str, Any]:
+    def _stored(self, numbers: Sequence[Any] | np.ndarray) -> tuple[str, Any]:
         """Where numbers lie in sequence: the operation that reads one by an index, and its operand."""
         is_constant = isinstance(numbers, np.ndarray) and numbers.dtype != object
         if is_constant or not any(isinstance(one, Symbol) for one in numbers):
@@ -605,7 +605,7 @@ def _of_one_shape(made: Sequence[tuple[Any, Flat]]) -> tuple[Any, Flat]:
     return made[0]
 
 
-def _common_kind(numbers: Sequence[Any]) -> str:
+def _common_kind(numbers: Iterable[Any]) -> str:
     """Kind of a variable that may have any of some numbers."""
     kinds = {kind_of(one) for one in numbers}
     return kinds.pop() if len(kinds) == 1 else "d"

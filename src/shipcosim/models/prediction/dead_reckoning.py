@@ -84,7 +84,7 @@ def at_horizons(
     horizons: tuple[float, ...],
     longest_step: float,
 ) -> tuple[Motion, ...]:
-    """Advance a state to each horizon, in equal steps that are none longer than allowed.
+    """Advance a state to each horizon, in equal steps, none longer than allowed.
 
     Parameters
     ----------

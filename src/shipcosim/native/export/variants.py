@@ -208,6 +208,11 @@ def _recorded_start(cls, fixed, recording):
         _put_in_order(clone)
         flat = Flat(vars(clone), constant, unchanging)
         made.append((clone, flat))
+        # Start and step have one layout, whatever way the start takes.
+        if not flat.same_shape(made[0][1]):
+            raise Untraceable(
+                f"its start gives states of several shapes: {made[0][1].difference(flat)}"
+            )
         return flat
 
     root = recording.record(run)
@@ -275,14 +280,9 @@ def _numbers(flat, recording):
 
 
 def _widest(flat: Flat, root) -> Flat:
-    """The leaves of the first way, if all ways have its shape; floats where any way has a float."""
+    """The leaves of the first way; floats where any way has a float."""
     for end in ends(root):
         if isinstance(end.result, Flat):
-            # Start and step have one layout, whatever way the start takes.
-            if not end.result.same_shape(flat):
-                raise Untraceable(
-                    f"its start gives states of several shapes: {flat.difference(end.result)}"
-                )
             # A number that is a float on one way must not be cut to an integer on another.
             kinds = [kind_of(number) for number in end.result.numbers]
             flat.leaves = [
