@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import defaultdict, deque
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
+
+from shipcosim.native.symbols import Symbol
 
 FEWEST = 4
 """Equal statements above which a loop is shorter than the statements."""
@@ -56,6 +59,72 @@ class Statement(NamedTuple):
     def text(self) -> str:
         """The right side, or the whole result, in C."""
         return self.template.format(*(term.text for term in self.terms))
+
+
+def write_in_runs(
+    symbols: Sequence[Symbol],
+    statement_of: Callable[[Symbol], Statement],
+    write: Callable[[list[Statement], list[int]], None],
+) -> None:
+    """Write assignments; one that goes on with a loop comes before others, where its operands are known.
+
+    Parameters
+    ----------
+    symbols : sequence of Symbol
+        Values, in the order in which they were computed.
+    statement_of : callable
+        From a value to its statement; it knows the values that are written.
+    write : callable
+        ``write(run, numbers)`` writes statements of one form, those of the values with these numbers.
+    """
+    run: list[Statement] = []
+    numbers: list[int] = []
+    missing = {symbol.number for symbol in symbols}
+    alike: dict[tuple, deque[Symbol]] = defaultdict(deque)
+    for symbol in symbols:
+        alike[symbol.op, symbol.kind].append(symbol)
+
+    def add(symbol, statement):
+        run.append(statement)
+        numbers.append(symbol.number)
+        missing.discard(symbol.number)
+
+    def add_next(symbol):
+        """Begin another run where a value does not go on with this one."""
+        new = statement_of(symbol)
+        fits = not run or goes_on(run, new)
+        # Two statements may have the same form by chance: the second can begin a longer run.
+        if not fits and len(run) == 2:
+            write([run.pop(0)], [numbers.pop(0)])
+            fits = goes_on(run, new)
+        if not fits:
+            write(run, numbers)
+            run.clear()
+            numbers.clear()
+            new = statement_of(symbol)
+        add(symbol, new)
+
+    def add_ahead(due):
+        """Add the next value of an operation if it goes on with the run; say whether it does."""
+        while due and due[0].number not in missing:
+            due.popleft()
+        # A sum of products: all products first, then the sum.
+        if not due or any(
+            isinstance(one, Symbol) and one.number in missing for one in due[0].operands
+        ):
+            return False
+        new = statement_of(due[0])
+        fits = goes_on(run, new)
+        if fits:
+            add(due.popleft(), new)
+        return fits
+
+    for symbol in symbols:
+        if symbol.number in missing:
+            add_next(symbol)
+            while add_ahead(alike[symbol.op, symbol.kind]):
+                pass
+    write(run, numbers)
 
 
 def goes_on(run: Sequence[Statement], new: Statement) -> bool:

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from shipcosim.native.blocks import typed
 from shipcosim.native.checking import refuse_other_results
 from shipcosim.native.compiler import libraries
 from shipcosim.native.error_texts import line_of
@@ -21,7 +22,6 @@ from shipcosim.native.record_cache import (
     record_of,
     refusal_of,
 )
-from shipcosim.native.recording import typed
 from shipcosim.native.source import source_of
 from shipcosim.native.symbols import Untraceable
 from shipcosim.native.trace import Shape, shape_of, trace

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
-from collections import defaultdict, deque
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 
-from shipcosim.native.array_statements import FEWEST, Statement, Term, goes_on, loop_of
+from shipcosim.native.array_statements import (
+    FEWEST,
+    Statement,
+    Term,
+    goes_on,
+    loop_of,
+    write_in_runs,
+)
+from shipcosim.native.blocks import Block, RecordedLoop, ends, results_of
 from shipcosim.native.error_texts import said
 from shipcosim.native.number_rows import Flat
-from shipcosim.native.recording import Block, RecordedLoop, Recording, ends, results_of
+from shipcosim.native.recording import Recording
 from shipcosim.native.symbols import Symbol, kind_of
 from shipcosim.native.trace import Step
 
@@ -210,59 +218,11 @@ class Writer:
         self._assignments(plain, depth)
 
     def _assignments(self, symbols: Sequence[Symbol], depth: int):
-        """Write assignments; one that goes on with a loop comes before others, where its operands are known."""
-        run: list[Statement] = []
-        numbers: list[int] = []
-        missing = {symbol.number for symbol in symbols}
-        alike: dict[tuple, deque[Symbol]] = defaultdict(deque)
-        for symbol in symbols:
-            alike[symbol.op, symbol.kind].append(symbol)
-
-        def written():
+        def write(run, numbers):
             for number, term in zip(numbers, self._put_run(run, depth), strict=False):
                 self._elements[number] = term
-            run.clear()
-            numbers.clear()
 
-        def add(symbol, new):
-            run.append(new)
-            numbers.append(symbol.number)
-            missing.discard(symbol.number)
-
-        def write(symbol):
-            new = self._statement(symbol)
-            fits = not run or goes_on(run, new)
-            # Two statements may have the same form by chance: the second can begin a longer run.
-            if not fits and len(run) == 2:
-                self._put(depth, _declared(run.pop(0)))
-                numbers.pop(0)
-                fits = goes_on(run, new)
-            if not fits:
-                written()
-                new = self._statement(symbol)
-            add(symbol, new)
-
-        def goes_on_with(due):
-            """Add the next value of an operation if it goes on with the loop; say whether it does."""
-            while due and due[0].number not in missing:
-                due.popleft()
-            # A sum of products: all products first, then the sum.
-            if not due or any(
-                isinstance(one, Symbol) and one.number in missing for one in due[0].operands
-            ):
-                return False
-            new = self._statement(due[0])
-            fits = goes_on(run, new)
-            if fits:
-                add(due.popleft(), new)
-            return fits
-
-        for symbol in symbols:
-            if symbol.number in missing:
-                write(symbol)
-                while goes_on_with(alike[symbol.op, symbol.kind]):
-                    pass
-        written()
+        write_in_runs(symbols, self._statement, write)
 
     def _put_run(self, run: Sequence[Statement], depth: int) -> list[Term]:
         """Write equal statements; returns where their values are, if these have no variables of their own."""
@@ -538,13 +498,8 @@ def _used(step: Step) -> set[int]:
         else:
             due.append(result)
 
+    made = _made_by_number(step)
     note(step.root)
-    # Calls, loops and branches are values of their own; find them by the number that their results name.
-    made: dict[tuple, list[Symbol]] = {}
-    for block in _all_blocks(step.root, step.recording):
-        for symbol in block.values:
-            if symbol.op in ("call", "loop", "branch", "map"):
-                made.setdefault((symbol.op, symbol.operands[0]), []).append(symbol)
     # Go from the roots to all operands.
     while due:
         value = due.pop()
@@ -567,8 +522,8 @@ def _used(step: Step) -> set[int]:
         elif value.op == "joined":
             number, place = value.operands
             due.extend(made["branch", number])
-            branch = step.recording.branches[number]
-            due.extend([*results_of(branch.yes, place), *results_of(branch.no, place)])
+            for side in step.recording.branches[number].sides:
+                due.extend(results_of(side, place))
         elif value.op == "mapped":
             number, place, _ = value.operands
             due.extend(made["map", number])
@@ -578,9 +533,19 @@ def _used(step: Step) -> set[int]:
         elif value.op == "branch":
             branch = step.recording.branches[value.operands[0]]
             due.append(branch.condition)
-            note(branch.yes, with_results=False)
-            note(branch.no, with_results=False)
+            for side in branch.sides:
+                note(side, with_results=False)
     return used
+
+
+def _made_by_number(step: Step) -> dict[tuple, list[Symbol]]:
+    """Calls, loops, branches and maps, which are values of their own, by the number that their results name."""
+    made: dict[tuple, list[Symbol]] = defaultdict(list)
+    for block in _all_blocks(step.root, step.recording):
+        for symbol in block.values:
+            if symbol.op in ("call", "loop", "branch", "map"):
+                made[symbol.op, symbol.operands[0]].append(symbol)
+    return made
 
 
 # The main tree and the trees of all loops and branches.
@@ -589,7 +554,7 @@ def _all_blocks(root: Block, recording: Recording):
     for loop in recording.loops.values():
         roots += [loop.going, loop.body]
     for branch in recording.branches.values():
-        roots += [branch.yes, branch.no]
+        roots += branch.sides
     roots += [one.body for one in recording.maps.values()]
     while roots:
         block = roots.pop()

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
+from shipcosim.native.blocks import Block, ends
 from shipcosim.native.number_rows import Flat, attributes_like, numbers_of, text_of
-from shipcosim.native.recording import Block, Recording, ends
+from shipcosim.native.recording import Recording
 from shipcosim.native.side_effects import only_arithmetic
 from shipcosim.native.symbols import Symbol, Untraceable, kind_of
 

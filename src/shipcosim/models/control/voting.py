@@ -167,12 +167,6 @@ def step(
     wind_since = telegrams.wind_time - state.wind_time
     unchanged = state.positions.unchanged
     quiet_positions = minimum(minimum(unchanged[0], unchanged[1]), unchanged[2])
-    # The observer's heading at the time of the message, wave motion included.
-    psi = (
-        estimate.psi
-        + estimate.yaw_wave
-        - (t - telegrams.heading_time) * (estimate.r + estimate.r_wave)
-    )
     # Compasses first: the heading is needed for the velocity of the positions.
     compasses = choose(
         heading_since > 0.0,
@@ -180,7 +174,7 @@ def step(
             state.compasses,
             telegrams.compasses,
             telegrams.r,
-            psi,
+            _heading_at(estimate, t - telegrams.heading_time),
             quiet_positions,
             heading_since,
             parameters=parameters,
@@ -257,6 +251,11 @@ def dead_reckoning_time(
     """
     age = t - state.positions.trusted_at
     return where(age > parameters.position_timeout, age, 0.0 * age)
+
+
+def _heading_at(e, delay):
+    """The observer's heading at a time before the estimate, wave motion included."""
+    return e.psi + e.yaw_wave - delay * (e.r + e.r_wave)
 
 
 def _at(e, delay):

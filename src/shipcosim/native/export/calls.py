@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from shipcosim.native.blocks import Block, Call, typed
 from shipcosim.native.number_rows import Flat, made_like
-from shipcosim.native.recording import Block, Call, Recording, typed
+from shipcosim.native.recording import Recording
 from shipcosim.native.symbols import Symbol, Untraceable
 
 

@@ -12,10 +12,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
+from shipcosim.native.blocks import ends
 from shipcosim.native.error_texts import line_of
 from shipcosim.native.export.calls import ExportRecording
 from shipcosim.native.number_rows import Flat, text_of
-from shipcosim.native.recording import Recording, ends
+from shipcosim.native.recording import Recording
 from shipcosim.native.side_effects import only_arithmetic
 from shipcosim.native.symbols import Symbol, Untraceable, kind_of
 from shipcosim.native.trace import Shape, Step, remember, trace
