@@ -405,6 +405,17 @@ def amount(text: str) -> tuple[float, str] | None:
     return (float(match["number"]), match["unit"].strip()) if match else None
 
 
+def is_amount(value: Any) -> bool:
+    """True for a text that is a number with a unit.
+
+    Examples
+    --------
+    >>> is_amount("45 deg"), is_amount("kaimal"), is_amount(45.0)
+    (True, False, False)
+    """
+    return isinstance(value, str) and amount(value) is not None
+
+
 def number_in(text: str, target: Unit | None, *, difference: bool = False) -> float:
     """Number of an amount with a unit, in another unit.
 

@@ -47,6 +47,7 @@ from shipcosim.scenario import (
     within_run,
 )
 from shipcosim.ssp import System, read_log_config, settings_for, step_remarks, with_values
+from shipcosim.ssp.read.structure import label
 from shipcosim.staging import check_targets, set_file_aside
 
 if TYPE_CHECKING:
@@ -224,7 +225,7 @@ def with_record(
         scenario = scenario.model_copy(update={"record": Record(signals=signals)})
 
     # A run records outputs, and inputs that nothing feeds or an event changes: ask for others before it begins.
-    fed = {".".join(filter(None, connection.target)) for connection in system.connections}
+    fed = set(map(label, system.feeding))
     changed = {
         name for event in scenario.events for name in (*event.override, *event.bias, *event.reset)
     }

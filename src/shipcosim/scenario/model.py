@@ -22,7 +22,7 @@ from pydantic_core import PydanticCustomError
 
 from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.units import UnitError, amount, find_unit, is_finite, number_in
+from shipcosim.units import UnitError, amount, find_unit, is_amount, is_finite, number_in
 
 
 def _plain(value: Any) -> bool | int | float | str:
@@ -38,7 +38,7 @@ def _plain(value: Any) -> bool | int | float | str:
 def _amount(value: Any) -> float | str:
     # Numbers, or texts with a number and a unit.
     plain = _plain(value)
-    if isinstance(plain, bool) or (isinstance(plain, str) and amount(plain) is None):
+    if isinstance(plain, bool) or (isinstance(plain, str) and not is_amount(plain)):
         raise PydanticCustomError(
             "float_type", "Input should be a number, or a text such as '2.5 deg'"
         )
@@ -47,7 +47,7 @@ def _amount(value: Any) -> float | str:
 
 def _seconds(value: Any) -> Any:
     """Convert texts such as "10 min" to seconds; pydantic checks the rest."""
-    if not isinstance(value, str) or amount(value) is None:
+    if not is_amount(value):
         return value
     try:
         return number_in(value, find_unit("s"))
@@ -232,7 +232,7 @@ class Expectation(Part):
         """Every signal of the expectation."""
         return [
             *self.signal,
-            *(v for v in self.near or () if isinstance(v, str) and amount(v) is None),
+            *(v for v in self.near or () if isinstance(v, str) and not is_amount(v)),
         ]
 
 

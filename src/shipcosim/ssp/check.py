@@ -76,7 +76,7 @@ def _unconnected_inputs(system: System) -> list[Problem]:
 
     Not on those that are meant to be open: the FMU marks them optional, or the system gives them a start value.
     """
-    fed = {connection.target for connection in system.connections}
+    fed = system.feeding
     owners: dict[tuple[str, ...], list[str]] = {}
     for component in system.components.values():
         free = tuple(

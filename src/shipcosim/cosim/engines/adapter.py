@@ -20,7 +20,7 @@ from shipcosim.cosim.master.algorithm import BETWEEN_REPORTS
 from shipcosim.cosim.master.events import changes, external_values, modify
 from shipcosim.cosim.master.inputs import digest, input_values
 from shipcosim.cosim.master.interrupt import delayed_interrupt
-from shipcosim.cosim.master.plan import WIDE, End, label, make_plan
+from shipcosim.cosim.master.plan import WIDE, End, make_plan
 from shipcosim.cosim.master.ranges import range_remarks
 from shipcosim.cosim.master.result import attributes_of, columns_of, recorded_rows
 from shipcosim.cosim.master.run import Interrupted, RunError
@@ -353,12 +353,8 @@ def unsupported(
     # Connections: problems common to all other engines first, then the engine's own.
     for connection in job.connections:
         if found := _unsupported_connection(job, connection) or complaint_of(connection):
-            place = f"{label(connection.source)} -> {label(connection.target)}"
-            problems.append(
-                Problem(
-                    place, f"{engine} cannot make this connection: {found}.", "The engine fmpy can."
-                )
-            )
+            found = f"{engine} cannot make this connection: {found}."
+            problems.append(Problem(connection.arrow, found, "The engine fmpy can."))
     return problems
 
 

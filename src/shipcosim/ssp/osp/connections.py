@@ -11,6 +11,7 @@ from shipcosim.ssp.fmu.description import FmuDescription, Variable
 from shipcosim.ssp.osp.functions import Function, Wiring
 from shipcosim.ssp.osp.groups import Group, file_names, read_groups
 from shipcosim.ssp.osp.simulators import Simulators
+from shipcosim.ssp.read.structure import label
 from shipcosim.ssp.xml.document import Document, Findings, local
 from shipcosim.units import find_unit, relation, told_apart
 
@@ -130,7 +131,7 @@ class ConnectionReader:
         """Add a connection; `signal` is its function signal, which may sum several."""
         # Names and causalities of both ends.
         source, target = (self._variable(end) for end in (connection.source, connection.target))
-        names = [".".join(filter(None, end)) for end in (connection.source, connection.target)]
+        names = [label(end) for end in (connection.source, connection.target)]
         place = connection.place
         # An input takes one connection, or the terms of one sum.
         feeding = self._fed.get(connection.target)
