@@ -28,6 +28,17 @@ def printable(text: str) -> str:
     return CONTROLS.sub(lambda found: ascii(found[0])[1:-1], text)
 
 
+def capitalised(text: str) -> str:
+    """A text as it begins a sentence.
+
+    Examples
+    --------
+    >>> capitalised("too many arguments")
+    'Too many arguments'
+    """
+    return text[:1].upper() + text[1:]
+
+
 CONTROLS = re.compile(
     r"[\ud800-\udfff\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufffe\uffff]"
 )

@@ -538,6 +538,18 @@ def whole_steps(duration: float, step_size: float) -> int | None:
     return count if abs(steps - count) <= 1e-6 else None
 
 
+def as_python(value: Any) -> Any:
+    """A number of NumPy or xarray as one of Python; anything else as it is.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> as_python(np.float32(0.5)), as_python("2.5 deg")
+    (0.5, '2.5 deg')
+    """
+    return value.item() if getattr(value, "size", None) == 1 else value
+
+
 def is_finite(value: Any) -> bool:
     """Whether a number is finite as a float: whole numbers can be larger than any.
 

@@ -49,6 +49,7 @@ from shipcosim.scenario import (
 from shipcosim.ssp import System, read_log_config, settings_for, step_remarks, with_values
 from shipcosim.ssp.read.structure import label
 from shipcosim.staging import check_targets, set_file_aside
+from shipcosim.units import as_python
 
 if TYPE_CHECKING:
     import xarray
@@ -625,7 +626,7 @@ def _text(value: object) -> str:
     """A start value as it is written in a file."""
     if isinstance(value, bool):
         return str(value).lower()
-    return str(value.item() if hasattr(value, "item") else value)  # pyright: ignore[reportAttributeAccessIssue]
+    return str(as_python(value))
 
 
 def _prepared(

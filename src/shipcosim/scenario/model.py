@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import numpy as np
 from pydantic import (
     AfterValidator,
     BaseModel,
@@ -22,11 +21,11 @@ from pydantic_core import PydanticCustomError
 
 from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.units import UnitError, amount, find_unit, is_amount, is_finite, number_in
+from shipcosim.units import UnitError, amount, as_python, find_unit, is_amount, is_finite, number_in
 
 
 def _plain(value: Any) -> bool | int | float | str:
-    value = value.item() if isinstance(value, np.generic) else value
+    value = as_python(value)
     # NaN and infinity would spread through the simulation.
     if isinstance(value, (int, float)) and not is_finite(value):
         raise ValueError(f"{value} is not a finite number. Give one, in the variable's unit.")

@@ -23,10 +23,10 @@ from shipcosim.report.theme.views import (
     Figures,
     JsonObject,
     KeyFigure,
-    Link,
     Outcome,
     Page,
     Table,
+    links_of,
 )
 from shipcosim.sweep.study_model import View
 
@@ -133,14 +133,11 @@ def page_of(tables: StudyTables) -> StudyPage:
         ErrorOfRuns(text, len(numbers), numbers[:20]) for text, numbers in words.errors(tables)
     )
     there = {"views": tracks or plots, "failed": errors, "summary": len(tables.summary)}
-    links = tuple(
-        Link(anchor, title) for anchor, title in SECTIONS.items() if there.get(anchor, True)
-    )
     return StudyPage(
         title=str(tables.study.get("description") or tables.name),
         facts=words.facts(tables),
         outcome=words.outcome(tables, runs, summary),
-        links=links,
+        links=links_of(SECTIONS, there),
         data=_data(tables, runs, rows, tracks, drawn),
         remarks=tuple(map(str, tables.about.get("remarks") or ())),
         key_figures=words.key_figures(tables, runs, summary),

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from shipcosim.errors import capitalised
 from shipcosim.report.study.statistics import explained
 from shipcosim.report.study.tables import (
     FACTOR,
@@ -73,7 +74,7 @@ def _of_summary(summary: Columns) -> str:
     found = _first(summary, SUMMARY)
     if found is None:
         return ""
-    name = _capital(found.description or found.name.replace("_", " "))
+    name = capitalised(found.description or found.name.replace("_", " "))
     # One row, one value everywhere, or a range with the factors of its ends.
     if len(found.values) == 1:
         return f"{name}: {found.text_at(0)}."
@@ -96,17 +97,13 @@ def _of_runs(runs: Columns) -> str:
         return ""
     # Share with Wilson's interval for true or false, else median, 90 % and largest value.
     known = found.values[np.isfinite(found.values)]
-    name = _capital(found.description or found.name)
+    name = capitalised(found.description or found.name)
     if found.is_truth:
         _, low, high = wilson(int(known.sum()), len(known))
         return f"{name}: {percent(known.mean())} of runs (95 % interval {percent(low)} to {percent(high)})."
     low, middle, high = np.quantile(known, [0.0, 0.5, 0.9])
     most = found.text(known.max())
     return f"{name}: {found.text(middle)} in the median, {found.text(high)} in nine of ten runs, {most} at most."
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
 
 
 def key_figures(tables: StudyTables, runs: Columns, summary: Columns) -> tuple[KeyFigure, ...]:

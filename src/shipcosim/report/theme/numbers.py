@@ -31,6 +31,17 @@ def plain(value: float | None, digits: int = 3) -> str:
     return f"{value:.{decimals}f}".replace("-", "−")
 
 
+def signed(value: float) -> str:
+    """A difference with its sign and one decimal.
+
+    Examples
+    --------
+    >>> signed(-0.33), signed(2.0)
+    ('−0.3', '+2.0')
+    """
+    return f"{value:+.1f}".replace("-", "−")
+
+
 def metres(value: float | None) -> str:
     """A distance with two significant digits.
 

@@ -15,7 +15,7 @@ from shipcosim.ssp.xml.definitions import read_units
 from shipcosim.ssp.xml.document import children, qualified
 from shipcosim.ssp.xml.markup import drop
 from shipcosim.ssp.xml.values import Value
-from shipcosim.units import Unit, conversion, find_unit, relation
+from shipcosim.units import Unit, as_python, conversion, find_unit, relation
 
 
 class StartValues(MutableMapping[str, Value]):
@@ -98,7 +98,7 @@ class StartValues(MutableMapping[str, Value]):
     def _given(self, name: str, value: Any, unit: str | None = None) -> ParameterValue:
         """A value in the type and unit of its variable, items of enumerations by name."""
         kind, own, items = _target(self._system(), name)
-        value = getattr(value, "item", lambda: value)()  # NumPy's scalars
+        value = as_python(value)
         if kind == "Enumeration" and type(value) is int:
             value = next((item for item, number in items.items() if number == value), str(value))
         value = self._converted(name, value, unit, own)
