@@ -15,7 +15,7 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 if TYPE_CHECKING:
     import pint
@@ -405,7 +405,7 @@ def amount(text: str) -> tuple[float, str] | None:
     return (float(match["number"]), match["unit"].strip()) if match else None
 
 
-def is_amount(value: Any) -> bool:
+def is_amount(value: Any) -> TypeGuard[str]:
     """True for a text that is a number with a unit.
 
     Examples

@@ -642,7 +642,7 @@ def _prepared(
     since = clock_start(options)
     problems = check_scenario(scenario, happening, since)
     found = [*remarks, *happening.deviations]
-    if errors := [problem for problem in problems if problem.severity == "error"]:
+    if errors := [problem for problem in problems if problem.is_error]:
         raise ShipcosimError([*found, *errors])  # a remark on what was left out may say why
     # A run that is shorter than planned leaves events and expectations out on purpose.
     of_times = check_times(scenario, since) if scenario.stop_time < planned else ()

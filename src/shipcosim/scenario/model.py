@@ -300,18 +300,21 @@ class Scenario(Part):
         return self._path.stem if self._path else ""
 
     @property
+    def folder(self) -> Path:
+        """Folder in which files that it names are looked for first."""
+        return self._path.resolve().parent if self._path else Path.cwd()
+
+    @property
     def project(self) -> Path:
         """Folder of the project that the scenario lies in, else the one above the scenario's own folder."""
         if self._path is None:
-            return Path.cwd()
-        own = self._path.resolve().parent
-        return library.project_of(own) or own.parent
+            return self.folder
+        return library.project_of(self.folder) or self.folder.parent
 
     @property
     def system_path(self) -> Path:
         """Path of the system: next to the scenario or in the project, else found by name."""
-        beside = self._path.resolve().parent if self._path else Path.cwd()
-        candidates = [beside / self.system, self.project / self.system]
+        candidates = [self.folder / self.system, self.project / self.system]
         if found := next((c for c in candidates if self.system and c.exists()), None):
             return found
         return (
@@ -321,9 +324,8 @@ class Scenario(Part):
     @property
     def parameter_paths(self) -> list[Path]:
         """Paths of the parameter sets: by name in the system's resources, else beside the file."""
-        beside = self._path.resolve().parent if self._path else Path.cwd()
         named = {name: self.system_path / "resources" / f"{name}.ssv" for name in self.parameters}
-        return [path if path.exists() else beside / name for name, path in named.items()]
+        return [path if path.exists() else self.folder / name for name, path in named.items()]
 
     def component_paths(self, build: bool = True) -> dict[str, Path]:
         """FMUs that replace those of components: a path next to the scenario, else found by name.
@@ -338,10 +340,9 @@ class Scenario(Part):
         ShipcosimError
             If there is no such FMU.
         """
-        beside = self._path.resolve().parent if self._path else Path.cwd()
         found = {}
         for name, fmu in self.components.items():
-            path = beside / fmu
+            path = self.folder / fmu
             found[name] = (
                 path if path.is_file() else library.find("fmu", fmu, near=self.project, build=build)
             )
