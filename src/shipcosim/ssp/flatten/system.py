@@ -189,7 +189,7 @@ class System:
         unit = self.described(component, name).unit or None
         return find_unit(unit, {} if component is None else self.components[component].fmu.units)
 
-    def start_value(self, component: str | None, name: str) -> Value | None:
+    def start_value(self, component: str | None, name: str) -> Any:
         """Start value of what `split` names; None without one."""
         if component is not None:
             return self.components[component].start_value(name)

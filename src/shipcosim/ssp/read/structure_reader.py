@@ -30,6 +30,7 @@ from shipcosim.ssp.xml.document import (
     children,
     is_true,
     local,
+    parts_in,
     reporting,
 )
 from shipcosim.ssp.xml.schemas import is_slip
@@ -180,8 +181,7 @@ class _Reader:
             place=place,
             dimensions=tuple(
                 attribute(self.document, part, "size", "Integer", self.findings)
-                for part in element
-                if local(part) == "Dimension"
+                for part in parts_in(element, "Dimension")
             ),
         )
 
