@@ -16,6 +16,7 @@ from shipcosim.report.study.tables import Column, Columns, StudyTables, columns_
 from shipcosim.report.study.tracks import TracksView, tracks_view
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import evenly
+from shipcosim.report.theme.numbers import extent
 from shipcosim.report.theme.packing import most_rows, packed_series
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import (
@@ -248,8 +249,7 @@ def _packed(column: Column, rows: NDArray) -> JsonObject:
     if not column.is_number:
         return made | {"values": [int(v) if np.isfinite(v) else None for v in values]}
     # Decimals that tell a thousandth of a column's range apart.
-    known = column.values[np.isfinite(column.values)]
-    span = float(np.ptp(known)) if known.size else 0.0
+    span = extent(column.values)
     digits = int(np.clip(3 - np.floor(np.log10(span)) - 1, 0, 9)) if span > 0.0 else 3
     return made | {"values": packed_series(values), "digits": digits}
 

@@ -21,7 +21,7 @@ from shipcosim.report.study.tables import (
     StudyTables,
     signed,
 )
-from shipcosim.report.theme.numbers import percent, plain
+from shipcosim.report.theme.numbers import finite, percent, plain
 from shipcosim.report.theme.views import Fact, KeyFigure, Outcome, Table
 from shipcosim.sweep.summary import wilson
 
@@ -96,7 +96,7 @@ def _of_runs(runs: Columns) -> str:
     if found is None:
         return ""
     # Share with Wilson's interval for true or false, else median, 90 % and largest value.
-    known = found.values[np.isfinite(found.values)]
+    known = finite(found.values)
     name = capitalised(found.description or found.name)
     if found.is_truth:
         _, low, high = wilson(int(known.sum()), len(known))
@@ -145,7 +145,7 @@ def quantities_table(runs: Columns) -> Table:
     rows = []
     # Runs without a value are counted: quantiles leave them out.
     for column in (c for c in runs.values() if c.role == QUANTITY):
-        known = column.values[np.isfinite(column.values)]
+        known = finite(column.values)
         missing = str(len(column.values) - len(known)) if len(known) < len(column.values) else "–"
         if column.is_truth or not len(known):
             share = percent(known.mean(), 1) if len(known) else "–"

@@ -2,6 +2,20 @@
 
 import math
 
+import numpy as np
+from numpy.typing import NDArray
+
+
+def finite(values: NDArray) -> NDArray:
+    """Those of some values that are finite."""
+    return values[np.isfinite(values)]
+
+
+def extent(values: NDArray) -> float:
+    """From the least to the largest finite value; 0 without any."""
+    known = finite(values)
+    return float(np.ptp(known)) if known.size else 0.0
+
 
 def span(start: float, end: float) -> str:
     """A stretch of a log.
