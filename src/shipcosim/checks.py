@@ -360,12 +360,12 @@ def _check_system_file(file: str, path: Path) -> list[Problem]:
             problems += _driven_by_water(file, system)
     else:
         problems = check_file(file, fmus=fmus)
-    is_readable = not any(problem.severity == "error" for problem in problems)
+    is_readable = not any(problem.is_error for problem in problems)
     if path.suffix.lower() == ".fmu" and is_readable:
         from shipcosim.cosim.slaves.validation import library_problems, validation_problems
 
         problems += [*validation_problems(path), *library_problems(path)]
-    if any(problem.severity == "error" for problem in problems):
+    if any(problem.is_error for problem in problems):
         missing = [
             folder
             for folder in fmus

@@ -8,6 +8,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 
+AnyPath = str | os.PathLike[str]
+"""A path as users give it."""
 LONGEST_TEXT = 4000  # characters of each part of a problem: a name can be as long as a file
 MOST_SHOWN = 100  # problems that anybody reads at once
 MOST_COMPARED = 1000  # names that a misspelt one is compared with, characters of one that is
@@ -26,6 +28,17 @@ def printable(text: str) -> str:
     'a\\x1b[31mred'
     """
     return CONTROLS.sub(lambda found: ascii(found[0])[1:-1], text)
+
+
+def capitalised(text: str) -> str:
+    """A text as it begins a sentence.
+
+    Examples
+    --------
+    >>> capitalised("too many arguments")
+    'Too many arguments'
+    """
+    return text[:1].upper() + text[1:]
 
 
 CONTROLS = re.compile(
@@ -66,6 +79,11 @@ class Problem:
                 text = f"{text[: LONGEST_TEXT // 2]} ... {text[-LONGEST_TEXT // 4 :]}"
             object.__setattr__(self, part, text)
 
+    @property
+    def is_error(self) -> bool:
+        """Whether it stops a run."""
+        return self.severity == "error"
+
     def __str__(self) -> str:
         text = f"{self.where}: {self.found}" if self.where else self.found
         return f"{text} {self.remedy}".rstrip()
@@ -101,9 +119,7 @@ class ShipcosimError(Exception):
 
 
 @contextmanager
-def reading(
-    path: str | os.PathLike[str], remedy: str = "Write or copy it again."
-) -> Iterator[None]:
+def reading(path: AnyPath, remedy: str = "Write or copy it again.") -> Iterator[None]:
     """Turn whatever a library raises while it reads a file into one error that names the file.
 
     Libraries for zip, HDF5, Parquet, XML and workbooks raise errors of many kinds for damaged files.
@@ -128,7 +144,7 @@ def reading(
         raise
     except MemoryError as error:
         found = "is larger than the memory."
-        raise ShipcosimError(Problem(str(path), found, "Read a part of it.")) from error
+        raise error_at(str(path), found, "Read a part of it.") from error
     except Exception as error:
         # The system says what is wrong with the disk or the rights; a library, with the content.
         reason = error.strerror if isinstance(error, OSError) else None
@@ -171,7 +187,7 @@ def raise_errors(problems: Iterable[Problem]) -> None:
     --------
     >>> raise_errors([Problem("dp.ssd", "has no step size.", severity="remark")])
     """
-    if errors := [problem for problem in problems if problem.severity == "error"]:
+    if errors := [problem for problem in problems if problem.is_error]:
         raise ShipcosimError(errors)
 
 
@@ -197,7 +213,7 @@ def worth_showing(problems: Iterable[Problem]) -> list[Problem]:
     listed = list(problems)
     if len(listed) <= MOST_SHOWN:
         return listed
-    listed.sort(key=lambda problem: problem.severity != "error")
+    listed.sort(key=lambda problem: not problem.is_error)
     more = Problem(
         "", f"And {len(listed) - MOST_SHOWN} more.", severity=listed[MOST_SHOWN].severity
     )

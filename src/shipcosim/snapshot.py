@@ -12,7 +12,7 @@ from pathlib import Path
 from sys import float_info
 from typing import Any
 
-from shipcosim.errors import error_at, reason_of
+from shipcosim.errors import AnyPath, error_at, reason_of
 from shipcosim.scenario import step_times
 from shipcosim.series import write_file
 
@@ -114,7 +114,7 @@ def read_snapshot(path: str | os.PathLike) -> Snapshot:
         ) from error
 
 
-def opened(snapshot: Snapshot | str | os.PathLike[str] | None) -> Snapshot | None:
+def opened(snapshot: Snapshot | AnyPath | None) -> Snapshot | None:
     """The snapshot itself, read where it is a path.
 
     Raises
@@ -128,7 +128,7 @@ def opened(snapshot: Snapshot | str | os.PathLike[str] | None) -> Snapshot | Non
 
 
 def writer(
-    store: Callable[[Snapshot], object] | str | os.PathLike[str] | None,
+    store: Callable[[Snapshot], object] | AnyPath | None,
 ) -> Callable[[Snapshot], object] | None:
     """The function that gets a run's snapshot: the one given, or one that writes into the file of a path.
 

@@ -15,7 +15,7 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 if TYPE_CHECKING:
     import pint
@@ -405,6 +405,17 @@ def amount(text: str) -> tuple[float, str] | None:
     return (float(match["number"]), match["unit"].strip()) if match else None
 
 
+def is_amount(value: Any) -> TypeGuard[str]:
+    """True for a text that is a number with a unit.
+
+    Examples
+    --------
+    >>> is_amount("45 deg"), is_amount("kaimal"), is_amount(45.0)
+    (True, False, False)
+    """
+    return isinstance(value, str) and amount(value) is not None
+
+
 def number_in(text: str, target: Unit | None, *, difference: bool = False) -> float:
     """Number of an amount with a unit, in another unit.
 
@@ -525,6 +536,18 @@ def whole_steps(duration: float, step_size: float) -> int | None:
     steps = steps_in(duration, step_size)
     count = round(steps)
     return count if abs(steps - count) <= 1e-6 else None
+
+
+def as_python(value: Any) -> Any:
+    """A number of NumPy or xarray as one of Python; anything else as it is.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> as_python(np.float32(0.5)), as_python("2.5 deg")
+    (0.5, '2.5 deg')
+    """
+    return value.item() if getattr(value, "size", None) == 1 else value
 
 
 def is_finite(value: Any) -> bool:

@@ -12,7 +12,6 @@ from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from pydantic import ValidationError
 
 from shipcosim import library
@@ -32,7 +31,7 @@ from shipcosim.ssp import (
     read_system,
     step_remarks,
 )
-from shipcosim.units import UnitError, is_finite, seconds
+from shipcosim.units import UnitError, as_python, is_finite, seconds
 
 if TYPE_CHECKING:
     import xarray
@@ -97,10 +96,7 @@ def mapping(argument: str, given: Any) -> dict[str, Any]:
     given = {} if given is None else given
     if not isinstance(given, Mapping) or not all(isinstance(name, str) for name in given):
         raise error_at("", f"{argument} = {given!r:.60}.", 'Give a dict: {"vessel.mass": 5e5}.')
-    return {
-        name: value.item() if isinstance(value, np.generic) else value
-        for name, value in given.items()
-    }
+    return {name: as_python(value) for name, value in given.items()}
 
 
 def without_none(values: Mapping[str, Any]) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from functools import wraps
 from numbers import Integral, Real
 from typing import Any, TypeVar, cast
 
-from shipcosim.errors import Problem, error_at, raise_errors, suggestion
+from shipcosim.errors import Problem, capitalised, error_at, raise_errors, suggestion
 from shipcosim.options import RunKeywords
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -82,9 +82,8 @@ def with_known_keywords(function: Function) -> Function:
         try:
             given = signature.bind(*arguments, **keywords).arguments
         except TypeError as error:
-            text = str(error)
             remedy = f"Its form is {function.__name__}({', '.join(known)})."
-            raise error_at(where, f"{text[:1].upper()}{text[1:]}.", remedy) from None
+            raise error_at(where, f"{capitalised(str(error))}.", remedy) from None
         wrong = []
         for name, value in {**given, **keywords}.items():
             if wanted := _other_kind(str(known.get(name)), value):

@@ -47,7 +47,9 @@ from shipcosim.scenario import (
     within_run,
 )
 from shipcosim.ssp import System, read_log_config, settings_for, step_remarks, with_values
+from shipcosim.ssp.read.structure import label
 from shipcosim.staging import check_targets, set_file_aside
+from shipcosim.units import as_python
 
 if TYPE_CHECKING:
     import xarray
@@ -224,7 +226,7 @@ def with_record(
         scenario = scenario.model_copy(update={"record": Record(signals=signals)})
 
     # A run records outputs, and inputs that nothing feeds or an event changes: ask for others before it begins.
-    fed = {".".join(filter(None, connection.target)) for connection in system.connections}
+    fed = set(map(label, system.feeding))
     changed = {
         name for event in scenario.events for name in (*event.override, *event.bias, *event.reset)
     }
@@ -624,7 +626,7 @@ def _text(value: object) -> str:
     """A start value as it is written in a file."""
     if isinstance(value, bool):
         return str(value).lower()
-    return str(value.item() if hasattr(value, "item") else value)  # pyright: ignore[reportAttributeAccessIssue]
+    return str(as_python(value))
 
 
 def _prepared(
@@ -640,7 +642,7 @@ def _prepared(
     since = clock_start(options)
     problems = check_scenario(scenario, happening, since)
     found = [*remarks, *happening.deviations]
-    if errors := [problem for problem in problems if problem.severity == "error"]:
+    if errors := [problem for problem in problems if problem.is_error]:
         raise ShipcosimError([*found, *errors])  # a remark on what was left out may say why
     # A run that is shorter than planned leaves events and expectations out on purpose.
     of_times = check_times(scenario, since) if scenario.stop_time < planned else ()

@@ -28,6 +28,7 @@ from shipcosim.options import RunOptions
 from shipcosim.results.signals import chosen
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System, with_values
+from shipcosim.units import as_python
 
 if TYPE_CHECKING:
     import pandas
@@ -140,8 +141,6 @@ def _variation(system: System, scenario: Scenario, given: dict[str, Any]) -> Var
     own = without_none({"stop_time": given.pop("stop_time", None)}) | {
         "events": list(given.pop("events", ()))
     }
-    values = {
-        name: value.item() if hasattr(value, "item") else value for name, value in given.items()
-    }
+    values = {name: as_python(value) for name, value in given.items()}
     is_plain = not own["events"] and "stop_time" not in own
     return Variation(fitting | values, scenario if is_plain else scenario_of(scenario, system, own))

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from shipcosim.cli.tables import print_table
 from shipcosim.cli.terminal import make_console
-from shipcosim.errors import Problem, worth_showing
+from shipcosim.errors import AnyPath, Problem, worth_showing
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -61,13 +61,12 @@ def progress_of(label: str, duration: float | None = None) -> Iterator[Callable[
     """Progress on stderr, a bar or lines; yields a function of (done, in all). `duration` adds its speed. [s]"""
     from rich.progress import (
         BarColumn,
-        Progress,
         TaskProgressColumn,
         TextColumn,
         TimeRemainingColumn,
     )
 
-    from shipcosim.cli.progress import tenths
+    from shipcosim.cli.progress import bar_on, tenths
 
     columns = [
         TextColumn("{task.description}", markup=False),
@@ -77,9 +76,7 @@ def progress_of(label: str, duration: float | None = None) -> Iterator[Callable[
         TimeRemainingColumn(),
     ]
     console = make_console(stderr=True, highlight=True)
-    with Progress(
-        *columns, console=console, transient=True, disable=not console.is_terminal
-    ) as bar:
+    with bar_on(console, *columns) as bar:
         task = bar.add_task(str(label), total=None, pace="")
         say_tenth = tenths(console, str(label))
 
@@ -168,7 +165,7 @@ def say_page(console: Console, page: Path) -> None:
     console.print(f"Page: {shown_path(page)}")
 
 
-def shown_path(path: str | os.PathLike[str]) -> Path:
+def shown_path(path: AnyPath) -> Path:
     """A path relative to the working folder where it lies in it, else absolute."""
     here = Path.cwd()
     absolute = Path(path).absolute()
@@ -199,12 +196,10 @@ def print_report(checked: CheckedFiles) -> None:
     console = make_console(soft_wrap=True)
     for file, problems in checked.files.items():
         # What must be mended stands first, what is only to be known takes a line.
-        for problem in sorted(worth_showing(problems), key=lambda one: one.severity != "error"):
+        for problem in sorted(worth_showing(problems), key=lambda one: not one.is_error):
             block = _block(problem)
-            console.print(
-                block if problem.severity == "error" else Text(" ").join(block.split("\n"))
-            )
-        errors = sum(problem.severity == "error" for problem in problems)
+            console.print(block if problem.is_error else Text(" ").join(block.split("\n")))
+        errors = sum(problem.is_error for problem in problems)
         remarks = len(problems) - errors
         if errors:
             said = f"{errors} error{'s' * (errors > 1)}"

@@ -24,6 +24,11 @@ def time_option(name: str, meaning: str) -> Any:
     return typer.Option(name, parser=_time, metavar="TIME", help=meaning)
 
 
+def out_option(meaning: str, metavar: str = "DIR") -> Any:
+    """The option for the folder or file that a command writes."""
+    return typer.Option("--out", metavar=metavar, help=meaning)
+
+
 Parameters = Annotated[
     list[Path] | None,
     typer.Option("--parameters", metavar="X.SSV", help="Parameter set; repeatable, last wins."),

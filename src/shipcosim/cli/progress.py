@@ -12,6 +12,7 @@ from shipcosim.staging import WRITING as LAST_STEP
 
 if TYPE_CHECKING:
     from rich.console import Console
+    from rich.progress import Progress, ProgressColumn
 
 LAST_TIME = 0.5
 """How long the last step typically takes. [s]"""
@@ -94,6 +95,13 @@ def tenths(
     return report
 
 
+def bar_on(console: Console, *columns: ProgressColumn) -> Progress:
+    """A progress bar that goes when the work is done; without a terminal there is none."""
+    from rich.progress import Progress
+
+    return Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
+
+
 @contextmanager
 def shown_progress(steps: Mapping[str, float]) -> Iterator[Callable[..., None]]:
     """How far the work is, on stderr; yields a function of (step, parts of it done, of how many).
@@ -108,7 +116,6 @@ def shown_progress(steps: Mapping[str, float]) -> Iterator[Callable[..., None]]:
     """
     from rich.progress import (
         BarColumn,
-        Progress,
         SpinnerColumn,
         TaskProgressColumn,
         TextColumn,
@@ -130,9 +137,7 @@ def shown_progress(steps: Mapping[str, float]) -> Iterator[Callable[..., None]]:
         TimeElapsedColumn(),
         _time_left(course),
     ]
-    with Progress(
-        *columns, console=console, transient=True, disable=not console.is_terminal
-    ) as bar:
+    with bar_on(console, *columns) as bar:
         task = bar.add_task("", total=1.0)
 
         def show(step, done=None, total=None):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.cosim.master.inputs import ANGLES
 from shipcosim.errors import shortened
 
 if TYPE_CHECKING:
@@ -14,7 +15,6 @@ if TYPE_CHECKING:
 
 TOLERANCE = 1e-9
 """Largest difference that counts as none, over a signal's range. [1]"""
-FULL_TURN = {"rad": 2.0 * np.pi, "deg": 360.0}
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def _distance(name, ours, theirs):
     n = min(len(ours["time"]), len(theirs["time"]))
     distance = theirs[name].values[-n:].astype(float) - ours[name].values[-n:].astype(float)
     # An angle may differ by full turns: wrap the difference to half a turn either way.
-    turn = FULL_TURN.get(ours[name].attrs.get("units"))
+    turn = ANGLES.get(ours[name].attrs.get("units"))
     return distance if turn is None else (distance + turn / 2.0) % turn - turn / 2.0
 
 

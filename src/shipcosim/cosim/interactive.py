@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from shipcosim.cosim.master.plan import Plan, label
-from shipcosim.cosim.master.result import recorded_rows
+from shipcosim.cosim.master.result import recorded_ends
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.ssp import System
 
@@ -49,11 +49,7 @@ def kinds_of(plan: Plan) -> list[str]:
 
 def row_signals(plan: Plan, kind: str) -> list[str]:
     """Signals of a recorded row of a kind."""
-    layout = plan.layouts[kind]
-    external, inputs = recorded_rows(plan, kind)
-    names = list(layout.external)
-    ends = [*layout.outputs, *(names[i] for i in external)]
-    return [label(end) for end in (*ends, *(layout.inputs[i] for i in inputs))]
+    return [label(end) for end in recorded_ends(plan, kind)]
 
 
 def start_values_of(plan: Plan) -> list[StartValue]:

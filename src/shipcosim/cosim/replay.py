@@ -175,11 +175,10 @@ def _bad_times(starts, duration, step_size, output_interval):
 
 def _per_segment(name, given, system, n):
     """Start value of a signal for each segment, in the unit of the variable."""
-    component, variable = system.split(name, "replay: states")
-    owners = system.inputs if component is None else system.components[component].variables
+    unit = system.described(*system.split(name, "replay: states")).unit
     # A value with a unit is converted; a plain number is in the variable's unit.
     try:
-        factor, offset = conversion(getattr(given, "attrs", {}).get("units"), owners[variable].unit)
+        factor, offset = conversion(getattr(given, "attrs", {}).get("units"), unit)
     except ShipcosimError as error:
         raise error_at(f"replay: states: {name}", error.problems[0].found) from None
     values = np.asarray(given)

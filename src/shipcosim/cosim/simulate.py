@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import json
-import os
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shipcosim.cosim.engines.registry import ENGINES, OWN, OWN_OPTIONS
-from shipcosim.cosim.systems import system_of
-from shipcosim.errors import ShipcosimError, error_at, raise_errors, suggestion
+from shipcosim.cosim.systems import prepared, system_of
+from shipcosim.errors import ShipcosimError, error_at, suggestion
 from shipcosim.options import RunOptions
-from shipcosim.scenario import Scenario, check_scenario, odd_values, units_of, with_numbers
+from shipcosim.scenario import Scenario, odd_values
 from shipcosim.snapshot import opened
-from shipcosim.ssp import System, with_values
+from shipcosim.ssp import AnyPath, System
 
 if TYPE_CHECKING:
     import xarray
@@ -32,7 +31,7 @@ def clock_start(options: RunOptions) -> float:
 
 
 def simulate(
-    system: System | str | os.PathLike[str], scenario: Scenario, options: RunOptions | None = None
+    system: System | AnyPath, scenario: Scenario, options: RunOptions | None = None
 ) -> xarray.Dataset:
     """Run a system through a scenario.
 
@@ -65,20 +64,17 @@ def simulate(
         raise ShipcosimError(
             f"There is no engine '{options.engine}'. {suggestion(options.engine, ENGINES)}"
         )
-    # Order: read the system, set the scenario's values, check, convert units. The checks need names
-    # and values as written.
     if not isinstance(system, System):
         system = system_of(scenario, system=Path(system))
-    system = with_values(system, scenario.set, str(scenario.path or "scenario"))
-    raise_errors(check_scenario(scenario, system, clock_start(options)))
+    # The checks need names and values as written, the run needs numbers.
+    system, numbers = prepared(system, scenario, clock_start(options))
     # Unusual values do not stop the run, but the table notes them.
     odd = [str(remark) for remark in odd_values(scenario, system)]
-    scenario = with_numbers(scenario, units_of(system))
     # Other engines would ignore these options, so refuse them.
     if options.engine not in OWN and (unknown := options.changed(OWN_OPTIONS)):
         found = f"It does not know {', '.join(unknown)}."
         raise error_at(f"engine '{options.engine}'", found, "The engines 'fmpy' and 'native' do.")
-    table = ENGINES[options.engine](system, scenario, options)
+    table = ENGINES[options.engine](system, numbers, options)
     return table.assign_attrs(
         remarks=json.dumps([*odd, *json.loads(table.attrs.get("remarks", "[]"))])
     )

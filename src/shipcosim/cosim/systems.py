@@ -4,10 +4,10 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from shipcosim import library
-from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.scenario import Scenario
+from shipcosim.errors import Problem, ShipcosimError, raise_errors
+from shipcosim.scenario import Scenario, check_scenario, units_of, with_numbers
 from shipcosim.scenario.locations import problem_at
-from shipcosim.ssp import System, read_system
+from shipcosim.ssp import System, read_system, with_values
 from shipcosim.ssp.flatten.hierarchy import Swapped
 from shipcosim.ssp.flatten.swapped import WHERE
 
@@ -70,3 +70,27 @@ def system_of(
         )
     except ShipcosimError as error:
         raise ShipcosimError([located(problem) for problem in error.problems]) from None
+
+
+def prepared(
+    system: System, scenario: Scenario, start_time: float = 0.0
+) -> tuple[System, Scenario]:
+    """The system with the scenario's start values, and the scenario in the units of the signals; both checked.
+
+    Parameters
+    ----------
+    system : System
+        Checked.
+    scenario : Scenario
+        With names and values as they are written.
+    start_time : float
+        From which the steps of a run count. [s]
+
+    Raises
+    ------
+    ShipcosimError
+        If they do not fit.
+    """
+    system = with_values(system, scenario.set, str(scenario.path or "scenario"))
+    raise_errors(check_scenario(scenario, system, start_time))
+    return system, with_numbers(scenario, units_of(system))

@@ -6,16 +6,16 @@ import os
 from pathlib import Path
 
 from shipcosim import __version__
-from shipcosim.errors import error_at
+from shipcosim.errors import AnyPath, error_at
 from shipcosim.library.names import fmu_sources
-from shipcosim.library.places import CACHE, PACKAGE, StrPath, cache, project_of, shipped
+from shipcosim.library.places import CACHE, PACKAGE, cache, project_of, shipped
 from shipcosim.temporary import temporary_folder
 
 IN_EVERY_FMU = ("interfaces", "models", "angles.py", "fmi", "units.py")
 """Parts of this package that travel in FMUs or build them."""
 
 
-def fmus(near: StrPath | None = None, build: bool = True) -> list[Path]:
+def fmus(near: AnyPath | None = None, build: bool = True) -> list[Path]:
     """Folders in which a system finds the FMUs that are not beside it.
 
     Parameters

@@ -4,10 +4,10 @@ import os
 from difflib import get_close_matches
 from pathlib import Path
 
-from shipcosim.errors import error_at, suggestion
+from shipcosim.errors import AnyPath, error_at, suggestion
 from shipcosim.library.building import build_if_stale, built_fmu
 from shipcosim.library.names import KINDS, SYSTEM_STRUCTURE, names
-from shipcosim.library.places import StrPath, roots
+from shipcosim.library.places import roots
 
 SYSTEMS = (".ssp", ".ssd", ".xml")
 STRUCTURES = (SYSTEM_STRUCTURE, "OspSystemStructure.xml")
@@ -22,7 +22,7 @@ WHAT = {
 
 
 def find(
-    kind: str, given: StrPath, option: str = "", near: StrPath | None = None, build: bool = True
+    kind: str, given: AnyPath, option: str = "", near: AnyPath | None = None, build: bool = True
 ) -> Path:
     """Path of the thing that a name or path means.
 
@@ -114,7 +114,7 @@ def scenarios(given: str) -> dict[str, Path]:
     return {file.relative_to(inside).with_suffix("").as_posix(): file for file in found}
 
 
-def find_parameters(given: Path, system: StrPath) -> Path:
+def find_parameters(given: Path, system: AnyPath) -> Path:
     """Parameter set: a path, or the name of one in the system's resources."""
     named = Path(system) / "resources" / f"{given.name}.ssv"
     return named if not given.exists() and named.is_file() else given

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from shipcosim.library.places import StrPath, roots, shipped
+from shipcosim.errors import AnyPath
+from shipcosim.library.places import roots, shipped
 
 SYSTEM_STRUCTURE = "SystemStructure.ssd"
 KINDS = ("scenario", "study", "system", "ship", "fmu", "example")
@@ -31,7 +32,7 @@ class Entry(NamedTuple):
     path: Path
 
 
-def names(kind: str, near: StrPath | None = None) -> dict[str, Path]:
+def names(kind: str, near: AnyPath | None = None) -> dict[str, Path]:
     """Names of a kind with their paths: those of the project around, then those that the package ships.
 
     Parameters
@@ -48,12 +49,12 @@ def names(kind: str, near: StrPath | None = None) -> dict[str, Path]:
     return found
 
 
-def named(kind: str, name: str, near: StrPath | None = None) -> Path | None:
+def named(kind: str, name: str, near: AnyPath | None = None) -> Path | None:
     """Path of the thing with a name, or None; arguments as for `names`."""
     return names(kind, near).get(name)
 
 
-def entries(kind: str, near: StrPath | None = None) -> list[Entry]:
+def entries(kind: str, near: AnyPath | None = None) -> list[Entry]:
     """Everything of a kind, with a line on each; arguments as for `names`."""
     return [Entry(name, line_of(kind, path), path) for name, path in names(kind, near).items()]
 

@@ -3,9 +3,8 @@
 import os
 from pathlib import Path
 
-from shipcosim.errors import error_at
+from shipcosim.errors import AnyPath, error_at
 
-StrPath = str | os.PathLike[str]
 PACKAGE = Path(__file__).resolve().parents[1]
 FOLDERS = (
     "fmus",
@@ -17,7 +16,7 @@ FOLDERS = (
 CACHE = "SHIPCOSIM_CACHE"  # environment variable: folder of the cache, in place of the platform's
 
 
-def project_of(start: StrPath | None = None) -> Path | None:
+def project_of(start: AnyPath | None = None) -> Path | None:
     """Nearest folder at or above a path that holds fmus/, ssp/, scenarios/, studies/ or ships/; None without one.
 
     Parameters
@@ -42,7 +41,7 @@ def shipped() -> Path:
     return inside if inside.is_dir() else PACKAGE.parents[1]
 
 
-def roots(start: StrPath | None = None) -> list[Path]:
+def roots(start: AnyPath | None = None) -> list[Path]:
     """Folders in which names are looked up: the project around a path, where there is one, and what is shipped."""
     return list(dict.fromkeys(filter(None, (project_of(start), shipped()))))
 

@@ -45,7 +45,7 @@ class CheckedFiles(Result):
     @property
     def failures(self) -> tuple[Problem, ...]:
         """Problems that are errors."""
-        return tuple(problem for problem in self.problems if problem.severity == "error")
+        return tuple(problem for problem in self.problems if problem.is_error)
 
     @property
     def passed(self) -> bool:
@@ -58,7 +58,7 @@ class CheckedFiles(Result):
         return tuple(
             Check(
                 file,
-                passed_or_failed(not any(problem.severity == "error" for problem in found)),
+                passed_or_failed(not any(problem.is_error for problem in found)),
                 "\n".join(map(str, worth_showing(found))),
             )
             for file, found in self.files.items()
@@ -94,7 +94,7 @@ class CheckedFiles(Result):
         from shipcosim.report.notebook.card import Card
         from shipcosim.report.theme.views import Block, Outcome, Table
 
-        errors = sum(problem.severity == "error" for problem in self.problems)
+        errors = sum(problem.is_error for problem in self.problems)
         remarks = len(self.problems) - errors
         said = (
             f"{errors or 'No'} error{'s' * (errors != 1)}"

@@ -7,7 +7,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from shipcosim.scenario.model import Event, Expectation, Scenario
-from shipcosim.units import Unit, UnitError, amount, number_in, relation
+from shipcosim.units import Unit, UnitError, is_amount, number_in, relation
 
 if TYPE_CHECKING:
     from shipcosim.ssp import System
@@ -44,8 +44,12 @@ def with_numbers(scenario: Scenario, unit_of: UnitOf) -> Scenario:
 
 def _event(event: Event, unit_of: UnitOf) -> Event:
     # A bias is a difference: an offset between units does not apply.
-    override = {signal: _number(value, signal, unit_of) for signal, value in event.override.items()}
-    bias = {signal: _number(value, signal, unit_of, True) for signal, value in event.bias.items()}
+    override = {
+        signal: in_unit_of(value, signal, unit_of) for signal, value in event.override.items()
+    }
+    bias = {
+        signal: in_unit_of(value, signal, unit_of, True) for signal, value in event.bias.items()
+    }
     return event.model_copy(update={"override": override, "bias": bias})
 
 
@@ -60,7 +64,7 @@ def expectation_in_numbers(expect: Expectation, unit_of: UnitOf) -> Expectation:
     values = {}
     # `within` is a difference, as a bias is.
     for key, signal, value in _amounts(expect):
-        number = _number(value, signal, unit_of, key == "within")
+        number = in_unit_of(value, signal, unit_of, key == "within")
         values[key] = [*values.get(key, ()), number] if key == "near" else number
     return expect.model_copy(update=values)
 
@@ -75,9 +79,9 @@ def _amounts(expect: Expectation) -> Iterator[tuple[str, str, Any]]:
             yield key, expect.signal[0], value
 
 
-def _number(value: Any, signal: str, unit_of: UnitOf, difference: bool = False) -> Any:
+def in_unit_of(value: Any, signal: str, unit_of: UnitOf, difference: bool = False) -> Any:
     """Convert a value with a unit; other texts, such as enumeration items, stay as they are."""
-    if not isinstance(value, str) or amount(value) is None:
+    if not is_amount(value):
         return value
     return number_in(value, unit_of(signal), difference=difference)
 
@@ -108,7 +112,7 @@ def amount_complaints(expect: Expectation, unit_of: UnitOf) -> Iterator[tuple[st
             yield key, found, f"Compare {signal} with a signal of its unit."
         # Amounts must be convertible to the unit of their signal.
         try:
-            numbers[key] = _number(value, signal, unit_of, key == "within")
+            numbers[key] = in_unit_of(value, signal, unit_of, key == "within")
         except UnitError as error:
             yield key, f"{key} of {signal}: {error.found}", error.remedy
     # Limits may have units of their own: as numbers they show which one is higher.

@@ -15,7 +15,7 @@ from shipcosim.scenario.amounts import amount_complaints, units_of
 from shipcosim.scenario.locations import Keys, problem_at
 from shipcosim.scenario.model import Event, Expectation, Scenario, Value
 from shipcosim.scenario.plausible import odd_values
-from shipcosim.units import UnitError, amount, number_in, steps_in, whole_steps
+from shipcosim.units import UnitError, is_amount, number_in, steps_in, whole_steps
 
 if TYPE_CHECKING:
     from shipcosim.ssp import System
@@ -197,13 +197,12 @@ ROUNDING = 1e-6
 def check_parameters(scenario: Scenario, system: System) -> Iterator[Problem]:
     """Find required ship parameters without a value, in all components."""
     # Values come from the scenario or from a connection.
-    given = {
-        *scenario.set,
-        *(".".join(filter(None, connection.target)) for connection in system.connections),
-    }
+    fed = system.feeding
     for component in system.components.values():
         if missing := [
-            name for name in component.left_out if f"{component.name}.{name}" not in given
+            name
+            for name in component.left_out
+            if f"{component.name}.{name}" not in scenario.set and (component.name, name) not in fed
         ]:
             units = {name: component.variables[name].unit for name in missing}
             names = ", ".join(f"{name} [{unit}]" if unit else name for name, unit in units.items())
@@ -305,13 +304,11 @@ def _event_complaint(
             f"Inputs: {', '.join(system.inputs) or 'none'}.",
         )
     # Type of the signal, and whether it may change during a run.
-    if component is None:
-        kind = system.inputs[name].type or ""
-        items = system.inputs[name].items
-    else:
+    target = system.described(component, name)
+    kind = target.kind
+    items = target.items
+    if component is not None:
         variable = system.components[component].variables[name]
-        kind = variable.kind
-        items = variable.items
         may_change = variable.causality in ("input", "output") or (
             variable.causality,
             variable.variability,
@@ -323,7 +320,7 @@ def _event_complaint(
             remedy = "Events change inputs, outputs and tunable parameters; [set] sets parameters before the start."
             return f"'{signal}' is a {variable.variability} {variable.causality}.", remedy
     # An amount with a unit must be convertible; any other value must fit the type.
-    if kind == "Real" and isinstance(value, str) and amount(value) is not None:
+    if kind == "Real" and is_amount(value):
         return _unit_complaint(system, verb, signal, value, (component, name))
     if verb != "reset" and not _fits(value, kind, items, verb):
         listed = f" Its items are {', '.join(items)}." if items else ""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import numpy as np
 from pydantic import (
     AfterValidator,
     BaseModel,
@@ -22,11 +21,11 @@ from pydantic_core import PydanticCustomError
 
 from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.units import UnitError, amount, find_unit, is_finite, number_in
+from shipcosim.units import UnitError, amount, as_python, find_unit, is_amount, is_finite, number_in
 
 
 def _plain(value: Any) -> bool | int | float | str:
-    value = value.item() if isinstance(value, np.generic) else value
+    value = as_python(value)
     # NaN and infinity would spread through the simulation.
     if isinstance(value, (int, float)) and not is_finite(value):
         raise ValueError(f"{value} is not a finite number. Give one, in the variable's unit.")
@@ -38,7 +37,7 @@ def _plain(value: Any) -> bool | int | float | str:
 def _amount(value: Any) -> float | str:
     # Numbers, or texts with a number and a unit.
     plain = _plain(value)
-    if isinstance(plain, bool) or (isinstance(plain, str) and amount(plain) is None):
+    if isinstance(plain, bool) or (isinstance(plain, str) and not is_amount(plain)):
         raise PydanticCustomError(
             "float_type", "Input should be a number, or a text such as '2.5 deg'"
         )
@@ -47,7 +46,7 @@ def _amount(value: Any) -> float | str:
 
 def _seconds(value: Any) -> Any:
     """Convert texts such as "10 min" to seconds; pydantic checks the rest."""
-    if not isinstance(value, str) or amount(value) is None:
+    if not is_amount(value):
         return value
     try:
         return number_in(value, find_unit("s"))
@@ -232,7 +231,7 @@ class Expectation(Part):
         """Every signal of the expectation."""
         return [
             *self.signal,
-            *(v for v in self.near or () if isinstance(v, str) and amount(v) is None),
+            *(v for v in self.near or () if isinstance(v, str) and not is_amount(v)),
         ]
 
 
@@ -301,18 +300,21 @@ class Scenario(Part):
         return self._path.stem if self._path else ""
 
     @property
+    def folder(self) -> Path:
+        """Folder in which files that it names are looked for first."""
+        return self._path.resolve().parent if self._path else Path.cwd()
+
+    @property
     def project(self) -> Path:
         """Folder of the project that the scenario lies in, else the one above the scenario's own folder."""
         if self._path is None:
-            return Path.cwd()
-        own = self._path.resolve().parent
-        return library.project_of(own) or own.parent
+            return self.folder
+        return library.project_of(self.folder) or self.folder.parent
 
     @property
     def system_path(self) -> Path:
         """Path of the system: next to the scenario or in the project, else found by name."""
-        beside = self._path.resolve().parent if self._path else Path.cwd()
-        candidates = [beside / self.system, self.project / self.system]
+        candidates = [self.folder / self.system, self.project / self.system]
         if found := next((c for c in candidates if self.system and c.exists()), None):
             return found
         return (
@@ -322,9 +324,8 @@ class Scenario(Part):
     @property
     def parameter_paths(self) -> list[Path]:
         """Paths of the parameter sets: by name in the system's resources, else beside the file."""
-        beside = self._path.resolve().parent if self._path else Path.cwd()
         named = {name: self.system_path / "resources" / f"{name}.ssv" for name in self.parameters}
-        return [path if path.exists() else beside / name for name, path in named.items()]
+        return [path if path.exists() else self.folder / name for name, path in named.items()]
 
     def component_paths(self, build: bool = True) -> dict[str, Path]:
         """FMUs that replace those of components: a path next to the scenario, else found by name.
@@ -339,10 +340,9 @@ class Scenario(Part):
         ShipcosimError
             If there is no such FMU.
         """
-        beside = self._path.resolve().parent if self._path else Path.cwd()
         found = {}
         for name, fmu in self.components.items():
-            path = beside / fmu
+            path = self.folder / fmu
             found[name] = (
                 path if path.is_file() else library.find("fmu", fmu, near=self.project, build=build)
             )

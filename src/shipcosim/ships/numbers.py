@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from shipcosim.errors import Problem, suggestion
+from shipcosim.errors import Problem, capitalised, suggestion
 from shipcosim.ships.entries import Quantity, table_entry
 from shipcosim.ships.estimates.estimate import EstimatedNumber
 from shipcosim.ships.given import PLAIN, Given, given_in_unit
@@ -92,6 +92,5 @@ class Numbers:
                 try:
                     self.give(name, given_in_unit(value, declared[name]["unit"]))
                 except ValueError as error:
-                    text = str(error)
-                    sentence = text[:1].upper() + text[1:]
+                    sentence = capitalised(str(error))
                     self.problems.append(Problem(f"{self.where}.{name}", sentence))

@@ -16,6 +16,8 @@ LAYOUTS = {
 }
 """Usual thrusters."""
 ASSUMED = "assumed: usual of a ship of this size"
+LENGTH = 30.0
+"""Of a ship of which nothing is known. [m]"""
 EFFICIENCY = 0.5
 USUAL_BLOCK = 0.62
 GRAVITY = 9.81
@@ -74,7 +76,7 @@ def usual(answers: Answers, key: str) -> str:
     ('14 m', '4.7 m')
     """
     if not answers.length:
-        return Usual("30 m") if key == "length" else ""
+        return Usual(f"{LENGTH:g} m") if key == "length" else ""
     form = _form(answers)
     if key in ("breadth", "draught"):
         return Usual(f"{getattr(form, key):.2g} m")
@@ -88,7 +90,7 @@ def usual(answers: Answers, key: str) -> str:
 
 def _form(answers: Answers) -> HullDimensions:
     """Hull of usual proportions for the numbers that are not given."""
-    L = _given(answers, "length", "m") or 30.0  # as `usual` has it
+    L = _given(answers, "length", "m") or LENGTH
     B = _given(answers, "breadth", "m") or 1.55 * L**0.54
     T = _given(answers, "draught", "m") or B / 3.0
     # Displacement by a usual block coefficient, speed by Froude number 0.25.

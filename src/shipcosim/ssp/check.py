@@ -3,7 +3,6 @@
 import platform
 import sys
 from collections.abc import Iterable
-from os import PathLike
 from pathlib import Path
 
 from shipcosim.errors import Problem, shortened
@@ -18,16 +17,16 @@ from shipcosim.ssp.read.parameters import (
     read_parameter_set,
 )
 from shipcosim.ssp.system_files import assemble
-from shipcosim.ssp.xml.document import Findings, read_document
+from shipcosim.ssp.xml.document import AnyPath, Findings, read_document
 
 READERS = {".ssv": read_parameter_set, ".ssm": read_mapping, ".ssb": read_dictionary}
 
 
 def check_system(
-    path: str | PathLike[str],
+    path: AnyPath,
     parameters: ParameterSets = (),
     *,
-    fmus: Iterable[str | PathLike[str]] = (),
+    fmus: Iterable[AnyPath] = (),
 ) -> list[Problem]:
     """Problems of a system structure and all it refers to; no binary is loaded.
 
@@ -76,7 +75,7 @@ def _unconnected_inputs(system: System) -> list[Problem]:
 
     Not on those that are meant to be open: the FMU marks them optional, or the system gives them a start value.
     """
-    fed = {connection.target for connection in system.connections}
+    fed = system.feeding
     owners: dict[tuple[str, ...], list[str]] = {}
     for component in system.components.values():
         free = tuple(
@@ -95,9 +94,7 @@ def _unconnected_inputs(system: System) -> list[Problem]:
     return [Problem(system.name, found, severity="remark")]
 
 
-def check_file(
-    path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] = ()
-) -> list[Problem]:
+def check_file(path: AnyPath, *, fmus: Iterable[AnyPath] = ()) -> list[Problem]:
     """Problems of a file by its ending: .ssp, .ssd, .ssv, .ssm, .ssb, .fmu, .xml (of OSP), or of a folder.
 
     Parameters

@@ -68,7 +68,7 @@ def _signal(name: str, system: System) -> str:
     if "." in name or name in system.inputs:
         return name
     # Else the only unconnected input of this name, if there is exactly one.
-    fed = {connection.target for connection in system.connections}
+    fed = system.feeding
     owners = [
         component
         for component, part in system.components.items()

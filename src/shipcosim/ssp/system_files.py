@@ -50,7 +50,7 @@ def read_system(
     """
     # Flaws have one possible meaning: they are errors only in strict reading.
     system, findings = assemble(path, parameters, fmus, components)
-    refused = [p for p in findings.problems if p.severity == "error" or (strict and p.flaw)]
+    refused = [p for p in findings.problems if p.is_error or (strict and p.flaw)]
     if system is None or refused:
         raise ShipcosimError(list(dict.fromkeys(held_strictly(refused))))
     return system

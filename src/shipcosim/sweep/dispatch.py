@@ -73,7 +73,7 @@ class _Dispatch:
 
     def _is_lost(self, future: Future[Chunk]) -> bool:
         error = CancelledError() if future.cancelled() else future.exception()
-        return error is not None and self._workers.is_lost(error)
+        return isinstance(error, self._workers.ends)
 
     def _fill(self) -> bool:
         """Give work to the workers; true if anything is under way. Suspects run alone."""
@@ -96,7 +96,7 @@ class _Dispatch:
             future = self._workers.submit(runs)
         # The future carries the error, so that a lost chunk is treated the same way everywhere.
         except Exception as error:  # a worker may have ended since its last answer
-            if not self._workers.is_lost(error):
+            if not isinstance(error, self._workers.ends):
                 raise
             future = Future()
             future.set_exception(error)

@@ -86,7 +86,7 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
     measures, problems = measures_of(study, scenario, system, happening, planned)
     problems = [*levels.problems, *problems, *_of_summaries(study), *_of_fork(study, scenario)]
     problems += _of_replaced(study, found, samples)
-    problems += [one for one in check_scenario(scenario, system) if one.severity == "error"]
+    problems += [one for one in check_scenario(scenario, system) if one.is_error]
     raise_errors(problems)
     # One checked system for each combination of swapped FMUs.
     systems = {

@@ -14,13 +14,14 @@ import numpy as np
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.scenario import Event, units_of
+from shipcosim.scenario.amounts import in_unit_of
 from shipcosim.scenario.check import event_complaints
 from shipcosim.scenario.locations import AnyKeys, Keys
 from shipcosim.scenario.model import Value
 from shipcosim.ssp import fitting_values, with_values
 from shipcosim.sweep.reader import problem_of
 from shipcosim.sweep.study_model import MOST_LEVELS, Case, Factor, Study
-from shipcosim.units import RADIAN, Unit, UnitError, amount, number_in, steps_in, whole_steps
+from shipcosim.units import RADIAN, UnitError, steps_in, whole_steps
 
 if TYPE_CHECKING:
     from shipcosim.scenario import Scenario
@@ -149,7 +150,7 @@ class Levels:
             for name, value in values.items():
                 self._check_value(name, value, keys)
             return {}
-        return {signal: start_value(system, signal) for signal in expanded}
+        return {signal: system.start_value(*system.split(signal)) for signal in expanded}
 
     def _check_value(self, name: str, value: Value, keys: AnyKeys) -> None:
         where = problem_of(self._study, (*keys, name), "").where
@@ -178,8 +179,9 @@ class Levels:
         event = Event(time=self._study.fork_at or 0.0, override=dict.fromkeys(signals, value))
         for _, _, found, remedy in event_complaints(event, self._system):
             self.complain(keys, found, remedy)
-        number = value if self.problems else _number(value, units_of(self._system)(signals[0]))
-        return Level(number, events=(event,))
+        if not self.problems:
+            value = in_unit_of(value, signals[0], units_of(self._system))
+        return Level(value, events=(event,))
 
     # A name of the study stands for several components; each gets the value.
     def expanded(self, values: Mapping[str, Any]) -> dict[str, Any]:
@@ -266,11 +268,11 @@ class Levels:
 
     def _spaced(self, factor: Factor, signal: str, number: int) -> list[float]:
         """Evenly spaced values of a factor, ends included, in the unit of its signal."""
-        unit = units_of(self._system)(signal)
+        unit_of = units_of(self._system)
         # A step is a difference: temperatures and the like have no offset in it.
         try:
-            first, last = (_number(value, unit) for value in (factor.start, factor.to))
-            step = None if factor.step is None else _number(factor.step, unit, difference=True)
+            first, last = (in_unit_of(end, signal, unit_of) for end in (factor.start, factor.to))
+            step = in_unit_of(factor.step, signal, unit_of, difference=True)
         except UnitError as error:
             self.complain(("factor", number, "from"), error.found, error.remedy)
             return []
@@ -307,18 +309,6 @@ class Levels:
         return levels
 
 
-def start_value(system: System, signal: str) -> Value:
-    """Start value of a signal, in the unit of its variable."""
-    component, name = system.split(signal)
-    value = (
-        system.inputs[name].start
-        if component is None
-        else system.components[component].start_value(name)
-    )
-    assert value is not None
-    return value
-
-
 def seeds_of(system: System) -> Iterator[str]:
     """Parameters that are seeds, by their name."""
     for component, variable in system.all_variables():
@@ -331,10 +321,3 @@ def _drawn(seed: int, level: int, signal: str) -> int:
     # The name enters by its checksum: a new component does not change the seeds of others.
     generator = np.random.default_rng([seed, level, zlib.crc32(signal.encode())])
     return int(generator.integers(1, LARGEST_SEED))
-
-
-def _number(value: Any, unit: Unit | None, difference: bool = False) -> Any:
-    """A value converted to a unit; other values unchanged."""
-    if not isinstance(value, str) or amount(value) is None:
-        return value
-    return number_in(value, unit, difference=difference)

@@ -12,7 +12,7 @@ import numpy as np
 
 from shipcosim.errors import ShipcosimError, error_at, imported, suggestion
 from shipcosim.scenario import units_of
-from shipcosim.sweep.levels import Levels, start_value
+from shipcosim.sweep.levels import Levels
 from shipcosim.sweep.study_model import Distribution, Sample, Study
 from shipcosim.units import UnitError, number_in
 
@@ -231,7 +231,9 @@ def _with_tolerance(system: System, signal: str) -> Callable[[np.ndarray], np.nd
         known = [f"{c.name}.{n}" for c in system.components.values() for n in c.tolerances]
         found = f"No parameter set states a tolerance of {signal}."
         raise error_at("", found, suggestion(signal, known))
-    return lambda shares: norm.ppf(shares, loc=start_value(system, signal), scale=tolerances[name])
+    return lambda shares: norm.ppf(
+        shares, loc=system.start_value(component, name), scale=tolerances[name]
+    )
 
 
 def _check_ends(levels: Levels, found: Samples, lines: Sequence[str]) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from shipcosim.errors import imported, suggestion
 from shipcosim.scenario import units_of
-from shipcosim.sweep.levels import Levels, start_value
+from shipcosim.sweep.levels import Levels
 from shipcosim.sweep.plan import Plan
 from shipcosim.sweep.reader import problem_of
 from shipcosim.sweep.sampling import SampledColumn, Samples
@@ -77,9 +77,8 @@ def _range(
         levels.checked(dict.fromkeys(others, value), ("tune", "of", key, "also"))
     if None in ends.values():
         return None
-    low, high, now = (
-        float(value) for value in (ends["low"], ends["high"], start_value(system, signals[0]))
-    )
+    present = system.start_value(*system.split(signals[0]))
+    low, high, now = (float(value) for value in (ends["low"], ends["high"], present))
     # A logarithmic range needs positive numbers, and the present value starts the search.
     if not low < high or (one.log and low <= 0.0):
         found = f"low = {low:g} and high = {high:g}."
@@ -89,7 +88,7 @@ def _range(
         remedy = "Take a range that has it in."
     else:
         unit = units_of(system)(signals[0])
-        is_whole = isinstance(start_value(system, signals[0]), int)
+        is_whole = isinstance(present, int)
         column = SampledColumn(
             one.name or key, (*signals, *others), unit.name if unit else None, is_whole, False
         )

@@ -133,7 +133,7 @@ def run_chunk(job: PackedJob | str, runs: Sequence[PlannedRun]) -> Chunk:
     Parameters
     ----------
     job : PackedJob or str
-        The job, or the path of a file that holds it.
+        The job, or the path of a file with its bytes.
     runs : sequence of PlannedRun
 
     Returns
@@ -150,8 +150,8 @@ def run_chunk(job: PackedJob | str, runs: Sequence[PlannedRun]) -> Chunk:
 class _Bench:
     """A job in a worker, with its prepared systems."""
 
-    def __init__(self, packed: PackedJob):
-        job: Job = pickle.loads(packed.content)
+    def __init__(self, content: bytes):
+        job: Job = pickle.loads(content)
         self._job = job
         self._plan = job.plan
         self._folder = temporary_folder()
@@ -262,8 +262,7 @@ def _bench(job: PackedJob | str) -> _Bench:
         # A worker may serve several studies; keep the last few.
         while len(_BENCHES) >= MOST_JOBS:
             _BENCHES.popitem(last=False)[1].close()
-        packed = pickle.loads(Path(job).read_bytes()) if isinstance(job, str) else job
-        _BENCHES[name] = _Bench(packed)
+        _BENCHES[name] = _Bench(Path(job).read_bytes() if isinstance(job, str) else job.content)
     _BENCHES.move_to_end(name)
     return _BENCHES[name]
 

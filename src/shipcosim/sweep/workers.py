@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import os
-import pickle
 import signal
 import sys
 import tempfile
@@ -35,10 +34,13 @@ class Workers(ABC):
         How many run at a time.
     chunk_time : float
         How long a chunk should take. [s]
+    ends : tuple of exception types
+        Errors that mean that a worker has ended, not that the job is wrong.
     """
 
     n: int
     chunk_time: float
+    ends: tuple[type[BaseException], ...]
     _executor: Executor
 
     @abstractmethod
@@ -53,10 +55,6 @@ class Workers(ABC):
     def close(self) -> None:
         """End without waiting for what still runs."""
 
-    @abstractmethod
-    def is_lost(self, error: BaseException) -> bool:
-        """True if an error means that a worker has ended, not that the job is wrong."""
-
 
 class Processes(Workers):
     """Processes of this machine, which read the job from a file.
@@ -70,12 +68,13 @@ class Processes(Workers):
     """
 
     chunk_time = 2.0
+    ends = (BrokenExecutor, CancelledError)
 
     def __init__(self, plan: Plan, engine: str, n: int | None = None):
         self.n = n or cores()
         self._folder = temporary_folder()
         self._job = Path(self._folder.name) / "job.pickle"
-        self._job.write_bytes(pickle.dumps(pack(plan, engine, with_fmus=False), protocol=5))
+        self._job.write_bytes(pack(plan, engine, with_fmus=False).content)
         self._executor = self._new()
 
     def submit(self, runs: Sequence[PlannedRun]) -> Future[Chunk]:
@@ -92,10 +91,6 @@ class Processes(Workers):
         """See `Workers`."""
         self._end()
         self._folder.cleanup()
-
-    def is_lost(self, error: BaseException) -> bool:
-        """See `Workers`."""
-        return isinstance(error, (BrokenExecutor, CancelledError))
 
     def _new(self) -> ProcessPoolExecutor:
         begin = partial(_begin, os.getpid(), self._folder.name)
@@ -131,7 +126,9 @@ class Cluster(Workers):
 
     def __init__(self, plan: Plan, engine: str, address: str):
         with imported("--scheduler", "Dask is not installed.", "cluster"):
-            from distributed import Client  # pyright: ignore[reportMissingImports]
+            from distributed import Client, KilledWorker  # pyright: ignore[reportMissingImports]
+            from distributed.comm.core import CommClosedError  # pyright: ignore[reportMissingImports]
+        self.ends = (KilledWorker, CommClosedError, CancelledError)
         # A cluster that ends is told in one sentence, not by tracebacks of the client's tasks.
         for name in ("distributed.client", "distributed.core", "distributed.utils"):
             logging.getLogger(name).setLevel(logging.CRITICAL)
@@ -172,13 +169,6 @@ class Cluster(Workers):
         """See `Workers`."""
         self._executor.shutdown(wait=False)
         self._client.close()
-
-    def is_lost(self, error: BaseException) -> bool:
-        """See `Workers`."""
-        from distributed import KilledWorker  # pyright: ignore[reportMissingImports]
-        from distributed.comm.core import CommClosedError  # pyright: ignore[reportMissingImports]
-
-        return isinstance(error, (KilledWorker, CommClosedError, CancelledError))
 
 
 def _begin(parent: int, folder: str) -> None:

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from shipcosim.cli.options import out_option
 from shipcosim.cli.terminal import say
 from shipcosim.errors import error_at
 
@@ -15,7 +16,7 @@ def build(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="DIR", help="Folder to build into. [default: build]"),
+        out_option("Folder to build into. [default: build]"),
     ] = None,
     native: Annotated[
         bool,

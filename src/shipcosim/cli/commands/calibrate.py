@@ -15,6 +15,7 @@ from shipcosim.cli.options import (
     Length,
     Quiet,
     Ship,
+    out_option,
 )
 from shipcosim.cli.outcomes.exits import Conclusion
 
@@ -33,11 +34,7 @@ def calibrate(
     length: Length = None,
     out: Annotated[
         Path | None,
-        typer.Option(
-            "--out",
-            metavar="DIR",
-            help="Folder of the results. [default: results/calibrated-SYSTEM]",
-        ),
+        out_option("Folder of the results. [default: results/calibrated-SYSTEM]"),
     ] = None,
     as_json: AsJson = False,
     junit: Junit = None,
@@ -57,9 +54,10 @@ def calibrate(
     from shipcosim.calls.arguments import SYSTEM_OF_LOGS
     from shipcosim.calls.logs import calibrate as calibrate_ship
     from shipcosim.calls.logs import ship_of
-    from shipcosim.cli.calibration import print_calibration
+    from shipcosim.cli.console import print_found
     from shipcosim.cli.progress import shown_progress
     from shipcosim.diagnose.calibration_pipeline import steps_of
+    from shipcosim.report.calibration.words import blocks, outcome
 
     read = None if learn else ship_of(system or SYSTEM_OF_LOGS)
     name = read.name if read else "craft"
@@ -67,4 +65,8 @@ def calibrate(
     asked: dict[str, Any] = {"out": folder, "force": force, "learn": learn, "length": length}
     with shown_progress(steps_of(logs)) as progress:
         found = calibrate_ship(logs, read or system, channels, effects, progress, **asked)
-    return Conclusion(name, found, lambda: print_calibration(found, folder), folder)
+
+    def show() -> None:
+        print_found(outcome(found), blocks(found), folder / "report.html")
+
+    return Conclusion(name, found, show, folder)

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import Channels, Ship
+from shipcosim.cli.options import Channels, Ship, out_option
 
 
 def channels(
@@ -23,7 +23,7 @@ def channels(
     ] = False,
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="X.TOML", help="Write the proposed channel file here."),
+        out_option("Write the proposed channel file here.", metavar="X.TOML"),
     ] = None,
     force: Annotated[
         bool, typer.Option("--force", help="Write it over a file that is there.")

@@ -15,6 +15,7 @@ from shipcosim.cli.options import (
     Length,
     Quiet,
     Ship,
+    out_option,
 )
 from shipcosim.cli.outcomes.exits import Conclusion
 from shipcosim.cli.start.completion import names_of
@@ -44,7 +45,7 @@ def diagnose(
     length: Length = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="DIR", help="Folder of the results. [default: results/DATA]"),
+        out_option("Folder of the results. [default: results/DATA]"),
     ] = None,
     as_json: AsJson = False,
     junit: Junit = None,

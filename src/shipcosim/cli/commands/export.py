@@ -18,6 +18,7 @@ from shipcosim.cli.options import (
     ScenariosStopTime,
     Strict,
     SystemOrScenario,
+    out_option,
     time_option,
 )
 from shipcosim.cli.terminal import say
@@ -29,9 +30,7 @@ if TYPE_CHECKING:
 
 def fmu(
     what: SystemOrScenario,
-    out: Annotated[
-        Path, typer.Option("--out", metavar="DIR", help="Folder that gets NAME.fmu.")
-    ] = Path("."),
+    out: Annotated[Path, out_option("Folder that gets NAME.fmu.")] = Path("."),
     step_size: Annotated[
         float | None,
         time_option(
@@ -95,9 +94,7 @@ def page(
     what: SystemOrScenario,
     out: Annotated[
         Path,
-        typer.Option(
-            "--out", metavar="DIR|FILE.html", help="Folder that gets NAME.html, or the file."
-        ),
+        out_option("Folder that gets NAME.html, or the file.", metavar="DIR|FILE.html"),
     ] = Path("."),
     stop_time: ScenariosStopTime = None,
     step_size: ScenariosStepSize = None,
@@ -126,9 +123,7 @@ def live(
     what: SystemOrScenario,
     out: Annotated[
         Path,
-        typer.Option(
-            "--out", metavar="DIR|FILE.html", help="Folder that gets NAME.html, or the file."
-        ),
+        out_option("Folder that gets NAME.html, or the file.", metavar="DIR|FILE.html"),
     ] = Path("results", "live"),
     stop_time: ScenariosStopTime = None,
     step_size: ScenariosStepSize = None,
@@ -238,9 +233,7 @@ def _write_page(system: System, scenario: Scenario, out: Path, *, force: bool) -
 
 def osp(
     what: SystemOrScenario,
-    out: Annotated[
-        Path, typer.Option("--out", metavar="DIR", help="Folder for the files; made if needed.")
-    ],
+    out: Annotated[Path, out_option("Folder for the files; made if needed.")],
     stop_time: ScenariosStopTime = None,
     step_size: ScenariosStepSize = None,
     parameters: Parameters = None,

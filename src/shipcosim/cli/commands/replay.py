@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import Channels, Force, time_option
+from shipcosim.cli.options import Channels, Force, out_option, time_option
 from shipcosim.cli.outcomes.exits import Conclusion
 
 
@@ -47,9 +47,7 @@ def replay(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(
-            "--out", metavar="DIR", help="Folder of the results. [default: results/LOG-replay]"
-        ),
+        out_option("Folder of the results. [default: results/LOG-replay]"),
     ] = None,
     force: Force = False,
 ) -> Conclusion:

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import AsJson, Channels, Effects, Force, Junit, Quiet, Ship
+from shipcosim.cli.options import AsJson, Channels, Effects, Force, Junit, Quiet, Ship, out_option
 from shipcosim.cli.outcomes.exits import Conclusion
 
 
@@ -24,9 +24,7 @@ def sea_trials(
     ] = False,
     out: Annotated[
         Path | None,
-        typer.Option(
-            "--out", metavar="DIR", help="Folder of the results. Default: results/DATA-sea-trials."
-        ),
+        out_option("Folder of the results. Default: results/DATA-sea-trials."),
     ] = None,
     as_json: AsJson = False,
     junit: Junit = None,

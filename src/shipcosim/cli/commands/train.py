@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import Force
+from shipcosim.cli.options import Force, out_option
 from shipcosim.cli.terminal import say
 from shipcosim.errors import error_at, suggestion
 
@@ -15,9 +15,7 @@ Kind = Annotated[
 ]
 Out = Annotated[
     Path | None,
-    typer.Option(
-        "--out", metavar="DIR", help="Folder of weights and report. [default: results/train-NAME]"
-    ),
+    out_option("Folder of weights and report. [default: results/train-NAME]"),
 ]
 
 

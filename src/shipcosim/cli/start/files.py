@@ -263,7 +263,7 @@ def _fits(text: str, system: "System") -> bool:
         system = with_values(system, scenario.set, "scenario")
     except ShipcosimError:
         return False
-    return not any(problem.severity == "error" for problem in check_scenario(scenario, system))
+    return not any(problem.is_error for problem in check_scenario(scenario, system))
 
 
 def _outputs(system: "System") -> Iterator[str]:

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from shipcosim.cli.console import say_page, shown_path
 from shipcosim.cli.outcomes.exits import INTERRUPTED
-from shipcosim.cli.progress import tenths
+from shipcosim.cli.progress import bar_on, tenths
 from shipcosim.cli.tables import print_table
 from shipcosim.cli.terminal import make_console, say
 from shipcosim.sweep import Plan, Swept
@@ -60,7 +60,6 @@ def _progress(plan: Plan) -> Iterator[Callable[[int, int], None]]:
     from rich.progress import (
         BarColumn,
         MofNCompleteColumn,
-        Progress,
         TextColumn,
         TimeRemainingColumn,
     )
@@ -75,9 +74,7 @@ def _progress(plan: Plan) -> Iterator[Callable[[int, int], None]]:
         TimeRemainingColumn(),
     ]
     console.print(f"{plan.study.name}: {len(plan):,} runs of {each:,.0f} s.")
-    with Progress(
-        *columns, console=console, transient=True, disable=not console.is_terminal
-    ) as bar:
+    with bar_on(console, *columns) as bar:
         task = bar.add_task("", total=len(plan), pace="")
         first = []
         said = []

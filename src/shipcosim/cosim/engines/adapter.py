@@ -11,16 +11,15 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from time import perf_counter
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from shipcosim.cosim.master.algorithm import BETWEEN_REPORTS
+from shipcosim.cosim.master.algorithm import now_and_then
 from shipcosim.cosim.master.events import changes, external_values, modify
 from shipcosim.cosim.master.inputs import digest, input_values
 from shipcosim.cosim.master.interrupt import delayed_interrupt
-from shipcosim.cosim.master.plan import WIDE, End, label, make_plan
+from shipcosim.cosim.master.plan import WIDE, End, make_plan
 from shipcosim.cosim.master.ranges import range_remarks
 from shipcosim.cosim.master.result import attributes_of, columns_of, recorded_rows
 from shipcosim.cosim.master.run import Interrupted, RunError
@@ -298,19 +297,15 @@ def _opened(engine, open_session, job):
 
 
 def _advance(session, job, check_interrupt):
-    progress = job.progress
-    report_at = perf_counter()
+    tell = now_and_then(job.progress)
     for first, last, inputs in job.intervals():
         check_interrupt()
         for end, value in inputs.items():
             # Inputs first: they hold from the step that starts now.
             session.set_input(end, value)
-        if progress is not None and perf_counter() >= report_at:
-            progress(first, job.n_steps)
-            report_at = perf_counter() + BETWEEN_REPORTS
+        tell(first, job.n_steps)
         session.advance(last)
-    if progress is not None:
-        progress(job.n_steps, job.n_steps)
+    tell(job.n_steps, job.n_steps)
 
 
 def unsupported(
@@ -353,12 +348,8 @@ def unsupported(
     # Connections: problems common to all other engines first, then the engine's own.
     for connection in job.connections:
         if found := _unsupported_connection(job, connection) or complaint_of(connection):
-            place = f"{label(connection.source)} -> {label(connection.target)}"
-            problems.append(
-                Problem(
-                    place, f"{engine} cannot make this connection: {found}.", "The engine fmpy can."
-                )
-            )
+            found = f"{engine} cannot make this connection: {found}."
+            problems.append(Problem(connection.arrow, found, "The engine fmpy can."))
     return problems
 
 

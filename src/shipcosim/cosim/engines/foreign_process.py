@@ -6,7 +6,6 @@ As a script this is that process: it gets a job in JSON and leaves the values of
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -18,7 +17,7 @@ import numpy as np
 
 from shipcosim.cosim.engines.adapter import EngineError
 from shipcosim.cosim.master.time_grid import time_grid_of
-from shipcosim.errors import error_at
+from shipcosim.errors import AnyPath, error_at
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
 from shipcosim.ssp import System
@@ -32,7 +31,7 @@ KINDS = ("Real", "Integer", "Boolean")
 
 
 def readers(
-    path: str | os.PathLike[str], scenario: Scenario, *, set_name: str | None = None
+    path: AnyPath, scenario: Scenario, *, set_name: str | None = None
 ) -> dict[str, Callable[[System], xarray.Dataset]]:
     """Functions that run a file in the tools that are installed and take it, by tool.
 

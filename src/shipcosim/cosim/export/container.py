@@ -19,7 +19,6 @@ from shipcosim.cosim.export.container_variables import (
     library_type,
 )
 from shipcosim.cosim.master.order import sources_first
-from shipcosim.cosim.master.plan import label
 from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.errors import Problem, raise_errors
 from shipcosim.ssp import System
@@ -87,8 +86,7 @@ def _problems(system, step_size):
     yield from _repeated(system)
     # A second connection into one input would be a sum, so remember the inputs seen.
     for connection in system.connections:
-        name = f"{label(connection.source)} -> {label(connection.target)}"
-        known = f"{name}: " if name not in connection.place else ""
+        known = f"{connection.arrow}: " if connection.arrow not in connection.place else ""
         for found in _connection_faults(connection, system, targets):
             yield Problem(
                 connection.place, f"{known}{found}", "The container FMU copies values as they are."
@@ -97,10 +95,9 @@ def _problems(system, step_size):
     # A system parameter is set as it is; its value cannot be converted on the way.
     for connection in system.given:
         if (connection.factor, connection.offset, connection.mapping) != (1.0, 0.0, None):
-            name = f"{label(connection.source)} -> {label(connection.target)}"
-            found = f"{name}: the parameter's value changes on its way (unit conversion or transformation)."
+            found = f"{connection.arrow}: the parameter's value changes on its way (unit conversion or transformation)."
             yield Problem(
-                connection.place or name,
+                connection.place or connection.arrow,
                 found,
                 "Give the connector the unit of the FMU's parameter.",
             )

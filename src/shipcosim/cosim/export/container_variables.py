@@ -75,7 +75,7 @@ def exposed_variables(
     # Then the variables of the components, except inputs that something feeds already.
     names = {one.name for one in exposed}
     fed = {end for one in exposed if one.causality != "output" for end in one.ends}
-    fed |= {connection.target for connection in system.connections}
+    fed |= system.feeding.keys()
     for one in _variables(system, fed):
         if one.name in names:
             found = f"A connector of the system and a variable of a component are both called {one.name}."

@@ -10,11 +10,12 @@ from shipcosim.cosim.engines.adapter import Job
 from shipcosim.cosim.engines.osp_job import event_of, structure_of, unsupported_by_libcosim
 from shipcosim.cosim.master.events import SignalChange
 from shipcosim.cosim.master.plan import KINDS
+from shipcosim.cosim.systems import prepared
 from shipcosim.errors import Problem, error_at, raise_errors
 from shipcosim.options import RunOptions
-from shipcosim.scenario import Scenario, check_scenario, units_of, with_numbers
+from shipcosim.scenario import Scenario
 from shipcosim.scenario.osp import scenario_text
-from shipcosim.ssp import System, with_values
+from shipcosim.ssp import System
 from shipcosim.ssp.xml.markup import free_name
 from shipcosim.temporary import exchange, temporary_folder
 
@@ -54,9 +55,7 @@ def osp_files(
         With everything that OSP cannot express.
     """
     # Apply the scenario's values first: the files hold one system with numbers.
-    system = with_values(system, scenario.set, str(scenario.path or "scenario"))
-    raise_errors(check_scenario(scenario, system))
-    scenario = with_numbers(scenario, units_of(system))
+    system, scenario = prepared(system, scenario)
     job = Job(system, scenario, RunOptions())
     problems = [*unsupported_by_libcosim(job), *_values_problems(job)]
     raise_errors(problems)

@@ -30,6 +30,19 @@ SAME = 1e-12
 """Relative change of an input in an iteration below which it is taken for rounding."""
 
 
+def now_and_then(progress: CountProgress | None) -> CountProgress:
+    """What tells `progress`, if there is one, of the end and of steps some ten times a second."""
+    report_at = perf_counter()
+
+    def tell(done: int, total: int) -> None:
+        nonlocal report_at
+        if progress is not None and (done == total or perf_counter() >= report_at):
+            progress(done, total)
+            report_at = perf_counter() + BETWEEN_REPORTS
+
+    return tell
+
+
 class Failure(Exception):
     """A run cannot go on; `problem` tells why."""
 
@@ -203,7 +216,7 @@ class Master:
         first = grid.first
         last = grid.last
         steps_per_row = grid.steps_per_row
-        report_at = perf_counter()
+        tell = now_and_then(progress)
         k = meeting = first
         while k < last:
             if between is not None and k == meeting:
@@ -215,9 +228,7 @@ class Master:
             if k % steps_per_row == 0:
                 recorders.record()
             self._check_interrupt()
-            if progress is not None and perf_counter() >= report_at:
-                progress(k - first, last - first)
-                report_at = perf_counter() + BETWEEN_REPORTS
+            tell(k - first, last - first)
             # The step, then the exchange at its end: external values of the next time come with it.
             self._step(k, clock)
             for target, values in external:
@@ -229,8 +240,7 @@ class Master:
         # The final values are a row too.
         if last % steps_per_row == 0:
             recorders.record()
-        if progress is not None:
-            progress(last - first, last - first)
+        tell(last - first, last - first)
 
     def give_back(self) -> None:
         """Bring the FMUs to the state that the run has reached, if they are not there already."""

@@ -12,7 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.cosim.master.algorithm import BETWEEN_REPORTS, Between, Master, failed_step
+from shipcosim.cosim.master.algorithm import (
+    BETWEEN_REPORTS,
+    Between,
+    Master,
+    failed_step,
+    now_and_then,
+)
 from shipcosim.cosim.master.component import ComponentInstance
 from shipcosim.cosim.master.recorder import Recorders
 from shipcosim.cosim.master.signals import Exchange
@@ -194,7 +200,7 @@ class CompiledMaster(Master):
         k = first = grid.first
         last = grid.last
         steps = 16
-        report_at = perf_counter()
+        tell = now_and_then(progress)
         due = sorted(step for step in actions if step > first)
         meeting = last if between is None else first
         try:
@@ -210,9 +216,7 @@ class CompiledMaster(Master):
                     loop.take_modifiers()
                 try:
                     self._check_interrupt()
-                    if progress is not None and perf_counter() >= report_at:
-                        progress(k - first, last - first)
-                        report_at = perf_counter() + BETWEEN_REPORTS
+                    tell(k - first, last - first)
                 except KeyboardInterrupt:
                     # The loop records a row only as it steps, so the row of this step is missing.
                     if k % grid.steps_per_row == 0:
@@ -232,8 +236,7 @@ class CompiledMaster(Master):
             loop.count_in(self.profile)
         if last % grid.steps_per_row == 0:
             recorders.record()
-        if progress is not None:
-            progress(last - first, last - first)
+        tell(last - first, last - first)
 
     def _loop_for(self, grid, external, recorders) -> _CompiledLoop | str:
         """The loop of a run, or why Python steps all of it."""

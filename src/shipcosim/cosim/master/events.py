@@ -51,7 +51,7 @@ def changes(scenario: Scenario, plan: Plan, grid: TimeGrid) -> Iterator[SignalCh
         for action, name, value in event.changes if step >= grid.first else ():
             end = plan.system.split(name)
             # The name of an enumeration's item stands for its number.
-            items = plan.system.inputs[name].items if end[0] is None else plan.variable(end).items
+            items = plan.system.described(*end).items
             yield SignalChange(
                 step, action, end, items.get(value, value) if isinstance(value, str) else value
             )

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from shipcosim.cosim.master.component import ComponentInstance
-from shipcosim.cosim.master.plan import Plan
+from shipcosim.cosim.master.plan import Plan, label
 from shipcosim.cosim.slaves.interface_type import interface_type_of
 from shipcosim.cosim.slaves.model_exchange import ModelExchange
 from shipcosim.cosim.slaves.slave import OK
@@ -105,7 +105,7 @@ def _why_apart(connection: Connection, plan: Plan) -> str:
         return f"{' and '.join(eventful)} can have events of state (event indicators)"
     if slow := [str(name) for name in components if plan.multiples[name or ""] != 1]:
         return f"{' and '.join(slow)} steps with a step of its own"
-    if changed := [".".join(map(str, end)) for end in ends if end in plan.modified]:
+    if changed := [label(end) for end in ends if end in plan.modified]:
         return f"the run itself changes {' and '.join(changed)}"
     return "the connection adds up in its input, goes through a mapping, or back into its own component"
 

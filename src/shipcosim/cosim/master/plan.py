@@ -11,6 +11,7 @@ from shipcosim.errors import Problem, raise_errors
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import Connection, System, Variable
 from shipcosim.ssp.flatten.array_sizes import RESIZE, resized
+from shipcosim.ssp.read.structure import End, label
 from shipcosim.units import whole_steps
 
 KINDS = {"Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean", "Real": "Real"}
@@ -18,9 +19,6 @@ KINDS = {"Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean", "
 
 WIDE = ("UInt32", "Int64", "UInt64")
 """Types of FMI 3.0 for which the Integers of a system are held in 64 bits."""
-
-End = tuple[str | None, str]
-"""End of a connection: component (None: the outermost system) and variable."""
 
 
 @dataclass
@@ -121,11 +119,6 @@ class Plan:
 
 Rows = tuple[int, list[Variable]]
 """First row of a component among those of one kind, and its variables from there on."""
-
-
-def label(end: End) -> str:
-    """Name of a signal as users write it."""
-    return end[1] if end[0] is None else f"{end[0]}.{end[1]}"
 
 
 def make_plan(

@@ -67,21 +67,13 @@ def _changed(before: Component, component: Component) -> Values | None:
 
 def with_numbers(plan: Plan, system: System) -> Plan:
     """The plan for a system that differs from the planned one only in numbers."""
-
-    def start(end):
-        component, name = end
-        return (
-            system.inputs[name].start
-            if component is None
-            else system.components[component].start_value(name)
-        ) or 0
-
     layouts = {}
     for kind, layout in plan.layouts.items():
         # Values copied from another exchange have no start value.
         following = {row for row, _, _ in layout.type_changes}
         external = {
-            end: 0 if row in following else start(end) for row, end in enumerate(layout.external)
+            end: 0 if row in following else system.start_value(*end) or 0
+            for row, end in enumerate(layout.external)
         }
         layouts[kind] = replace(layout, external=external)
     return replace(plan, system=system, layouts=layouts)

@@ -1,6 +1,7 @@
 """Take a snapshot of a running system, and continue from one."""
 
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 
 from shipcosim.cosim.master.algorithm import Failure
 from shipcosim.cosim.master.component import ComponentInstance
@@ -192,7 +193,7 @@ def check_restored(
 def _stepped(component, exchanges, times):
     """Outputs of a component, as bytes, after each of some steps with the inputs as they are."""
     outputs = []
-    for time, end in zip(times[:-1], times[1:], strict=True):
+    for time, end in pairwise(times):
         component.write()
         component.step(float(time), float(end - time))
         component.read()

@@ -14,6 +14,7 @@ from shipcosim.cosim.master.plan import Plan, label
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System
+from shipcosim.ssp.read.structure import End
 
 Column = tuple[str, np.ndarray, str, str]
 """Name, (n,) values, unit and long name of a signal."""
@@ -33,6 +34,14 @@ def recorded_rows(plan: Plan, kind: str) -> tuple[list[int], list[int]]:
         if end not in plan.connected or end in plan.modified
     ]
     return external, inputs
+
+
+def recorded_ends(plan: Plan, kind: str) -> list[End]:
+    """Ends that a recorded row of a kind has: outputs, external values, inputs."""
+    layout = plan.layouts[kind]
+    external, inputs = recorded_rows(plan, kind)
+    names = list(layout.external)
+    return [*layout.outputs, *(names[i] for i in external), *(layout.inputs[i] for i in inputs)]
 
 
 def columns_of(
@@ -55,14 +64,8 @@ def columns_of(
     """
     values = {}
     for kind, arrays in recorded.items():
-        layout = plan.layouts[kind]
-        external, inputs = recorded_rows(plan, kind)
-        # The same order as the recorder's: outputs, external values, inputs.
-        names = list(layout.external)
-        ends = [*layout.outputs, *(names[i] for i in external), *(layout.inputs[i] for i in inputs)]
-        values |= zip(
-            ends, (a.astype(bool) if kind == "Boolean" else a for a in arrays), strict=True
-        )
+        columns = (a.astype(bool) if kind == "Boolean" else a for a in arrays)
+        values |= zip(recorded_ends(plan, kind), columns, strict=True)
     return [*_connectors(plan, values), *_variables(plan, values, n_rows)]
 
 

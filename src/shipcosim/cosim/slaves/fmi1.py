@@ -17,7 +17,6 @@ from shipcosim.cosim.slaves.messages import receive_messages
 from shipcosim.cosim.slaves.model_exchange import CONTINUOUS, EVENT, EventUpdate, ModelExchange
 from shipcosim.cosim.slaves.slave import (
     FAILED,
-    FATAL,
     OK,
     Call,
     RunEnded,
@@ -82,10 +81,6 @@ class Slave1(LibrarySlave):
         self.call("ResetSlave")
         self._messages.clear()
 
-    def terminate(self) -> None:
-        """End the simulation."""
-        self._is_lost = self._function(self._terminate)(self.component) == FATAL
-
     def _prepared(self, verb, kind, variables):
         """Buffer of the FMU's own type, sign of each variable, and the prepared call."""
         own = np.zeros(
@@ -121,7 +116,6 @@ class Model1(ModelExchange, Slave1):
     """An instance of an FMU of FMI 1.0 for model exchange: it has no modes, an event is a call."""
 
     NOMINALS = "GetNominalContinuousStates"
-    _terminate = "Terminate"
 
     def enter_initialisation(self, start_time: float, stop_time: float) -> None:
         """Initialise the FMU."""

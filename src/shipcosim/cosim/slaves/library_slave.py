@@ -48,6 +48,7 @@ class LibrarySlave(Slave):
 
     _prefix: str
     _form = "Slave"  # or "Model": which of FMPy's classes loads it
+    _terminate = "Terminate"
     _state_calls: Mapping[str, str]
     _fmu: Any  # FMPy's
     component: Any
@@ -182,7 +183,7 @@ class LibrarySlave(Slave):
 
     def terminate(self) -> None:
         """End the simulation. A failure here no longer matters."""
-        self._is_lost = self._function("Terminate")(self.component) == FATAL
+        self._is_lost = self._function(self._terminate)(self.component) == FATAL
 
     def get_strings(self, variables: Variables) -> list[str] | list[bytes]:
         """Values of String variables."""

@@ -9,7 +9,7 @@ from shipcosim.angles import wrap
 from shipcosim.learn.docking import fitting
 from shipcosim.learn.docking.fitting import tensor
 from shipcosim.learn.docking.inputs import Replay
-from shipcosim.learn.networks import Arrays, arrays_of
+from shipcosim.learn.networks import Arrays
 from shipcosim.learn.training import Epochs, Progress, repeatable
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.prediction import docking
@@ -149,12 +149,10 @@ def fit(
 
     # Train the members; the error is counted in metres, after the outputs are scaled.
     with repeatable(recipe.seed):
-        networks, epochs = fitting.fit(
+        weights, epochs = fitting.fit(
             (x, y), (held, tensor(choice[1])), loss, len(sizes), recipe, progress
         )
-    arrays = {"mean": mean, "std": std, "scale": scale()}
-    for number, network in enumerate(networks, 1):
-        arrays |= arrays_of(network, f"member{number}")
+    arrays = {"mean": mean, "std": std, "scale": scale()} | weights
     # Largest features seen in training: beyond these the predictor trusts its ensemble less.
     limits = np.append(abs((found[0] - mean) / std).reshape(-1, len(mean)).max(axis=0), np.inf)
     # The same for the spread between members, which needs the trained members.

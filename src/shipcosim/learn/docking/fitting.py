@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import torch
 
-from shipcosim.learn.networks import Recurrent
+from shipcosim.learn.networks import Arrays, Recurrent, arrays_of
 from shipcosim.learn.training import BestWeights, Descent, Epochs, Progress
 
 Loss = Callable[[torch.Tensor, torch.Tensor], torch.Tensor]
@@ -20,7 +20,7 @@ def fit(
     outputs: int,
     recipe: Any,
     progress: Progress,
-) -> tuple[list[Recurrent], Epochs]:
+) -> tuple[Arrays, Epochs]:
     """Train an ensemble; call `repeatable` around it.
 
     Parameters
@@ -38,11 +38,11 @@ def fit(
 
     Returns
     -------
-    list of Recurrent, and list of dict
-        Networks; losses by member and epoch.
+    dict of str to array, and list of dict
+        Weights of the networks, ``member1`` the first; losses by member and epoch.
     """
     # Members differ by their initial weights and the order of mini-batches.
-    networks = []
+    weights = {}
     history = []
     for member in range(recipe.members):
 
@@ -56,8 +56,8 @@ def fit(
         history += [
             {"member": member + 1.0, "epoch": k + 1.0, **one} for k, one in enumerate(losses)
         ]
-        networks.append(network)
-    return networks, history
+        weights |= arrays_of(network, f"member{member + 1}")
+    return weights, history
 
 
 def _fit_one(network, found, choice, loss, recipe, progress):

@@ -14,7 +14,7 @@ import torch
 from shipcosim.learn.docking import fitting
 from shipcosim.learn.docking.fitting import tensor
 from shipcosim.learn.docking.inputs import Replay
-from shipcosim.learn.networks import Arrays, arrays_of
+from shipcosim.learn.networks import Arrays
 from shipcosim.learn.training import Epochs, Progress, repeatable
 from shipcosim.models.prediction import paper_iii
 
@@ -150,11 +150,9 @@ def fit(
             progress(total + done, 2 * total)
 
         # Train the full ensemble with the best settings.
-        networks, epochs = fitting.fit(trained, held, squares, outputs, best, tell)
+        weights, epochs = fitting.fit(trained, held, squares, outputs, best, tell)
     arrays = {"mean": mean, "std": std, "target_mean": target_mean, "target_std": target_std}
-    for number, network in enumerate(networks, 1):
-        arrays |= arrays_of(network, f"member{number}")
-    return arrays, epochs, tried
+    return arrays | weights, epochs, tried
 
 
 def expected(arrays: Mapping[str, np.ndarray], found: np.ndarray) -> np.ndarray:

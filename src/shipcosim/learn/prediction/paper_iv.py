@@ -7,6 +7,7 @@ Skulstad, Data-based modelling of ships for motion prediction and control alloca
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import torch
@@ -170,7 +171,7 @@ def fit(
 def first_weights(sizes: Sequence[int], members: int) -> list[torch.Tensor]:
     """Initial weights: uniform as by Glorot and Bengio, biases 0."""
     found = []
-    for n, m in zip(sizes[:-1], sizes[1:], strict=True):
+    for n, m in pairwise(sizes):
         # Glorot limit sqrt(6/(n + m)): keeps the variance from layer to layer.
         limit = (6.0 / (n + m)) ** 0.5
         found += [limit * (2.0 * torch.rand(members, n, m, dtype=torch.float64) - 1.0)]

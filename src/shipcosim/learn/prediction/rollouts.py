@@ -1,6 +1,7 @@
 """Records of many ships in one array, and predictions for all of them in torch or NumPy."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -133,7 +134,7 @@ def followed(
     now = mapped(lambda array: array[rows[0]], everything)
     record = own_record.begin(now, learned=learned, hull=ship.hull)
     found = []
-    for before, row in zip(rows[:-1], rows[1:], strict=True):
+    for before, row in pairwise(rows):
         now = mapped(lambda array, row=row: array[row], everything)
         record = own_record.step(
             record, now, float(row - before), learned=learned, hull=ship.hull, wind=ship.wind

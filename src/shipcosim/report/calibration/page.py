@@ -13,16 +13,16 @@ from shipcosim.report.calibration.words import (
 from shipcosim.report.diagnosis.by_log import error_figures, error_table
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import rounded, shade
-from shipcosim.report.theme.numbers import metres
+from shipcosim.report.theme.numbers import metres, signed
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import (
     Figure,
     FigurePage,
     Figures,
     KeyFigure,
-    Link,
     Table,
     facts_of,
+    links_of,
 )
 
 SECTIONS = {"moved": "Numbers", "errors": "Errors", "logs": "Logs", "untold": "Not told"}
@@ -69,7 +69,7 @@ def _page(ship: CalibratedShip) -> CalibrationPage:
         title=f"Calibration of {reference.system}",
         facts=facts_of(facts),
         outcome=outcome(ship),
-        links=tuple(Link(anchor, title) for anchor, title in SECTIONS.items()),
+        links=links_of(SECTIONS),
         refusals=ship.refusals,
         remarks=ship.remarks,
         key_figures=_key_figures(ship),
@@ -93,7 +93,7 @@ def _key_figures(ship: CalibratedShip) -> tuple[KeyFigure, ...]:
     most = max(ship.reference.numbers, key=lambda number: abs(moved(number)))
     found = [
         KeyFigure(
-            f"{moved(most):+.1f}".replace("-", "−"),
+            signed(moved(most)),
             f"tolerances: most that a number moved, {most.name}",
         )
     ]

@@ -6,7 +6,7 @@ from shipcosim.diagnose.calibration_pipeline import CalibratedShip
 from shipcosim.diagnose.reference.log_errors import LogErrors
 from shipcosim.diagnose.reference.reference import KnownNumber
 from shipcosim.report.diagnosis.by_log import error_table
-from shipcosim.report.theme.numbers import metres, plain
+from shipcosim.report.theme.numbers import metres, plain, signed
 from shipcosim.report.theme.views import Block, Outcome, Table
 
 MOST_ROWS = 12
@@ -62,7 +62,7 @@ def moved_rows(ship: CalibratedShip) -> list[tuple[str, ...]]:
         unit = "" if number.unit == "1" else f" {number.unit}"
         before = f"{plain(number.nominal, 4)} ± {plain(number.tolerance, 2)}{unit}"
         after = f"{plain(number.estimate, 4)} ± {plain(number.std, 2)}{unit}"
-        rows.append((number.name, before, after, f"{moved(number):+.1f}".replace("-", "−")))
+        rows.append((number.name, before, after, signed(moved(number))))
     return rows
 
 

@@ -38,9 +38,7 @@ def capability_figures(capability: Capability) -> Figures:
     )
     # Every failure as a curve of its own.
     each = tuple(
-        _curve(
-            case.name, row, palette.CYCLE[k % len(palette.CYCLE)], dash="solid" if k == 0 else "dot"
-        )
+        _curve(case.name, row, palette.in_turn(k), dash="solid" if k == 0 else "dot")
         for k, (case, row) in enumerate(zip(capability.cases, numbers[LEVEL_1], strict=True))
     )
     note = "DP capability number over the direction that the weather comes from; bow up, 90° from starboard."

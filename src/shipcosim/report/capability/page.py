@@ -16,10 +16,10 @@ from shipcosim.report.theme.views import (
     FigurePage,
     Figures,
     KeyFigure,
-    Link,
     Outcome,
     Table,
     facts_of,
+    links_of,
 )
 
 SECTIONS = {
@@ -91,7 +91,7 @@ def page_of(capability: Capability) -> CapabilityPage:
         title=f"Static DP capability of {vessel.name}",
         facts=facts_of(facts),
         outcome=_outcome(capability),
-        links=tuple(Link(anchor, title) for anchor, title in SECTIONS.items()),
+        links=links_of(SECTIONS),
         key_figures=_key_figures(capability),
         plots=plots,
         loads=loads,

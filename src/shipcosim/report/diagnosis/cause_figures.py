@@ -12,6 +12,7 @@ from shipcosim.report.diagnosis.estimates import shown_unit
 from shipcosim.report.diagnosis.words import course_of, title, title_of
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import TIME, limit, line, rounded, shade
+from shipcosim.report.theme.numbers import finite
 from shipcosim.report.theme.views import Figure, PlotlyDict
 
 CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw rate")
@@ -166,7 +167,7 @@ def whiteness_figures(evidence: Evidence) -> tuple[Figure, ...]:
     """Autocorrelation of the innovations before and after, on one scale."""
     # One scale for both, at least as wide as the band of white noise.
     every = np.stack(list(evidence.whiteness.values()))
-    every = every[np.isfinite(every)]
+    every = finite(every)
     between = (1.05 * float(every.min(initial=-0.19)), 1.05 * float(every.max(initial=0.19)))
     return tuple(
         _whiteness_figure(WHITENESS[name], values, evidence.step, evidence.rows, between)

@@ -1,6 +1,7 @@
 """Figures of the missing force: over time, against heading, against the wind."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,13 +67,13 @@ def stretches(time: NDArray, most: int = MOST_POINTS) -> tuple[NDArray, NDArray]
     """Middle times of averaged stretches, and their edges in rows."""
     # At most so many points, each the mean of its stretch.
     edges = np.unique(np.linspace(0, time.size, min(most, time.size) + 1).round().astype(int))
-    return np.array([time[a:b].mean() for a, b in zip(edges[:-1], edges[1:], strict=True)]), edges
+    return np.array([time[a:b].mean() for a, b in pairwise(edges)]), edges
 
 
 def averaged(series: DataArray, edges: NDArray) -> NDArray:
     """Means over stretches of rows. [kN]"""
     values = 1e-3 * series.values
-    pairs = zip(edges[:-1], edges[1:], strict=True)
+    pairs = pairwise(edges)
     return np.array([values[a:b].mean() for a, b in pairs])
 
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from shipcosim.diagnose.explanation.summary import FormNumber, LoadForm
+from shipcosim.errors import capitalised
 from shipcosim.report.theme.numbers import percent, plain
 from shipcosim.report.theme.views import Table
 
@@ -26,9 +27,7 @@ def form_section(form: LoadForm) -> FormSection:
         return FormSection("Numbers of the ship lie beyond their tolerances.", Table(()), numbers)
     # How unusual the difference is, compared with other ships.
     scale = SCALES.get(form.scale, f"{form.scale:g} times")
-    functions = tuple(
-        (name[0].upper() + name[1:], percent(size)) for name, size in form.differs.items()
-    )
+    functions = tuple((capitalised(name), percent(size)) for name, size in form.differs.items())
     return FormSection(
         f"Over place, angle and speed the loads on this ship have another shape than the model's. They differ {scale} "
         "ships usually do from their models. Causes were sought beside that.",
@@ -43,7 +42,7 @@ def _row(number: FormNumber) -> tuple[str, str, str, str, str]:
     what = f"{thruster}: {number.what}" if of_form else number.what or number.number
     unit = "" if number.unit == "1" else number.unit
     return (
-        what[0].upper() + what[1:],
+        capitalised(what),
         plain(number.model),
         plain(number.estimate),
         f"± {plain(number.std, 2)}",

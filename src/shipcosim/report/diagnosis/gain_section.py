@@ -6,6 +6,7 @@ from typing import Any
 
 from shipcosim.diagnose.craft.learned import LearnedCraft
 from shipcosim.diagnose.result import Diagnosis
+from shipcosim.errors import capitalised
 from shipcosim.report.diagnosis.prediction_errors import (
     MODELS,
     condition_table,
@@ -154,5 +155,5 @@ def craft_table(craft: LearnedCraft | None) -> Table:
         learned = f"{plain(one.value)} ± {plain(one.std, 2)} {unit}"
         larger = one.gain - 1.0
         without = f"+ {percent(larger)}" if craft.errors and larger >= 0.005 else ""
-        rows.append((number.name[0].upper() + number.name[1:], given, learned, without))
+        rows.append((capitalised(number.name), given, learned, without))
     return Table(tuple(rows), head=_LEARNED, tight=(1, 2, 3))

@@ -12,6 +12,7 @@ from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.diagnose.validation.split import HORIZONS
+from shipcosim.errors import capitalised
 from shipcosim.report.diagnosis.clauses import filled
 from shipcosim.report.diagnosis.estimates import amount, plus_minus
 from shipcosim.report.theme.numbers import metres, percent, plain, span
@@ -30,7 +31,7 @@ def title(cause: str, component: str | None = None) -> str:
     'Thrust loss of port'
     """
     text = cause.replace("_", " ")
-    return text[:1].upper() + text[1:] + (f" of {component}" if component else "")
+    return capitalised(text) + (f" of {component}" if component else "")
 
 
 def title_of(one: Finding | Candidate | SizeEstimate | CauseGain) -> str:

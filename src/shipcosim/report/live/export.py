@@ -7,13 +7,13 @@ from collections.abc import Callable
 from shipcosim.cosim import simulate
 from shipcosim.cosim.interactive import changeable_inputs
 from shipcosim.cosim.master.plan import Plan, make_plan
+from shipcosim.cosim.systems import prepared
 from shipcosim.cosim.webassembly import make_module
-from shipcosim.errors import raise_errors
 from shipcosim.options import CountProgress, RunOptions
 from shipcosim.report.live.page import render_live
-from shipcosim.scenario import Scenario, check_scenario, units_of, with_numbers
+from shipcosim.scenario import Scenario
 from shipcosim.series import write_file
-from shipcosim.ssp import AnyPath, System, with_values
+from shipcosim.ssp import AnyPath, System
 
 FIRST_ROWS = 3
 """Rows of the run from which the scene is made: which signals belong to one ship shows where they move."""
@@ -44,13 +44,6 @@ def live_page(system: System, scenario: Scenario, progress: CountProgress | None
 def server_page(system: System, scenario: Scenario) -> str:
     """The page of a system that a server runs, as HTML. Arguments as of `live_page`; raises ShipcosimError."""
     return _rendered(system, scenario, lambda plan, numbers: b"")
-
-
-def prepared(system: System, scenario: Scenario) -> tuple[System, Scenario]:
-    """The system with the scenario's start values, and the scenario in the units of the signals; both checked."""
-    system = with_values(system, scenario.set, str(scenario.path or "scenario"))
-    raise_errors(check_scenario(scenario, system))
-    return system, with_numbers(scenario, units_of(system))
 
 
 def _rendered(

@@ -150,7 +150,7 @@ def _header(written: Scenario) -> JsonObject:
 
 def _signals(plan: Plan) -> Iterator[tuple[str, JsonObject]]:
     """Every exchanged signal: place of its value, and description."""
-    fed = {connection.target for connection in plan.system.connections}
+    fed = plan.system.feeding
     for number, kind in enumerate(kinds_of(plan)):
         layout = plan.layouts[kind]
         for side, ends in enumerate((layout.outputs, layout.inputs)):

@@ -10,7 +10,7 @@ from xarray import Dataset
 from shipcosim.diagnose.finding import Finding
 from shipcosim.report.diagnosis.words import title_of, where
 from shipcosim.report.notebook.card import Card
-from shipcosim.report.theme.numbers import plain
+from shipcosim.report.theme.numbers import finite, plain
 from shipcosim.report.theme.views import Block, Fact, Outcome, Table
 
 
@@ -37,7 +37,7 @@ def log_card(
     """
     time = table["time"].values
     span = f"{len(time)} rows, {plain(float(np.nanmin(time)))} to {plain(float(np.nanmax(time)))} s"
-    steps = np.diff(time[np.isfinite(time)])
+    steps = np.diff(finite(time))
     facts = (Fact("Rows", span), Fact("Usual step", f"{plain(float(np.median(steps)))} s"))
     found = tuple((title_of(one), where(one), one.sentence) for one in faults)
     return Card(
@@ -69,11 +69,9 @@ def _channels(table: Dataset) -> tuple[tuple[str, ...], ...]:
     rows = []
     for name, variable in table.data_vars.items():
         values = np.asarray(variable.values, float)
-        finite = values[np.isfinite(values)]
-        ends = (
-            (plain(float(finite.min())), plain(float(finite.max()))) if len(finite) else ("–", "–")
-        )
-        lost = 1.0 - len(finite) / max(len(values), 1)
+        known = finite(values)
+        ends = (plain(float(known.min())), plain(float(known.max()))) if len(known) else ("–", "–")
+        lost = 1.0 - len(known) / max(len(values), 1)
         rows.append(
             (
                 str(name),

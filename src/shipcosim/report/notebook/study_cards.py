@@ -15,7 +15,7 @@ from shipcosim.report.calibration import words as calibration
 from shipcosim.report.capability.page import page_of as capability_page
 from shipcosim.report.diagnosis.track_figures import error_rows
 from shipcosim.report.notebook.card import Card
-from shipcosim.report.replay.page import replay_outcome
+from shipcosim.report.replay.page import remarks_of, replay_outcome
 from shipcosim.report.sea_trials import words as sea_trials
 from shipcosim.report.theme.views import Block, Fact, Outcome, Table
 
@@ -92,16 +92,13 @@ def _agreement(found: Comparison, others: list[str]) -> Outcome:
 
 def replay_card(found: LogReplay, name: str, draw: Callable[[], str]) -> Card:
     """Errors of the predictions and the track, which `draw` gives as SVG."""
-    faults = tuple(
-        f"{fault.label}: {fault.note}" if fault.note else fault.label for fault in found.faults
-    )
     return Card(
         title=f"Replay of {name}",
         facts=(Fact("Predictions", f"{found.tracks.horizon:.0f} s each"),),
         outcome=replay_outcome(found),
         blocks=(
             Block("Errors, root mean square", error_rows(errors_of(found.tracks))),
-            Block("Remarks", lines=(*faults, *found.remarks)),
+            Block("Remarks", lines=remarks_of(found)),
         ),
         draw=draw,
     )

@@ -10,6 +10,7 @@ from shipcosim.report.study.page import page_of
 from shipcosim.report.study.statistics import distribution
 from shipcosim.report.study.tables import QUANTITY, StudyTables, columns_of
 from shipcosim.report.study.words import is_failed
+from shipcosim.report.theme.numbers import finite
 from shipcosim.report.theme.views import Block, Table
 
 MOST_ROWS = 12
@@ -50,8 +51,8 @@ def _picture(tables: StudyTables) -> str:
     columns = columns_of(runs, tables.about.get("columns", ()))
     # A quantity that is the same in all runs has no distribution.
     for quantity in columns.values():
-        finite = quantity.values[np.isfinite(quantity.values)] if quantity.is_number else []
-        if quantity.role == QUANTITY and len(finite) and np.ptp(finite):
+        known = finite(quantity.values) if quantity.is_number else []
+        if quantity.role == QUANTITY and len(known) and np.ptp(known):
             return distribution_svg(
                 f"distribution of {quantity.name}",
                 f"Share of runs up to each {quantity.titled}",

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from xarray import Dataset
 
 from shipcosim.angles import wrap_series
+from shipcosim.report.theme.numbers import finite
 from shipcosim.report.theme.packing import LARGEST
 from shipcosim.scenario import Expectation, Verdict
 from shipcosim.scenario.judge import rows_of
@@ -94,7 +95,7 @@ def _band_of(part: Dataset, signal: str, verdict: Verdict, minus: str | None) ->
             lower = lower + turn
             upper = upper + turn
     # An open side is drawn to a little beyond the curve: it has no limit of its own.
-    least, most = (pick(drawn[np.isfinite(drawn)], initial=0.0) for pick in (np.min, np.max))
+    least, most = (pick(finite(drawn), initial=0.0) for pick in (np.min, np.max))
     pad = 0.1 * (most - least)
     lower = np.where(np.isfinite(lower), lower, np.fmin(least, upper) - pad)
     upper = np.where(np.isfinite(upper), upper, np.fmax(most, lower) + pad)

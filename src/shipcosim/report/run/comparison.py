@@ -222,6 +222,7 @@ def _page(pair: Pair, found: Sequence[Difference]) -> RunPage:
         for table, name, shift in zip(pair.tables, pair.names, (0.0, pair.shift), strict=True)
         if (run := make_run(table, (), name, shift)) is not None
     ]
+    unlike = without_difference(pair)
     sections = constants_as_words(_sections(pair), merged)
     choice = [str(name) for name in merged.data_vars]
     facts = []
@@ -240,10 +241,10 @@ def _page(pair: Pair, found: Sequence[Difference]) -> RunPage:
     return RunPage(
         title=f"{pair.names[0]} and {pair.names[1]}",
         facts=tuple(facts),
-        outcome=_outcome(pair, found),
+        outcome=_outcome(pair, found, unlike),
         links=links(runs, sections),
         data=data,
-        remarks=tuple(_remarks(pair)),
+        remarks=tuple(_remarks(pair, unlike)),
         weather=(),
         expectations=(),
         key_figures=_table(found),
@@ -300,10 +301,10 @@ def _doubled(panel: Panel, pair: Pair) -> Panel | None:
     return replace(panel, lines=tuple(both), bands=())
 
 
-def _outcome(pair: Pair, found: Sequence[Difference]) -> Outcome:
+def _outcome(pair: Pair, found: Sequence[Difference], unlike: Sequence[str]) -> Outcome:
     """One sentence: largest distance of the ships, else the signal that differs most."""
     common = sum(1 for name in pair.shown[0].data_vars if name in pair.shown[1])
-    if not found and (unlike := without_difference(pair)):
+    if not found and unlike:
         text = f"{len(unlike)} of {common} signals have a number in one run only"
         return Outcome("plain", "DIFFER", f"{text}, at some times: {shortened(unlike)}.")
     if not found:
@@ -354,7 +355,7 @@ CLOSE = 1e-8
 """Times are rounded to nanoseconds to be common. [s]"""
 
 
-def _remarks(pair: Pair) -> list[str]:
+def _remarks(pair: Pair, unlike: Sequence[str]) -> list[str]:
     said = []
     first, second = pair.names
     # Runs without common times were moved; the reader must know.
@@ -370,7 +371,7 @@ def _remarks(pair: Pair) -> list[str]:
     for name, own, other in ((first, *pair.shown), (second, *pair.shown[::-1])):
         if alone := [str(signal) for signal in own.data_vars if signal not in other]:
             said.append(f"Only in {name}: {shortened(alone)}.")
-    if unlike := without_difference(pair):
+    if unlike:
         said.append(f"A number in one run only, at some times: {shortened(unlike)}.")
     return said
 

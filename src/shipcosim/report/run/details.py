@@ -7,6 +7,7 @@ from typing import Any
 
 from xarray import Dataset
 
+from shipcosim.errors import capitalised
 from shipcosim.report.theme.views import Table
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System
@@ -110,9 +111,8 @@ def _unit(system: System | None, component: str, name: str) -> str | None:
 
 
 def _detail(title: str, rows: Iterable[tuple[Any, Any]]) -> Detail:
-    words = title.replace("_", " ")
     return Detail(
-        words[:1].upper() + words[1:],
+        capitalised(title.replace("_", " ")),
         Table(tuple((str(name), _text(value)) for name, value in rows)),
     )
 

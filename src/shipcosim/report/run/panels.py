@@ -147,10 +147,7 @@ def _panel(
 
 def _coloured(labels: Mapping[str | None, str]) -> list[Line]:
     """Lines of equal rank, each in its colour; `labels` maps signals to labels."""
-    return [
-        Line(s, label, palette.CYCLE[k % len(palette.CYCLE)])
-        for k, (s, label) in enumerate(labels.items())
-    ]
+    return [Line(s, label, palette.in_turn(k)) for k, (s, label) in enumerate(labels.items())]
 
 
 def _first(names: Iterable[str]) -> str | None:
@@ -286,7 +283,7 @@ def _allocation(shown: Dataset, roles: Roles) -> list[Panel]:
 def _angles(units: Sequence[DrawnThruster]) -> list[Line]:
     lines = []
     for k, unit in enumerate(units):
-        colour = palette.CYCLE[k % len(palette.CYCLE)]
+        colour = palette.in_turn(k)
         lines.append(Line(unit.azimuth_command, f"{unit.name} commanded", colour, "dot"))
         lines.append(Line(unit.azimuth, unit.name, colour))
     return lines

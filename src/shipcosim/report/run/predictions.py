@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from shipcosim.angles import unwrap_series, wrap_series
 from shipcosim.report.run.roles import Roles, find_roles, join
+from shipcosim.report.theme.numbers import finite
 from shipcosim.report.theme.packing import LEVELS, packed_series
 from shipcosim.series import write_file
 
@@ -267,7 +268,7 @@ def summarise(predictions: pandas.DataFrame) -> list[PredictionSummary]:
                 float(np.sqrt(np.mean(north**2 + east**2))),
                 float(np.sqrt(np.mean(heading**2))),
                 *(
-                    float(np.mean(one[np.isfinite(one)])) if np.isfinite(one).any() else np.nan
+                    float(np.mean(finite(one))) if np.isfinite(one).any() else np.nan
                     for one in (place, width)
                 ),
             )

@@ -25,6 +25,7 @@ from shipcosim.report.run.vessels import (
     start_values,
 )
 from shipcosim.report.theme.display import is_constant
+from shipcosim.report.theme.numbers import extent
 from shipcosim.report.theme.packing import LARGEST, LEVELS, packed_series
 from shipcosim.report.theme.views import JsonObject
 from shipcosim.scenario import Verdict
@@ -225,8 +226,7 @@ def _packed(values: NDArray, resolution: float) -> float | JsonObject | list[flo
     if is_constant(values):
         return float(values[0])
     # Steps as fine as the resolution asks, or a share of the range.
-    finite = values[np.isfinite(values)]
-    span = float(np.ptp(finite)) if len(finite) else 0.0
+    span = extent(values)
     return packed_series(values, max(LEVELS, span / resolution))
 
 
@@ -334,7 +334,7 @@ def _flows(table: Dataset, columns: _Columns, goes_on: bool) -> list[JsonObject]
     found: list[JsonObject] = []
     # Flows that are zero all along are not shown.
     for what, (sense, sign) in FLOWS.items():
-        parts = _velocity(table, roles.anywhere, what, sense, sign)
+        parts = _velocity(columns, roles.anywhere, what, sense, sign)
         if parts and (goes_on or np.nanmax(np.hypot(*(v for v, _ in parts)), initial=0.0) > 0.0):
             names = [
                 columns.put(f"{what} {way}", *part)
@@ -382,13 +382,14 @@ def _buses(columns: _Columns) -> list[JsonObject]:
 
 
 def _velocity(
-    table: Dataset, anywhere: Any, what: str, sense: str, sign: float
+    columns: _Columns, anywhere: Any, what: str, sense: str, sign: float
 ) -> list[tuple[NDArray, Recipe]]:
     """Velocity north and east, and how it follows: by its components, else by speed and direction. [m/s]"""
     # Components are exact; read them first.
+    table = columns.table
     parts = [_first_in(table, anywhere(f"{what}_{way}")) for way in ("north", "east")]
     read = [
-        (values, Recipe(name, *(conversion_to(table, name, "m/s") or (1.0, 0.0))))
+        (values, Recipe(name, *columns.conversion_of(name, "m/s")))
         for name in parts
         if name is not None and (values := in_unit(table, name, "m/s")) is not None
     ]
@@ -401,7 +402,7 @@ def _velocity(
     size, direction = in_unit(table, speed, "m/s"), in_unit(table, angle, "rad")
     if size is None or direction is None:
         return []
-    factor, _ = conversion_to(table, speed, "m/s") or (1.0, 0.0)
+    factor, _ = columns.conversion_of(speed, "m/s")
     recipe = Recipe(speed, sign * factor, 0.0, angle)
     return [
         (sign * size * np.cos(direction), recipe._replace(trigonometric="cos")),

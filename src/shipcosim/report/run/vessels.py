@@ -15,6 +15,7 @@ from shipcosim.errors import ShipcosimError
 from shipcosim.models.core.tables import columns
 from shipcosim.report.run.roles import find_roles, join
 from shipcosim.report.theme.display import series_in
+from shipcosim.report.theme.numbers import finite
 from shipcosim.series import conversion
 
 Pair = tuple[float, float]
@@ -234,7 +235,7 @@ def _apart(table: Dataset, pose: Pose, other: Pose) -> bool:
         for a, b in zip(pose[:2], other[:2], strict=True)
     ]
     distance = np.hypot(*(np.subtract(a, b) for a, b in gaps if a is not None and b is not None))
-    distance = distance[np.isfinite(distance)]
+    distance = finite(distance)
     return bool(len(distance) and np.max(distance) > 0.0 and np.median(distance) > SAME_PLACE)
 
 

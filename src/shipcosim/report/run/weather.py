@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from xarray import Dataset
 
 from shipcosim.report.run.roles import Roles
@@ -39,7 +38,7 @@ class Flow:
 
 def weather(shown: Dataset, roles: Roles) -> tuple[Flow, ...]:
     """Wind, current and waves of the run, where there are any."""
-    found = []
+    flows = []
     for what, sense in [("wind", "from"), ("current", "to")]:
         if f"{what} speed" in shown:
             # The mean of the environment is shown where the ship
@@ -49,43 +48,23 @@ def weather(shown: Dataset, roles: Roles) -> tuple[Flow, ...]:
             ]
             known = roles.harbour is None and None not in means
             size, angle = means if known else (f"{what} speed", f"{what} {sense}")
-            # A flow that is zero all along is not shown.
-            if np.nanmax(shown[size].values) > 0.0:
-                found.append(
-                    Flow(
-                        what,
-                        _span(shown[size].values),
-                        "m/s",
-                        _mean_direction(shown[angle].values),
-                        sense,
-                    )
-                )
+            flows.append((what, size, "m/s", angle, sense))
     # Waves need height and direction.
     height, source = (
         roles.signal(roles.environment, f"wave_{part}") for part in ("height", "from")
     )
-    if height in shown and source in shown and np.nanmax(shown[height].values) > 0.0:
-        found.append(
-            Flow(
-                "waves",
-                _span(shown[height].values),
-                "m",
-                _mean_direction(shown[source].values),
-                "from",
-            )
-        )
+    if height in shown and source in shown:
+        flows.append(("waves", height, "m", source, "from"))
+    found = []
+    for what, size, unit, angle, sense in flows:
+        # A flow that is zero all along is not shown.
+        values = shown[size].values
+        if np.nanmax(values) > 0.0:
+            # A value, or from least to largest where it changes.
+            least, largest = (f"{pick(values):.2g}" for pick in (np.nanmin, np.nanmax))
+            text = least if least == largest else f"{least}–{largest}"
+            # Mean of unit vectors: a plain mean fails across north.
+            way = np.radians(shown[angle].values)
+            mean = np.degrees(np.arctan2(np.nanmean(np.sin(way)), np.nanmean(np.cos(way))))
+            found.append(Flow(what, text, unit, float(mean % 360.0), sense))
     return tuple(found)
-
-
-def _span(values: NDArray) -> str:
-    """A value, or from least to largest where it changes."""
-    least, largest = (f"{pick(values):.2g}" for pick in (np.nanmin, np.nanmax))
-    return least if least == largest else f"{least}–{largest}"
-
-
-def _mean_direction(degrees: NDArray) -> float:
-    # Mean of unit vectors: a plain mean fails across north.
-    angle = np.radians(degrees)
-    return float(
-        np.degrees(np.arctan2(np.nanmean(np.sin(angle)), np.nanmean(np.cos(angle)))) % 360.0
-    )

@@ -8,6 +8,7 @@ import numpy as np
 from xarray import Dataset
 
 from shipcosim.report.run.vessels import Pair
+from shipcosim.report.theme.numbers import finite
 
 NEAR = 0.5  # of a limit: a run that stays farther from it is drawn without it, since its curves would be flat lines
 BESIDE = 45.0  # deg: this far beyond the angles of the curves sectors are drawn
@@ -92,5 +93,5 @@ def angle_zones(
 def _span(shown: Dataset, signals: Sequence[str | None]) -> Pair | None:
     """Least and largest value of the curves."""
     values = np.concatenate([shown[name].values for name in signals if name in shown] or [[]])
-    known = values[np.isfinite(values)]
+    known = finite(values)
     return (float(known.min()), float(known.max())) if len(known) else None

@@ -18,9 +18,9 @@ from shipcosim.report.theme.views import (
     FigurePage,
     Figures,
     KeyFigure,
-    Link,
     Table,
     facts_of,
+    links_of,
 )
 
 SECTIONS = {
@@ -77,9 +77,7 @@ def _page(found: SeaTrialStudy, facts: dict[str, str]) -> SeaTrialPage:
         title="Sea trials",
         facts=facts_of(facts),
         outcome=outcome(found),
-        links=tuple(
-            Link(anchor, title) for anchor, title in SECTIONS.items() if there.get(anchor, True)
-        ),
+        links=links_of(SECTIONS, there),
         key_figures=_key_figures(found),
         figures=figures,
         tracks=tracks,

@@ -8,7 +8,8 @@ from shipcosim.diagnose.experiment.design import Separation
 from shipcosim.diagnose.sea_trials.evidence import SetOfCauses
 from shipcosim.diagnose.sea_trials.features import FEATURES
 from shipcosim.diagnose.sea_trials.study import SeaTrialStudy, estimates
-from shipcosim.report.theme.numbers import plain
+from shipcosim.errors import capitalised
+from shipcosim.report.theme.numbers import plain, signed
 from shipcosim.report.theme.views import Block, Outcome, Table
 
 _SETS = 8  # in the table
@@ -25,8 +26,7 @@ def sentence(found: SeaTrialStudy) -> str:
         return (
             "The model sails these trials as the ship did, within the repeatability of such trials."
         )
-    best = said(found.best.label)
-    best = f"{best[0].upper()}{best[1:]}"
+    best = capitalised(said(found.best.label))
     if found.verdict == "named":
         return f"{best} fits best where the model sails differently from the ship."
     count = len(found.rivals)
@@ -59,10 +59,7 @@ def sets_table(found: SeaTrialStudy) -> Table:
     shown = [one for one in found.ranking if one.plausible and one.hypotheses][:_SETS]
     shown += [one for one in found.ranking if not one.hypotheses]
     first = found.best.evidence
-    rows = [
-        (said(one.label), told(one), f"{one.evidence - first:+.1f}".replace("-", "−"))
-        for one in shown
-    ]
+    rows = [(said(one.label), told(one), signed(one.evidence - first)) for one in shown]
     return Table(rows, ("Causes", "Estimates", "Nats"), (2,))
 
 
@@ -133,9 +130,10 @@ def next_steps(found: SeaTrialStudy) -> tuple[str, ...]:
             f"{said(a)} from {said(b)} ({_telling(found, record, (a, b))})"
             for a, b in one.separates
         ]
-        manoeuvre = f"{one.manoeuvre[0].upper()}{one.manoeuvre[1:]}"
         tells = f"It tells {', '.join(pairs)}."
-        steps.append(f"{manoeuvre}, to both sides, {one.minutes:.0f} minutes. {tells}")
+        steps.append(
+            f"{capitalised(one.manoeuvre)}, to both sides, {one.minutes:.0f} minutes. {tells}"
+        )
     told_apart = {pair for one in found.prescriptions for pair in one.separates}
     left = [pair for pair in found.pairs if pair not in told_apart]
     return (

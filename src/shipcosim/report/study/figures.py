@@ -22,6 +22,7 @@ from shipcosim.report.study.statistics import distribution, pareto_front
 from shipcosim.report.study.tables import Column, StudyTables
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import evenly, line, polar_axes, rounded
+from shipcosim.report.theme.numbers import finite
 from shipcosim.report.theme.views import Figure, PlotlyDict
 from shipcosim.sweep.study_model import View
 
@@ -226,9 +227,7 @@ def bars(tables: StudyTables, view: View) -> Figure:
     category = frame.column(view.category)
     values = [frame.column(name) for name in view.value]
     # Levels of a factor, else the different numbers.
-    every = category.levels or tuple(
-        np.unique(category.values[np.isfinite(category.values)]).tolist()
-    )
+    every = category.levels or tuple(np.unique(finite(category.values)).tolist())
     levels = every[: view.most]
     # With several values the colours tell these apart, not series.
     has_several = len(values) > 1
@@ -345,7 +344,7 @@ def pareto(tables: StudyTables, view: View) -> Figure:
     )
     wanted = f"Wanted: {better}. Marked: the {front.sum()} of {frame.rows} that no other beats."
     notes = [view.note or wanted]
-    if third is not None and len(known := third.values[np.isfinite(third.values)]):
+    if third is not None and len(known := finite(third.values)):
         ends = f"{third.text(known.min())} to {third.text(known.max())}"
         notes.append(f"Size of a dot: {third.name}, {ends}.")
     title = " against ".join(view.quantities)
@@ -399,7 +398,7 @@ def _dots(
     # A third quantity sets the size of the dots.
     if third is not None and len(rows):
         low = np.nanmin(third.values)
-        span = np.ptp(third.values[np.isfinite(third.values)]) or 1.0
+        span = np.ptp(finite(third.values)) or 1.0
         marker["size"] = rounded(5 + 12 * (third.values[rows] - low) / span, 3)
     made = {"type": "scatter", "mode": "markers", "name": name, "marker": marker}
     made |= {

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from shipcosim.report.study.statistics import mean_interval
 from shipcosim.report.study.tables import FACTOR, Column, Columns, StudyTables, columns_of, label
 from shipcosim.report.theme import palette
+from shipcosim.report.theme.numbers import finite
 from shipcosim.sweep.study_model import View
 from shipcosim.sweep.summary import wilson
 
@@ -193,7 +194,7 @@ def gathered(frame: Frame, column: Column, rows: NDArray) -> Point:
         return Point(float(column.values[rows[0]]), *ends)
     # Several rows: share with Wilson's interval, or mean with a normal one.
     known = column.values[rows]
-    known = known[np.isfinite(known)]
+    known = finite(known)
     if column.is_truth and len(known):
         return Point(*wilson(int(known.sum()), len(known)))
     return Point(*mean_interval(known))

@@ -16,6 +16,7 @@ from shipcosim.report.study.tables import Column, Columns, StudyTables, columns_
 from shipcosim.report.study.tracks import TracksView, tracks_view
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import evenly
+from shipcosim.report.theme.numbers import extent
 from shipcosim.report.theme.packing import most_rows, packed_series
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import (
@@ -23,10 +24,10 @@ from shipcosim.report.theme.views import (
     Figures,
     JsonObject,
     KeyFigure,
-    Link,
     Outcome,
     Page,
     Table,
+    links_of,
 )
 from shipcosim.sweep.study_model import View
 
@@ -133,14 +134,11 @@ def page_of(tables: StudyTables) -> StudyPage:
         ErrorOfRuns(text, len(numbers), numbers[:20]) for text, numbers in words.errors(tables)
     )
     there = {"views": tracks or plots, "failed": errors, "summary": len(tables.summary)}
-    links = tuple(
-        Link(anchor, title) for anchor, title in SECTIONS.items() if there.get(anchor, True)
-    )
     return StudyPage(
         title=str(tables.study.get("description") or tables.name),
         facts=words.facts(tables),
         outcome=words.outcome(tables, runs, summary),
-        links=links,
+        links=links_of(SECTIONS, there),
         data=_data(tables, runs, rows, tracks, drawn),
         remarks=tuple(map(str, tables.about.get("remarks") or ())),
         key_figures=words.key_figures(tables, runs, summary),
@@ -251,8 +249,7 @@ def _packed(column: Column, rows: NDArray) -> JsonObject:
     if not column.is_number:
         return made | {"values": [int(v) if np.isfinite(v) else None for v in values]}
     # Decimals that tell a thousandth of a column's range apart.
-    known = column.values[np.isfinite(column.values)]
-    span = float(np.ptp(known)) if known.size else 0.0
+    span = extent(column.values)
     digits = int(np.clip(3 - np.floor(np.log10(span)) - 1, 0, 9)) if span > 0.0 else 3
     return made | {"values": packed_series(values), "digits": digits}
 

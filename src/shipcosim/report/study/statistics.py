@@ -5,6 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from shipcosim.report.theme.numbers import finite
+
 Z = 1.959964
 """Standard normal deviate of two-sided 95 %."""
 LEVEL = 0.95
@@ -21,7 +23,7 @@ def mean_interval(values: ArrayLike) -> tuple[float, float, float]:
     """
     # Interval z s / sqrt(n); values that are not finite do not count.
     known = np.asarray(values, float)
-    known = known[np.isfinite(known)]
+    known = finite(known)
     if not known.size:
         return np.nan, np.nan, np.nan
     middle = float(known.mean())
@@ -53,7 +55,7 @@ def distribution(values: ArrayLike) -> tuple[NDArray, NDArray, float]:
     """
     # Dvoretzky-Kiefer-Wolfowitz with Massart's constant: sqrt(ln(2/alpha) / 2n).
     found = np.asarray(values, float)
-    reached = np.sort(found[np.isfinite(found)])
+    reached = np.sort(finite(found))
     half = float(np.sqrt(np.log(2 / (1 - LEVEL)) / (2 * len(found)))) if len(found) else 1.0
     return reached, np.arange(1, len(reached) + 1) / max(len(found), 1), half
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from shipcosim.report.study.static import static_curves
 from shipcosim.report.theme.display import READ_AS
+from shipcosim.report.theme.numbers import finite
 from shipcosim.sweep.storage import read_part
 from shipcosim.sweep.summary import RANGE
 
@@ -161,7 +162,7 @@ class Column:
         # Labels are levels; numbers only if they are few, and whole or a factor's.
         if self.labels:
             return tuple(float(k) for k in range(len(self.labels)))
-        found = np.unique(self.values[np.isfinite(self.values)])
+        found = np.unique(finite(self.values))
         are_few = len(found) <= MOST_LEVELS and (
             self.role == FACTOR or bool(np.all(found == np.round(found)))
         )
@@ -291,7 +292,7 @@ def readable(values: ArrayLike, unit: str | None) -> tuple[NDArray, str]:
     # Small quantities stay in their unit.
     found = np.asarray(values, float)
     shown, factor, least = READ_AS.get(unit or None, (unit or "", 1.0, 0.0))
-    known = np.abs(found[np.isfinite(found)])
+    known = np.abs(finite(found))
     if known.size and known.max() < least:
         shown = unit or ""
         factor = 1.0

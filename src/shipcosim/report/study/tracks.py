@@ -13,6 +13,7 @@ from shipcosim.report.study.figures import distance_figure
 from shipcosim.report.study.frames import RUNS, Frame, Lacking, SeriesOfRows, left_out, series_of
 from shipcosim.report.study.tables import StudyTables, columns_of
 from shipcosim.report.theme.figures import evenly
+from shipcosim.report.theme.numbers import finite
 from shipcosim.report.theme.packing import packed_series
 from shipcosim.report.theme.views import Figure, JsonObject
 from shipcosim.sweep.study_model import View
@@ -122,9 +123,7 @@ def _read(tables: StudyTables) -> _Tracks:
     kept = evenly(len(stamps), MOST_TIMES)
     north, east, psi = full[:, :, kept]
     # Each track relative to its first known position.
-    first = [
-        np.array([row[np.isfinite(row)][:1].sum() for row in one])[:, None] for one in full[:2]
-    ]
+    first = [np.array([finite(row)[:1].sum() for row in one])[:, None] for one in full[:2]]
     return _Tracks(stamps[kept], north - first[0], east - first[1], np.degrees(psi))
 
 
@@ -149,7 +148,7 @@ def _data(
     # West, east, south and north end of all tracks, the start included. [m]
     ends = []
     for values in (tracks.east[every], tracks.north[every]):
-        known = values[np.isfinite(values)]
+        known = finite(values)
         ends += (
             [min(float(known.min()), 0.0), max(float(known.max()), 0.0)]
             if known.size

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from shipcosim.errors import capitalised
 from shipcosim.report.study.statistics import explained
 from shipcosim.report.study.tables import (
     FACTOR,
@@ -20,7 +21,7 @@ from shipcosim.report.study.tables import (
     StudyTables,
     signed,
 )
-from shipcosim.report.theme.numbers import percent, plain
+from shipcosim.report.theme.numbers import finite, percent, plain
 from shipcosim.report.theme.views import Fact, KeyFigure, Outcome, Table
 from shipcosim.sweep.summary import wilson
 
@@ -73,7 +74,7 @@ def _of_summary(summary: Columns) -> str:
     found = _first(summary, SUMMARY)
     if found is None:
         return ""
-    name = _capital(found.description or found.name.replace("_", " "))
+    name = capitalised(found.description or found.name.replace("_", " "))
     # One row, one value everywhere, or a range with the factors of its ends.
     if len(found.values) == 1:
         return f"{name}: {found.text_at(0)}."
@@ -95,18 +96,14 @@ def _of_runs(runs: Columns) -> str:
     if found is None:
         return ""
     # Share with Wilson's interval for true or false, else median, 90 % and largest value.
-    known = found.values[np.isfinite(found.values)]
-    name = _capital(found.description or found.name)
+    known = finite(found.values)
+    name = capitalised(found.description or found.name)
     if found.is_truth:
         _, low, high = wilson(int(known.sum()), len(known))
         return f"{name}: {percent(known.mean())} of runs (95 % interval {percent(low)} to {percent(high)})."
     low, middle, high = np.quantile(known, [0.0, 0.5, 0.9])
     most = found.text(known.max())
     return f"{name}: {found.text(middle)} in the median, {found.text(high)} in nine of ten runs, {most} at most."
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
 
 
 def key_figures(tables: StudyTables, runs: Columns, summary: Columns) -> tuple[KeyFigure, ...]:
@@ -148,7 +145,7 @@ def quantities_table(runs: Columns) -> Table:
     rows = []
     # Runs without a value are counted: quantiles leave them out.
     for column in (c for c in runs.values() if c.role == QUANTITY):
-        known = column.values[np.isfinite(column.values)]
+        known = finite(column.values)
         missing = str(len(column.values) - len(known)) if len(known) < len(column.values) else "–"
         if column.is_truth or not len(known):
             share = percent(known.mean(), 1) if len(known) else "–"

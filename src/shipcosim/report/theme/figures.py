@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from shipcosim.report.theme import palette
+from shipcosim.report.theme.numbers import extent, finite
 from shipcosim.report.theme.views import PlotlyDict
 
 TIME: PlotlyDict = {"ticksuffix": " s", "showticksuffix": "first"}
@@ -81,8 +82,8 @@ def evenly(count: int, most: int) -> NDArray:
 def _told_apart(values: NDArray) -> list[float | None]:
     """Numbers with five significant digits, more where they differ by little, as late times."""
     # Additional digits as the size exceeds the span: 100000.1 and 100000.2 must differ.
-    known = values[np.isfinite(values)]
-    span = float(np.ptp(known)) if known.size else 0.0
+    known = finite(values)
+    span = extent(values)
     more = np.log10(np.abs(known).max() / span) if span > 0.0 else 0.0
     return rounded(values, 5 + int(np.clip(more, 0, 10)))
 

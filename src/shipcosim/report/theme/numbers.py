@@ -2,6 +2,20 @@
 
 import math
 
+import numpy as np
+from numpy.typing import NDArray
+
+
+def finite(values: NDArray) -> NDArray:
+    """Those of some values that are finite."""
+    return values[np.isfinite(values)]
+
+
+def extent(values: NDArray) -> float:
+    """From the least to the largest finite value; 0 without any."""
+    known = finite(values)
+    return float(np.ptp(known)) if known.size else 0.0
+
 
 def span(start: float, end: float) -> str:
     """A stretch of a log.
@@ -29,6 +43,17 @@ def plain(value: float | None, digits: int = 3) -> str:
     # So many decimals that the significant digits are there, without an exponent.
     decimals = max(digits - 1 - math.floor(math.log10(abs(value))), 0)
     return f"{value:.{decimals}f}".replace("-", "−")
+
+
+def signed(value: float) -> str:
+    """A difference with its sign and one decimal.
+
+    Examples
+    --------
+    >>> signed(-0.33), signed(2.0)
+    ('−0.3', '+2.0')
+    """
+    return f"{value:+.1f}".replace("-", "−")
 
 
 def metres(value: float | None) -> str:

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from shipcosim.report.theme.numbers import extent
+
 LEVELS = 10_000
 """Steps that a series' range has at least: a panel of 200 px may be looked at fifty times closer."""
 
@@ -107,7 +109,7 @@ def most_rows(columns: Collection[ArrayLike], budget: int) -> int:
 def _step(known: NDArray, levels: float) -> float | None:
     """Step of a series; None without a range, or where no step serves all of it."""
     # A range that is zero or beyond float32 cannot be divided into steps.
-    span = float(np.ptp(known)) if known.size else 0.0
+    span = extent(known)
     if not SMALLEST < span < LARGEST:
         return None
     # Spread of most values: single peaks must not make the steps coarse.

@@ -27,9 +27,14 @@ FAILED = VERMILLION
 SOURCES = {"wind": SKY, "drift": GREEN, "hull": ORANGE, "thrusters": BLUE}
 
 
+def in_turn(k: int) -> str:
+    """Colour of a curve by its number; they come again after the last."""
+    return CYCLE[k % len(CYCLE)]
+
+
 def source(name: str, rank: int) -> str:
     """Colour of a source of load; known ones keep theirs from page to page."""
-    return SOURCES.get(name, CYCLE[(rank + 3) % len(CYCLE)])
+    return SOURCES.get(name, in_turn(rank + 3))
 
 
 def faded(colour: str, opacity: float) -> str:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 JsonObject = dict[str, Any]
@@ -51,6 +52,15 @@ class Link:
     anchor: str
     title: str
     text: str = ""
+
+
+def links_of(
+    sections: Mapping[str, str], there: Mapping[str, object] = MappingProxyType({})
+) -> tuple[Link, ...]:
+    """Links to sections, from titles by anchor; those that are said not to be there are left out."""
+    return tuple(
+        Link(anchor, title) for anchor, title in sections.items() if there.get(anchor, True)
+    )
 
 
 @dataclass(frozen=True)

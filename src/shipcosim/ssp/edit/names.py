@@ -8,7 +8,7 @@ import lxml.etree as etree
 from shipcosim.errors import error_at, suggestion
 from shipcosim.ssp.flatten.ports import SOURCES_OUTSIDE
 from shipcosim.ssp.read.structure import KIND_NAMES
-from shipcosim.ssp.xml.document import child, children, local
+from shipcosim.ssp.xml.document import child, children, local, parts_in
 
 ELEMENTS = ("Component", "SignalDictionaryReference", "System")
 
@@ -47,7 +47,7 @@ class NameMatch(NamedTuple):
 def parts(system: etree._Element) -> list[etree._Element]:
     """Elements that a system consists of."""
     listed = child(system, "ssd:Elements")
-    return [] if listed is None else [part for part in listed if local(part) in ELEMENTS]
+    return [] if listed is None else parts_in(listed, *ELEMENTS)
 
 
 def walk(system: etree._Element, name: str = "") -> Iterator[tuple[str, etree._Element]]:

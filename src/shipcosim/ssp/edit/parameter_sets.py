@@ -18,8 +18,8 @@ from shipcosim.ssp.xml.document import (
     Findings,
     child,
     children,
-    local,
     parent_of,
+    parts_in,
     read_document,
 )
 from shipcosim.ssp.xml.markup import add, drop, ensure, put
@@ -290,7 +290,7 @@ def write_value(root: etree._Element, parameter: etree._Element, value: Paramete
         What to write.
     """
     # Replace the typed value, and define its unit in the set.
-    for part in [part for part in parameter if local(part) in KINDS]:
+    for part in parts_in(parameter, *KINDS):
         parameter.remove(part)
     typed = add(parameter, f"ssv:{value.kind}", value=text_of(value.value))
     if value.unit is not None and define_unit(root, "ssv:Units", value.unit):

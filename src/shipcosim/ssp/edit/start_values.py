@@ -9,13 +9,13 @@ from shipcosim.errors import ShipcosimError, suggestion
 from shipcosim.ssp.edit.draft import Draft
 from shipcosim.ssp.edit.parameter_sets import Bound
 from shipcosim.ssp.edit.write import KIND_OF
-from shipcosim.ssp.flatten.system import Signal, System
+from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.read.parameters import ParameterValue, tolerance_of
 from shipcosim.ssp.xml.definitions import read_units
 from shipcosim.ssp.xml.document import children, qualified
 from shipcosim.ssp.xml.markup import drop
 from shipcosim.ssp.xml.values import Value
-from shipcosim.units import Unit, conversion, find_unit, relation
+from shipcosim.units import Unit, as_python, conversion, find_unit, relation
 
 
 class StartValues(MutableMapping[str, Value]):
@@ -40,7 +40,8 @@ class StartValues(MutableMapping[str, Value]):
         return system
 
     def __getitem__(self, name: str) -> Value | None:
-        return _value(self._system(), name)
+        system = self._system()
+        return system.start_value(*system.split(name))
 
     def __setitem__(self, name: str, value: Value) -> None:
         with self._draft.changes():
@@ -97,7 +98,7 @@ class StartValues(MutableMapping[str, Value]):
     def _given(self, name: str, value: Any, unit: str | None = None) -> ParameterValue:
         """A value in the type and unit of its variable, items of enumerations by name."""
         kind, own, items = _target(self._system(), name)
-        value = getattr(value, "item", lambda: value)()  # NumPy's scalars
+        value = as_python(value)
         if kind == "Enumeration" and type(value) is int:
             value = next((item for item, number in items.items() if number == value), str(value))
         value = self._converted(name, value, unit, own)
@@ -115,7 +116,7 @@ class StartValues(MutableMapping[str, Value]):
             return
         for given in values:
             wanted = _target(system, given.name)[2].get(given.value, given.value)
-            if _value(system, given.name) != wanted:
+            if system.start_value(*system.split(given.name)) != wanted:
                 self._draft.sets.append("", given.name, given)
 
     def bind_to_components(self) -> None:
@@ -157,29 +158,17 @@ class StartValues(MutableMapping[str, Value]):
         return factor * value + offset
 
 
-def _value(system: System, name: str) -> Value | None:
-    """Start value of a signal; None if there is none."""
-    component, variable = system.split(name)
-    if component is None:
-        return _signal(system, variable).start
-    return system.components[component].start_value(variable)
-
-
-def _target(system: System, name: str) -> tuple[str | None, Unit | None, Mapping[str, int]]:
+def _target(system: System, name: str) -> tuple[str, Unit | None, Mapping[str, int]]:
     """Type, unit and enumeration items of a signal."""
-    component, variable = system.split(name)
-    if component is None:
-        signal = _signal(system, variable)
-        return signal.type, find_unit(signal.unit), signal.items
-    fmu = system.components[component].fmu
-    variable = fmu.variables[variable]
-    return variable.kind, find_unit(variable.unit, fmu.units), variable.items
+    end = system.split(name)
+    target = system.described(*end)
+    return target.kind, system.unit_of(*end), target.items
 
 
 def _described(system: System, bound: list[Bound], name: str) -> ParameterValue:
     """Start value of a signal for a parameter set, with description and tolerance of its origin."""
     kind, unit, items = _target(system, name)
-    value = _value(system, name)
+    value = system.start_value(*system.split(name))
     # Enumerations are written by item name.
     if kind == "Enumeration":
         value = next(item for item, number in items.items() if number == value)
@@ -192,8 +181,4 @@ def _described(system: System, bound: list[Bound], name: str) -> ParameterValue:
         same_unit = unit is None or any(part.get("unit") == unit.name for part in origin)
         described = {"description": origin.get("description", "")}
         described["tolerance"] = tolerance_of(origin) if same_unit else None
-    return ParameterValue(name, kind or "", value, unit if kind == "Real" else None, **described)
-
-
-def _signal(system: System, name: str) -> Signal:
-    return {**system.inputs, **system.outputs, **system.parameters}[name]
+    return ParameterValue(name, kind, value, unit if kind == "Real" else None, **described)

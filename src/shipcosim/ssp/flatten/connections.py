@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from shipcosim.ssp.flatten.conversions import Flow, advance
 from shipcosim.ssp.flatten.hierarchy import Hierarchy
 from shipcosim.ssp.flatten.ports import Key, Wire
-from shipcosim.ssp.read.structure import End
+from shipcosim.ssp.read.structure import End, label
 from shipcosim.ssp.xml.document import Findings
 from shipcosim.ssp.xml.values import Value
 
@@ -41,6 +41,11 @@ class Connection:
     mapping: Mapping[Value, Value] | None = None
     initial: bool = False
     place: str = ""
+
+    @property
+    def arrow(self) -> str:
+        """The names of both ends, for messages."""
+        return f"{label(self.source)} -> {label(self.target)}"
 
     @property
     def is_linear(self) -> bool:

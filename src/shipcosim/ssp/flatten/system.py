@@ -80,6 +80,11 @@ class Signal:
     start: Value | None = None
     items: Mapping[str, int] = field(default_factory=dict)
 
+    @property
+    def kind(self) -> str:
+        """Kind of its values, as of a variable; empty where nothing says it."""
+        return self.type or ""
+
 
 @dataclass(frozen=True)
 class System:
@@ -133,6 +138,11 @@ class System:
         counts = f"{len(self.components)} components, {len(self.connections)} connections"
         return f"<System {self.name!r}: {counts}>"
 
+    @property
+    def feeding(self) -> dict[End, End]:
+        """Source of each connected input or parameter, by its target."""
+        return {connection.target: connection.source for connection in self.connections}
+
     def all_variables(self) -> Iterator[tuple[Component, Variable]]:
         """Every variable, after its component, in the order of system and FMUs."""
         for component in self.components.values():
@@ -168,21 +178,22 @@ class System:
                 return name, signal[len(name) + 1 :]
         raise ShipcosimError(self._no_signal(signal, owners, where))
 
-    def unit_of(self, component: str | None, name: str) -> Unit | None:
-        """Unit of a variable, or of a connector of the outermost system; None without one.
-
-        Parameters
-        ----------
-        component, name : str or None, str
-            As `split` returns them.
-        """
+    def described(self, component: str | None, name: str) -> Variable | Signal:
+        """A variable, or a connector of the outermost system, as `split` names them."""
         if component is not None:
-            fmu = self.components[component].fmu
-            return find_unit(fmu.variables[name].unit or None, fmu.units)
-        groups = (self.inputs, self.outputs, self.parameters)
-        return next(
-            (find_unit(group[name].unit or None) for group in groups if name in group), None
-        )
+            return self.components[component].variables[name]
+        return {**self.inputs, **self.outputs, **self.parameters}[name]
+
+    def unit_of(self, component: str | None, name: str) -> Unit | None:
+        """Unit of what `split` names; None without one."""
+        unit = self.described(component, name).unit or None
+        return find_unit(unit, {} if component is None else self.components[component].fmu.units)
+
+    def start_value(self, component: str | None, name: str) -> Any:
+        """Start value of what `split` names; None without one."""
+        if component is not None:
+            return self.components[component].start_value(name)
+        return self.described(None, name).start
 
     def _no_signal(self, signal: str, owners: list[str], where: str) -> Problem:
         if owners:

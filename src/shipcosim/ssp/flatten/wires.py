@@ -14,7 +14,7 @@ from shipcosim.ssp.flatten.ports import (
     variable_port,
 )
 from shipcosim.ssp.fmu.description import FmuDescription
-from shipcosim.ssp.read.structure import KIND_NAMES, Link, SystemElement, signal
+from shipcosim.ssp.read.structure import KIND_NAMES, Link, SystemElement, label
 from shipcosim.ssp.xml.document import Findings
 
 FEEDS = {
@@ -34,7 +34,7 @@ class End(NamedTuple):
     key: Key
 
     def __str__(self) -> str:
-        return signal(self.element, self.name)
+        return label((self.element, self.name))
 
     def gives(self, kind: str) -> bool:
         """True if this kind gives a value: an element's output or the system's input."""

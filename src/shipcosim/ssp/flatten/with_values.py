@@ -7,9 +7,10 @@ from shipcosim.errors import ShipcosimError, raise_errors
 from shipcosim.ssp.flatten.start_values import check_bounds
 from shipcosim.ssp.flatten.system import Signal, System, alias_remarks
 from shipcosim.ssp.fmu.description import Variable
+from shipcosim.ssp.read.structure import label
 from shipcosim.ssp.xml.document import Findings
 from shipcosim.ssp.xml.values import Value
-from shipcosim.units import Unit, UnitError, amount, is_finite, number_in
+from shipcosim.units import Unit, UnitError, is_amount, is_finite, number_in
 
 
 def with_values(system: System, values: Mapping[str, Value], where: str = "") -> System:
@@ -38,7 +39,7 @@ def with_values(system: System, values: Mapping[str, Value], where: str = "") ->
     starts = {name: dict(component.start) for name, component in system.components.items()}
     inputs = dict(system.inputs)
     # A value on a connected input would be overwritten at once, so it is an error.
-    feeding = {connection.target: connection.source for connection in system.connections}
+    feeding = system.feeding
     # Go through all values before raising, to report every problem.
     for signal, value in values.items():
         place = f"{where}: {signal}" if where else signal
@@ -48,7 +49,7 @@ def with_values(system: System, values: Mapping[str, Value], where: str = "") ->
             findings.problems += error.problems
             continue
         if (component, name) in feeding:
-            source = ".".join(filter(None, feeding[component, name]))
+            source = label(feeding[component, name])
             remedy = "Set what feeds it, or hold it with an event (override)."
             findings.error(place, f"It is connected: {source} gives its value.", remedy)
         elif component is not None:
@@ -96,7 +97,7 @@ LARGEST = 2**31  # FMI's integers have 32 bits
 
 def _number(value: Value, kind: str | None, unit: Unit | None) -> Value | UnitError:
     """An amount converted to a unit, or the error; other values unchanged."""
-    if kind != "Real" or not isinstance(value, str) or amount(value) is None:
+    if kind != "Real" or not is_amount(value):
         return value
     try:
         return number_in(value, unit)

@@ -10,7 +10,7 @@ import lxml.etree as etree
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.xml.archive import read_entry
-from shipcosim.ssp.xml.document import LARGEST_FILE, Findings, local, parse, parts_of
+from shipcosim.ssp.xml.document import LARGEST_FILE, Findings, parse, parts_in, parts_of
 
 
 def feedthrough(fmu: FmuDescription) -> dict[str, frozenset[str]]:
@@ -43,12 +43,12 @@ def feedthrough(fmu: FmuDescription) -> dict[str, frozenset[str]]:
     if root.get("fmiVersion", "").startswith("3"):
         key = "valueReference"
         names = {part.get("valueReference"): part.get("name") for part in variables}
-        listed = [part for part in structure if local(part) == "Output"]
+        listed = parts_in(structure, "Output")
     else:
         key = "index"
         names = {str(number): part.get("name") for number, part in enumerate(variables, start=1)}
-        outputs = [group for group in structure if local(group) == "Outputs"]
-        listed = [part for group in outputs for part in group if local(part)]
+        outputs = parts_in(structure, "Outputs")
+        listed = [part for group in outputs for part in parts_in(group)]
     # An output with an attribute `dependencies`, which may be empty, states what it follows.
     return {
         names[part.get(key)]: frozenset(
@@ -63,8 +63,8 @@ def _direct(variables: Iterable[etree._Element]) -> dict[str, frozenset[str]]:
     """Outputs of FMI 1.0 with a list of direct dependencies."""
     found = {}
     for variable in variables:
-        for part in (part for part in variable if local(part) == "DirectDependency"):
+        for part in parts_in(variable, "DirectDependency"):
             found[variable.get("name")] = frozenset(
-                (name.text or "").strip() for name in part if local(name)
+                (name.text or "").strip() for name in parts_in(part)
             )
     return found

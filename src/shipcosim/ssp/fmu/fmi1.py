@@ -8,13 +8,13 @@ from typing import Any
 import lxml.etree as etree
 
 from shipcosim.ssp.xml.definitions import by_name
-from shipcosim.ssp.xml.document import is_true, local
+from shipcosim.ssp.xml.document import is_true, local, parts_in
 
 
 def interfaces_of(root: etree._Element) -> dict[str, dict[str, str]]:
     """Attributes of the FMU's interface: co-simulation with an Implementation, else exchange."""
     attributes = {"modelIdentifier": root.get("modelIdentifier", "")}
-    implementation = next((part for part in root if local(part) == "Implementation"), None)
+    implementation = next(iter(parts_in(root, "Implementation")), None)
     if implementation is None:
         return {"ModelExchange": attributes}
     # Capabilities, and whether another tool must run the FMU.
@@ -69,5 +69,5 @@ def items_of(declaration: etree._Element | None) -> dict[str, int]:
     if declaration is None:
         return {}
     first = int(declaration.get("min") or 1)
-    items = [part for part in declaration if local(part) == "Item"]
+    items = parts_in(declaration, "Item")
     return by_name("item", ((item.get("name"), i) for i, item in enumerate(items, start=first)))

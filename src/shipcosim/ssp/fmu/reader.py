@@ -22,6 +22,7 @@ from shipcosim.ssp.xml.document import (
     Findings,
     local,
     parse,
+    parts_in,
     parts_of,
 )
 from shipcosim.ssp.xml.validation import validate
@@ -150,13 +151,11 @@ def _description(
     # Number of continuous states: given in FMI 1.0, that of the listed derivatives in FMI 2.0.
     groups = [group for group in parts_of(root, "ModelStructure") if local(group) == "Derivatives"]
     derivatives = [part for group in groups for part in group]
-    n_states = int(root.get("numberOfContinuousStates") or 0) or len(
-        [part for part in derivatives if local(part)]
-    )
+    n_states = int(root.get("numberOfContinuousStates") or 0) or len(parts_in(derivatives))
     # FMI 3.0 lists its event indicators.
     listed = [local(part) for part in parts_of(root, "ModelStructure")]
     n_indicators = listed.count("EventIndicator")
-    given = next((dict(part.attrib) for part in root if local(part) == "DefaultExperiment"), {})
+    given = next((dict(part.attrib) for part in parts_in(root, "DefaultExperiment")), {})
     experiment = _experiment(document, given, findings)
     return FmuDescription(
         path=path,

@@ -8,7 +8,7 @@ import lxml.etree as etree
 from shipcosim.ssp.fmu.description import Variable
 from shipcosim.ssp.fmu.fmi1 import is_negated, items_of, traits_of
 from shipcosim.ssp.xml.definitions import by_name
-from shipcosim.ssp.xml.document import Document, Findings, local, parts_of
+from shipcosim.ssp.xml.document import Document, Findings, local, parts_in, parts_of
 from shipcosim.ssp.xml.values import KINDS, Value, read_value, typed_part
 
 Sizes = Mapping[str, tuple[str, str | None]]
@@ -81,7 +81,7 @@ def _start_outside(variable: Variable) -> str:
 
 def _names(element: etree._Element) -> Iterator[tuple[str, str]]:
     yield element.get("name"), element.get("description", "")
-    for alias in (part for part in element if local(part) == "Alias"):
+    for alias in parts_in(element, "Alias"):
         yield alias.get("name"), alias.get("description", "")
 
 
@@ -105,7 +105,7 @@ def _variable(
     declared = types.get(typed.get("declaredType"))
     kind = KINDS[local(typed)]
     # FMI 3.0 arrays have Dimension elements.
-    written = [part for part in element if local(part) == "Dimension"]
+    written = parts_in(element, "Dimension")
     dimensions = tuple(_size(part, sizes) for part in written)
     traits = traits_of(element, typed, kind) if is_first else _traits(element, kind)
     return Variable(
@@ -180,7 +180,7 @@ def _items(declared: etree._Element | None, is_first: bool) -> dict[str, int]:
     declaration = _declaration(declared)
     if is_first:
         return items_of(declaration)
-    found = [] if declaration is None else [part for part in declaration if local(part) == "Item"]
+    found = [] if declaration is None else parts_in(declaration, "Item")
     return by_name("item", ((item.get("name"), int(item.get("value"))) for item in found))
 
 
@@ -188,7 +188,7 @@ def _start(typed: etree._Element, kind: str, dimensions: tuple[int, ...]) -> Val
     # Items of enumerations are numbers here.
     kind = "Integer" if kind == "Enumeration" else kind
     # Strings and binaries of FMI 3.0 stand in elements of their own.
-    nested = [part.get("value") for part in typed if local(part) == "Start"]
+    nested = [part.get("value") for part in parts_in(typed, "Start")]
     if nested:
         values = tuple(read_value(kind, text) for text in nested)
         return values if dimensions else values[0]

@@ -11,7 +11,8 @@ from shipcosim.ssp.fmu.description import FmuDescription, Variable
 from shipcosim.ssp.osp.functions import Function, Wiring
 from shipcosim.ssp.osp.groups import Group, file_names, read_groups
 from shipcosim.ssp.osp.simulators import Simulators
-from shipcosim.ssp.xml.document import Document, Findings, local
+from shipcosim.ssp.read.structure import label
+from shipcosim.ssp.xml.document import Document, Findings, local, parts_in
 from shipcosim.units import find_unit, relation, told_apart
 
 SOURCES = ("output", "calculatedParameter")
@@ -64,11 +65,10 @@ class ConnectionReader:
         kinds = {"Signal": self._signal, "SignalGroup": self._signal_group}
         for element in elements:
             # Both ends of a connection, in the order of the file.
-            ends = {local(part): part for part in element if local(part)}
+            ends = {local(part): part for part in parts_in(element)}
             shown = " - ".join(
                 f"{part.get('simulator') or part.get('function')}.{part.get('name')}"
-                for part in element
-                if local(part)
+                for part in parts_in(element)
             )
             place = self.document.place(element, shown)
             if element.get("powerBond"):
@@ -80,7 +80,7 @@ class ConnectionReader:
                 variable = ends["Variable" if kind == "Signal" else "VariableGroup"]
                 kinds[kind](variable, ends[kind], place)
             else:
-                one, other = (part for part in element if local(part))
+                one, other = parts_in(element)
                 self._pair(one, other, place)
         # Connections through functions follow once all their signals are known.
         for signal, connection in self.wiring.connections():
@@ -130,7 +130,7 @@ class ConnectionReader:
         """Add a connection; `signal` is its function signal, which may sum several."""
         # Names and causalities of both ends.
         source, target = (self._variable(end) for end in (connection.source, connection.target))
-        names = [".".join(filter(None, end)) for end in (connection.source, connection.target)]
+        names = [label(end) for end in (connection.source, connection.target)]
         place = connection.place
         # An input takes one connection, or the terms of one sum.
         feeding = self._fed.get(connection.target)

@@ -8,7 +8,7 @@ import lxml.etree as etree
 
 from shipcosim.errors import it_has
 from shipcosim.ssp.fmu.description import FmuDescription
-from shipcosim.ssp.xml.document import Document, Findings, local, read_document
+from shipcosim.ssp.xml.document import Document, Findings, local, parts_in, read_document
 
 ENDING = "_OspModelDescription.xml"
 
@@ -61,7 +61,7 @@ def read_groups(fmu: FmuDescription, folder: Path, findings: Findings) -> dict[s
         return None
     found = {}
     # Inner groups are found by their own names, so all names must differ.
-    for listed in (part for part in document.root if local(part) == "VariableGroups"):
+    for listed in parts_in(document.root, "VariableGroups"):
         for element in filter(local, listed):
             for group in _group(element, fmu, document, findings).all():
                 if group.name in found:

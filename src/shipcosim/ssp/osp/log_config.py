@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from os import PathLike
 from pathlib import Path
 from typing import NamedTuple
 
-from shipcosim.errors import Problem, ShipcosimError, raise_errors
-from shipcosim.ssp.xml.document import Findings, local, read_document
+from shipcosim.errors import error_at, raise_errors
+from shipcosim.ssp.xml.document import AnyPath, Findings, local, parts_in, read_document
 
 
 class LogConfig(NamedTuple):
@@ -25,7 +24,7 @@ class LogConfig(NamedTuple):
     steps: int
 
 
-def read_log_config(path: str | PathLike[str]) -> LogConfig:
+def read_log_config(path: AnyPath) -> LogConfig:
     """Read a LogConfig.xml.
 
     Raises
@@ -39,7 +38,7 @@ def read_log_config(path: str | PathLike[str]) -> LogConfig:
     assert document is not None
     if local(document.root) != "simulators":
         remedy = "Its root is <simulators>, with a <simulator> and its <variable>s for each that is recorded."
-        raise ShipcosimError(Problem(str(path), "This is no LogConfig.xml.", remedy))
+        raise error_at(str(path), "This is no LogConfig.xml.", remedy)
 
     signals = []
     steps = []
@@ -47,12 +46,12 @@ def read_log_config(path: str | PathLike[str]) -> LogConfig:
         if local(simulator) != "simulator":
             continue
         name = simulator.get("name", "")
-        variables = [one.get("name", "") for one in simulator if local(one) == "variable"]
+        variables = [one.get("name", "") for one in parts_in(simulator, "variable")]
         signals += [f"{name}.{variable}" for variable in variables or ["*"]]
         factor = simulator.get("decimationFactor", "1")
         if not factor.isascii() or not factor.isdecimal() or int(factor) < 1:
             where = f"{path}, line {simulator.sourceline}: {name}"
             found = f"decimationFactor = '{factor}' is no number of steps."
-            raise ShipcosimError(Problem(where, found, "Right would be a whole number from 1 on."))
+            raise error_at(where, found, "Right would be a whole number from 1 on.")
         steps.append(int(factor))
     return LogConfig(tuple(signals), min(steps, default=1))

@@ -6,7 +6,7 @@ The same as `shipcosim.ssp.xml.mend` does for the files of SSP: each is reported
 import lxml.etree as etree
 
 from shipcosim.ssp.osp.schema import NAMESPACE, SCHEMA
-from shipcosim.ssp.xml.document import Document, Findings, local
+from shipcosim.ssp.xml.document import Document, Findings, local, parts_in
 from shipcosim.ssp.xml.mend import drop_empty_attributes, drop_unknown, mend_boolean, sort_parts
 from shipcosim.ssp.xml.schemas import names_in
 
@@ -56,7 +56,7 @@ def mend_osp(document: Document, findings: Findings) -> None:
         drop_empty_attributes(document, element, findings, EMPTY_IS_ABSENT)
         mend_boolean(document, element, findings)
     # An empty time or algorithm says nothing.
-    for part in [part for part in root if local(part)]:
+    for part in parts_in(root):
         if local(part) in TEXTS and not (part.text or "").strip():
             root.remove(part)
             found = f"<{local(part)}> is empty; it is taken as if it were not there."

@@ -6,7 +6,6 @@ them for, where known.
 
 from collections.abc import Iterable
 from math import isfinite
-from os import PathLike
 from pathlib import Path
 
 from shipcosim.ssp.flatten.array_sizes import resized, sizes_wanted
@@ -25,10 +24,10 @@ from shipcosim.ssp.osp.simulators import Simulators
 from shipcosim.ssp.osp.times import read_experiment
 from shipcosim.ssp.read.package import OSP_STRUCTURE, SYSTEM_STRUCTURE
 from shipcosim.ssp.read.parameters import ParameterSet, ParameterSets
-from shipcosim.ssp.xml.document import Document, Findings, local, parts_of, read_document
+from shipcosim.ssp.xml.document import AnyPath, Document, Findings, local, parts_of, read_document
 
 
-def osp_file(path: str | PathLike[str]) -> Path | None:
+def osp_file(path: AnyPath) -> Path | None:
     """OspSystemStructure.xml of a path: the file, or that in a folder without an SSD; or None."""
     path = Path(path)
     if path.is_dir() and not (path / SYSTEM_STRUCTURE).is_file():
@@ -39,7 +38,7 @@ def osp_file(path: str | PathLike[str]) -> Path | None:
 def assemble_osp(
     path: Path,
     parameters: ParameterSets,
-    fmus: Iterable[str | PathLike[str]],
+    fmus: Iterable[AnyPath],
     findings: Findings,
     swapped: Swapped = None,
 ) -> System | None:

@@ -18,7 +18,7 @@ from shipcosim.ssp.read.addresses import PROXY, alike, path_of
 from shipcosim.ssp.read.package import remark_copy
 from shipcosim.ssp.read.parameters import ParameterValue
 from shipcosim.ssp.read.structure import FMU, ComponentElement
-from shipcosim.ssp.xml.document import Document, Findings, local, reporting
+from shipcosim.ssp.xml.document import Document, Findings, local, parts_in, reporting
 from shipcosim.ssp.xml.values import read_value
 
 HERE = ("", "file")
@@ -47,7 +47,6 @@ class Simulators:
         self.searched = searched
         self.tree = tree
         self.findings = findings
-        self._described: dict[Path, FmuDescription | None] = {}
         self._initials: dict[tuple[str, str], object] = {}
 
     @property
@@ -73,7 +72,8 @@ class Simulators:
             self.findings.error(place, found, "Names must differ.")
             return
         # The FMU, or the one that replaces it.
-        fmu = self._fmu(element.get("source"), place, self.tree.swapped.get(name))
+        file = self.tree.swapped.get(name) or self._located(element.get("source"), place)
+        fmu = None if file is None else describe_fmu(file, self.findings)
         step = own_step(self.document, element, self.findings)
         described = ComponentElement(name, element.get("source"), FMU, "any", (), (), step, place)
         fmu = fmu and without_arrays(fmu, place, self.findings, self.tree.sizes.get(name))
@@ -87,7 +87,7 @@ class Simulators:
     def _initial(self, name: str, element: etree._Element) -> None:
         variable = element.get("variable")
         # A value that cannot be read is reported at its place in the file.
-        (typed,) = (part for part in element if local(part))
+        (typed,) = parts_in(element)
         place = self.document.place(element, f"{name}.{variable}")
         with reporting(self.document, element, self.findings, f"{name}.{variable}"):
             value = read_value(local(typed), typed.get("value"))
@@ -96,14 +96,6 @@ class Simulators:
                 self.findings.error(place, "It has two initial values.", "Keep one of them.")
             given = ParameterValue(variable, local(typed), value, place=place)
             self.tree.settings.append(Setting((name,), variable, given, near=True))
-
-    def _fmu(self, source: str, place: str, swapped: Path | None) -> FmuDescription | None:
-        file = swapped or self._located(source, place)
-        if file is None:
-            return None
-        if file not in self._described:
-            self._described[file] = describe_fmu(file, self.findings)
-        return self._described[file]
 
     def _located(self, source: str, place: str) -> Path | None:
         """File of a source address, or None with an error; any folder, as in OSP's examples."""

@@ -149,11 +149,8 @@ def _connections(host: str, subject: Subject, system: System) -> tuple[str, Syst
     other = []
     # Compare each of our connections with how the tool reads it.
     for connection in system.connections:
-        arrow = " -> ".join(
-            ".".join(filter(None, end)) for end in (connection.source, connection.target)
-        )
         ends = (connection.source, connection.target)
-        name = arrow
+        name = connection.arrow
         if ends in links and not connection.initial:
             # The same factor and offset, without a mapping: no deviation.
             (factor, offset), _ = links[ends]

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from shipcosim.errors import Problem, error_at, suggestion
+from shipcosim.errors import Problem, capitalised, error_at, suggestion
 from shipcosim.ssp.flatten.hierarchy import Swapped
 from shipcosim.ssp.osp.reader import assemble_osp, osp_file
 from shipcosim.ssp.portability.subject import Subject, subject_of
@@ -77,7 +77,7 @@ def _problems(host: str, feature: Feature, subject: Subject) -> Iterator[Problem
     for place, what in feature.find(subject):
         found = f"{what or feature.about}: {host} {verdict}."
         named = not found.partition(" ")[0].isalpha()  # such as gain.fmu
-        problem = Problem(place, found if named else found[0].upper() + found[1:], feature.remedy)
+        problem = Problem(place, found if named else capitalised(found), feature.remedy)
         yield replace(problem, severity="remark") if verdict == TOLD else problem
 
 

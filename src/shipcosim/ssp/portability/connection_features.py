@@ -7,6 +7,7 @@ from math import isclose
 
 from shipcosim.ssp.flatten.ports import Key
 from shipcosim.ssp.portability.subject import Found, Subject, elements_of, types_of_2
+from shipcosim.ssp.read.structure import label
 from shipcosim.ssp.xml.document import local
 
 
@@ -32,7 +33,7 @@ def undeclared_connectors(subject: Subject) -> Found:
     for link, _, _ in subject.links:
         for end in link.ends:
             if end not in declared:
-                yield link.place, f"{'.'.join(filter(None, end))} is not declared as a connector"
+                yield link.place, f"{label(end)} is not declared as a connector"
 
 
 def typeless_connectors(subject: Subject) -> Found:

@@ -21,7 +21,7 @@ def _osp(subject: Subject, *tags: str) -> list[etree._Element]:
 def osp_without_algorithm(subject: Subject) -> Found:
     """An OspSystemStructure.xml without an algorithm."""
     if not subject.is_ssp and not _osp(subject, "Algorithm"):
-        yield subject.document.place(subject.document.root), ""
+        yield subject.place, ""
 
 
 def osp_second_targets(subject: Subject) -> Found:

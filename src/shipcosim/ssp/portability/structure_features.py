@@ -38,7 +38,7 @@ def prefixes(subject: Subject) -> Found:
 def version_2(subject: Subject) -> Found:
     """SSP 2.0."""
     if subject.structure is not None and subject.structure.version.startswith("2"):
-        yield subject.document.place(subject.document.root), ""
+        yield subject.place, ""
 
 
 def escaped_addresses(subject: Subject) -> Found:
@@ -96,7 +96,7 @@ def steps_of_others(subject: Subject) -> Found:
 def no_steps(subject: Subject) -> Found:
     """No step size."""
     if subject.is_ssp and not list(_osp_steps(subject)) and not subject.system.experiment.step_size:
-        yield subject.document.place(subject.document.root), ""
+        yield subject.place, ""
 
 
 def steps(subject: Subject) -> Found:
@@ -110,7 +110,7 @@ def _stated(subject: Subject) -> Iterator[str]:
     for part in elements_of(subject, *STEP_SIZES):
         if part.get(STEP_SIZES[local(part)]) is not None:
             yield subject.document.place(part)
-    yield subject.document.place(subject.document.root)
+    yield subject.place
 
 
 def osp_annotations(subject: Subject) -> Found:

@@ -59,6 +59,11 @@ class Subject:
         """True for an SSP, false for an OspSystemStructure.xml."""
         return self.structure is not None
 
+    @property
+    def place(self) -> str:
+        """Where its outermost element stands, for messages."""
+        return self.document.place(self.document.root)
+
     @cached_property
     def elements(self) -> tuple[ComponentElement | DictionaryReference | SystemElement, ...]:
         """Elements of the outermost system."""

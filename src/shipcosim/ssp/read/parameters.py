@@ -18,6 +18,7 @@ from shipcosim.ssp.xml.document import (
     children,
     is_true,
     local,
+    parts_in,
     qualified,
     reporting,
 )
@@ -233,9 +234,7 @@ def _parameter(
     kind = KINDS[local(typed)]
     try:
         sizes = tuple(
-            read_value("Integer", part.get("size", ""))
-            for part in element
-            if local(part) == "Dimension"
+            read_value("Integer", part.get("size", "")) for part in parts_in(element, "Dimension")
         )
         value = _values(kind, typed) if sizes else read_value(kind, _text(typed))
         tolerance = tolerance_of(element)
@@ -260,7 +259,7 @@ def _values(kind: str, typed: etree._Element) -> tuple[Value, ...]:
 
 
 def _listed(typed: etree._Element) -> list[str]:
-    return [part.get("value") or part.text or "" for part in typed if local(part) == "Value"]
+    return [part.get("value") or part.text or "" for part in parts_in(typed, "Value")]
 
 
 def _text(typed: etree._Element) -> str:

@@ -14,6 +14,12 @@ End = tuple[str | None, str]
 """An end of a connection: its component, or none for a connector of the system, and its connector."""
 
 
+def label(end: End) -> str:
+    """Name of an end as users write it: ``component.connector``; on the system its connector alone."""
+    component, connector = end
+    return connector if component is None else f"{component}.{connector}"
+
+
 FMU = "application/x-fmu-sharedlibrary"
 SSD = "application/x-ssp-definition"
 SSP = "application/x-ssp-package"
@@ -231,8 +237,3 @@ class Structure:
     units: Mapping[str, Unit]
     enumerations: Mapping[str, Mapping[str, int]]
     document: Document
-
-
-def signal(element: str | None, connector: str) -> str:
-    """Name of a connector for users: ``component.connector``; on the system its name alone."""
-    return connector if element is None else f"{element}.{connector}"

@@ -19,7 +19,7 @@ from shipcosim.ssp.read.structure import (
     Source,
     Structure,
     SystemElement,
-    signal,
+    label,
 )
 from shipcosim.ssp.xml.annotations import STEP_SIZE_HINTS, STEP_SIZES, remark_ignored
 from shipcosim.ssp.xml.definitions import noted_units, read_enumerations
@@ -30,6 +30,7 @@ from shipcosim.ssp.xml.document import (
     children,
     is_true,
     local,
+    parts_in,
     reporting,
 )
 from shipcosim.ssp.xml.schemas import is_slip
@@ -180,8 +181,7 @@ class _Reader:
             place=place,
             dimensions=tuple(
                 attribute(self.document, part, "size", "Integer", self.findings)
-                for part in element
-                if local(part) == "Dimension"
+                for part in parts_in(element, "Dimension")
             ),
         )
 
@@ -218,7 +218,7 @@ class _Reader:
             element.get(key)
             for key in ("startElement", "startConnector", "endElement", "endConnector")
         ]
-        shown = " -> ".join(signal(ends[i], ends[i + 1] or "") for i in (0, 2))
+        shown = " -> ".join(label((ends[i], ends[i + 1] or "")) for i in (0, 2))
         return Link(
             ends[0],
             ends[1] or "",

@@ -6,7 +6,7 @@ from typing import Any
 
 import lxml.etree as etree
 
-from shipcosim.ssp.xml.document import Document, Findings, children, local, reporting
+from shipcosim.ssp.xml.document import Document, Findings, children, parts_in, reporting
 from shipcosim.ssp.xml.markup import add, ensure, free_name
 from shipcosim.ssp.xml.values import read_value
 from shipcosim.units import AMBIGUOUS, BASE_UNITS, Unit, contradicts, relation, spelled_unit
@@ -26,7 +26,7 @@ def read_units(elements: Iterable[etree._Element]) -> dict[str, Unit]:
     units = {}
     for element in elements:
         # Exponents of the SI base units, with factor and offset.
-        base = next((part for part in element if local(part) == "BaseUnit"), None)
+        base = next(iter(parts_in(element, "BaseUnit")), None)
         name = element.get("name")
         if base is None or name is None or _says_nothing(element, base):
             continue
@@ -71,7 +71,7 @@ def noted_units(
                     both = f"{units[name].definition} and {unit.definition}"
                     raise ValueError(f"The unit '{name}' is defined twice: {both}.")
                 _note_contradiction(unit, document.place(element), findings)
-        for base in (part for part in element if local(part) == "BaseUnit"):
+        for base in parts_in(element, "BaseUnit"):
             if _says_nothing(element, base):
                 found = f"The base unit of '{name}' is empty; the unit has its usual meaning."
                 findings.flaw(

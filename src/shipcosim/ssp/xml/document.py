@@ -1,15 +1,14 @@
 """XML read safely: no entities, no network, every finding with file and line."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from os import PathLike
 from pathlib import Path
 
 import lxml.etree as etree
 
-from shipcosim.errors import Problem
+from shipcosim.errors import AnyPath, Problem
 
 NAMESPACES = {
     prefix: f"http://ssp-standard.org/SSP1/SystemStructure{name}"
@@ -35,10 +34,6 @@ REMEDIES = {
 MOST_PREFIXES = 10
 UNDECLARED = "Namespace prefix"
 LARGEST_FILE = 64 * 2**20  # bytes; the largest model descriptions in the wild are a few MB
-
-
-AnyPath = str | PathLike[str]
-"""A path as users give it."""
 
 
 class Findings:
@@ -93,7 +88,7 @@ class Findings:
         """Problems that make the input unusable."""
         # Only problems added since the last call: the list can be long.
         self._errors += [
-            problem for problem in self.problems[self._looked_at :] if problem.severity == "error"
+            problem for problem in self.problems[self._looked_at :] if problem.is_error
         ]
         self._looked_at = len(self.problems)
         return self._errors
@@ -101,7 +96,7 @@ class Findings:
     @property
     def remarks(self) -> list[Problem]:
         """Problems that stop nothing."""
-        return [problem for problem in self.problems if problem.severity != "error"]
+        return [problem for problem in self.problems if not problem.is_error]
 
 
 @dataclass
@@ -194,9 +189,14 @@ def local(element: etree._Element) -> str:
     return tag.rpartition("}")[2] if isinstance(tag, str) else ""
 
 
+def parts_in(element: Iterable[etree._Element], *names: str) -> list[etree._Element]:
+    """Parts of an element with one of some local names, all without names; comments left out."""
+    return [part for part in element if (local(part) in names if names else local(part))]
+
+
 def parts_of(root: etree._Element, name: str) -> list[etree._Element]:
     """Elements within all children of a local name, whatever their namespace; comments left out."""
-    return [part for group in root if local(group) == name for part in group if local(part)]
+    return [part for group in parts_in(root, name) for part in parts_in(group)]
 
 
 def parent_of(element: etree._Element) -> etree._Element:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import lxml.etree as etree
 
-from shipcosim.ssp.xml.document import NAMESPACES, Document, Findings, local
+from shipcosim.ssp.xml.document import NAMESPACES, Document, Findings, local, parts_in
 from shipcosim.ssp.xml.schemas import is_slip, names_of
 from shipcosim.ssp.xml.values import KINDS
 
@@ -114,7 +114,7 @@ def _own(element: etree._Element) -> Iterator[etree._Element]:
         element = ahead.pop()
         yield element
         if local(element) != "Annotation":
-            ahead += [part for part in element if local(part)][::-1]
+            ahead += parts_in(element)[::-1]
 
 
 def _set_namespaces(document: Document, prefix: str, noted: Findings) -> None:
@@ -146,7 +146,7 @@ def _set_namespaces(document: Document, prefix: str, noted: Findings) -> None:
             said.add((space, right))
             element.tag = f"{{{right}}}{name}"
         if name != "Annotation" and (ours or name in known):
-            ahead += [(part, _kind_within(element, part, kind)) for part in element if local(part)]
+            ahead += [(part, _kind_within(element, part, kind)) for part in parts_in(element)]
 
 
 def _prefix_of(element: etree._Element, kind: str) -> str:
@@ -270,7 +270,7 @@ def drop_unknown(
     document: Document, element: etree._Element, known: Collection[str], noted: Findings
 ) -> None:
     """Remove unknown parts of an element, except misspelt known ones."""
-    for part in [part for part in element if local(part)]:
+    for part in parts_in(element):
         name = local(part)
         if name not in known and not is_slip(name, known):
             noted.flaw(
@@ -285,7 +285,7 @@ def sort_parts(
     document: Document, element: etree._Element, order: Sequence[str], noted: Findings
 ) -> None:
     """Sort the parts of an element as the standard orders them; only where all of them are known."""
-    parts = [part for part in element if local(part)]
+    parts = parts_in(element)
     if not order or any(local(part) not in order for part in parts):
         return
     ordered = sorted(parts, key=lambda part: order.index(local(part)))
@@ -302,7 +302,7 @@ def sort_parts(
 def _join_lists(document: Document, element: etree._Element, noted: Findings) -> None:
     """Join lists of one name, such as two ParameterBindings, in the first of them."""
     first: dict[str, etree._Element] = {}
-    for part in [part for part in element if local(part) in LISTS]:
+    for part in parts_in(element, *LISTS):
         name = local(part)
         if name not in first:
             first[name] = part
@@ -314,7 +314,7 @@ def _join_lists(document: Document, element: etree._Element, noted: Findings) ->
 
 
 def _drop_empty_lists(document: Document, element: etree._Element, noted: Findings) -> None:
-    for part in [part for part in element if local(part) in LISTS]:
+    for part in parts_in(element, *LISTS):
         if not any(local(one) for one in part):
             element.remove(part)
             noted.flaw(
@@ -327,7 +327,7 @@ def _drop_empty_lists(document: Document, element: etree._Element, noted: Findin
 def _drop_repeated(document: Document, element: etree._Element, noted: Findings) -> None:
     """Remove elements that repeat an earlier one."""
     seen = {}
-    for part in [part for part in element if local(part) in ONCE]:
+    for part in parts_in(element, *ONCE):
         said = _said(part)
         if said in seen:
             found = f"<{local(part)}> says the same as line {seen[said]}; it counts once."

@@ -5,7 +5,7 @@ from typing import Any
 
 import lxml.etree as etree
 
-from shipcosim.ssp.xml.document import local
+from shipcosim.ssp.xml.document import parts_in
 from shipcosim.units import is_finite
 
 KINDS = {
@@ -95,4 +95,4 @@ def text_of(value: Value) -> str:
 
 def typed_part(element: etree._Element) -> etree._Element | None:
     """Child element with the type, such as <Real>; None without one."""
-    return next((part for part in element if local(part) in KINDS), None)
+    return next(iter(parts_in(element, *KINDS)), None)

@@ -10,7 +10,7 @@ from copy import deepcopy
 
 import lxml.etree as etree
 
-from shipcosim.ssp.xml.document import NAMESPACES, Findings, local
+from shipcosim.ssp.xml.document import NAMESPACES, Findings, local, parts_in
 from shipcosim.ssp.xml.schemas import names_of, report_schema, schema_of
 from shipcosim.ssp.xml.values import KINDS, read_value
 
@@ -70,7 +70,7 @@ def _reduce_type(element: etree._Element, name: str) -> None:
     """Rename a type as in 1.0, with one representative value of several."""
     space = element.tag.partition("}")[0]
     # Values as elements of their own become one attribute.
-    listed = [part for part in element if local(part) == "Value"]
+    listed = parts_in(element, "Value")
     for part in listed:
         element.remove(part)
     if listed:
