@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -473,30 +473,34 @@ def _stored(step: Step) -> set[int]:
     return moved
 
 
+def _roots(block: Block, recording: Recording, with_results: bool) -> Iterator[Any]:
+    """Guards, conditions, and the results or error texts at the ends of all ways from a block."""
+    yield from (symbol for symbol in block.values if symbol.op == "guard")
+    if block.condition is not None:
+        yield block.condition
+        yield from _roots(_of(block.yes), recording, with_results)
+        yield from _roots(_of(block.no), recording, with_results)
+        return
+    result = block.result
+    if isinstance(result, Exception):
+        yield from said(result, recording)
+    elif not with_results:
+        return
+    elif isinstance(result, list):
+        yield from (number for _, number in result)
+    elif isinstance(result, Flat):
+        yield from result.numbers
+    else:
+        yield result
+
+
 def _used(step: Step) -> set[int]:
     """Numbers of the values that a result depends on."""
     used: set[int] = set()
     due: list[Any] = []
 
-    # Roots: guards, conditions, and the results or error texts at the ends of all ways.
     def note(block: Block, with_results: bool = True):
-        due.extend(symbol for symbol in block.values if symbol.op == "guard")
-        if block.condition is not None:
-            due.append(block.condition)
-            note(_of(block.yes), with_results)
-            note(_of(block.no), with_results)
-            return
-        result = block.result
-        if isinstance(result, Exception):
-            due.extend(said(result, step.recording))
-        elif not with_results:
-            return
-        elif isinstance(result, list):
-            due.extend(number for _, number in result)
-        elif isinstance(result, Flat):
-            due.extend(result.numbers)
-        else:
-            due.append(result)
+        due.extend(_roots(block, step.recording, with_results))
 
     made = _made_by_number(step)
     note(step.root)
@@ -508,9 +512,10 @@ def _used(step: Step) -> set[int]:
         used.add(value.number)
         due.extend(value.operands)
         # A cached result needs its call.
-        if value.op in ("kept", "kept_row"):
-            value_call = value.operands[0] if value.op == "kept" else value.operands[1][0]
-            due.extend(made["call", value_call])
+        if value.op == "kept":
+            due.extend(made["call", value.operands[0]])
+        elif value.op == "kept_row":
+            due.extend(made["call", value.operands[1][0]])
         # A value after a loop needs the loop: start values, condition and body.
         elif value.op in ("after", "loop"):
             due.extend(made["loop", value.operands[0]])
@@ -525,15 +530,14 @@ def _used(step: Step) -> set[int]:
             for side in step.recording.branches[number].sides:
                 due.extend(results_of(side, place))
         elif value.op == "mapped":
-            number, place, _ = value.operands
+            number, place, *_ = value.operands
             due.extend(made["map", number])
             due.extend(results_of(step.recording.maps[number].body, place))
         elif value.op == "map":
             note(step.recording.maps[value.operands[0]].body, with_results=False)
         elif value.op == "branch":
-            branch = step.recording.branches[value.operands[0]]
-            due.append(branch.condition)
-            for side in branch.sides:
+            due.append(step.recording.branches[value.operands[0]].condition)
+            for side in step.recording.branches[value.operands[0]].sides:
                 note(side, with_results=False)
     return used
 
