@@ -13,9 +13,9 @@ from shipcosim.diagnose.inference.linearisation import Linear, advanced, rows_fi
 from shipcosim.diagnose.inference.thresholds import FASTEST, FASTEST_TURN, REFERENCE_JOLTS
 from shipcosim.diagnose.ship.inputs import Record, part_of
 from shipcosim.diagnose.ship.instruments import LAGS
-from shipcosim.diagnose.ship.measured_motion import at_rows, readings, true_motion
+from shipcosim.diagnose.ship.measured_motion import at_rows, readings, true_motion, wind_over_ground
 from shipcosim.diagnose.ship.model import ShipModel
-from shipcosim.models.core.kinematics import to_body, to_ned
+from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.motion import Motion
 
 _FORCE = slice(6, 9)
@@ -75,12 +75,8 @@ def _one_more(series):
 
 def _true_wind(speed, direction, motion):
     """Speed and direction over ground of the wind that meets the moving ship so."""
-    # Wind vector over ground: the ship's velocity less the relative wind, which is named by where
-    # it comes from.
-    along = motion.u - speed * np.cos(direction)
-    across = motion.v - speed * np.sin(direction)
-    # Turn it into north and east; the direction is again where it comes from.
-    north, east = to_ned(motion.psi, along, across)
+    # The direction is again where it comes from.
+    north, east = wind_over_ground(speed, direction, motion)
     return np.hypot(north, east), np.unwrap(np.arctan2(-east, -north))
 
 
