@@ -127,17 +127,11 @@ def as_ordered(record: Record, log: xarray.Dataset, model: ShipModel) -> Record:
     at = after - (record.time - time[after - 1] < time[after] - record.time)
     units = {}
     for name, (speed, direction) in record.units.items():
-        told = {f"{name}_rpm": (speed, 1.0 / 60.0), f"{name}_thrust": (speed, 1.0)}
-        role = next(
-            (
-                role
-                for role in told
-                if role in log and role.removeprefix(f"{name}_") in model.drives(name)
-            ),
-            None,
-        )
         # Orders as logged; the averaged ones where the log has a hole.
-        own = speed if role is None else told[role][1] * _known(log[role].values, speed, at)
+        own = speed
+        for drive, factor in (("thrust", 1.0), ("rpm", 1.0 / 60.0)):
+            if drive in model.drives(name) and f"{name}_{drive}" in log:
+                own = factor * _known(log[f"{name}_{drive}"].values, speed, at)
         azimuth = f"{name}_azimuth"
         units[name] = (
             own,
