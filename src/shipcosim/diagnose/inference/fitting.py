@@ -71,8 +71,8 @@ class IdentificationProblem:
 
     def base_of(self, columns: Iterable[Regressor]) -> InParts:
         """The problem about the ship without a cause, with these columns of the basis."""
-        places = {_key(column): i for i, column in enumerate(self.basis, start=1)}
-        return self.linear.chosen([places[_key(column)] for column in columns])
+        places = {column.key: i for i, column in enumerate(self.basis, start=1)}
+        return self.linear.chosen([places[column.key] for column in columns])
 
     def known(self, hypotheses: Sequence[Hypothesis]) -> list[Regressor]:
         """Columns of the numbers that are known within a tolerance, except those that these hypotheses change."""
@@ -188,10 +188,6 @@ def _smoothed(
         and np.all(np.less(fastest, _RUNS_AWAY * np.array(before) + 0.1))
     )
     return found if follows else motion
-
-
-def _key(column: Regressor) -> tuple[tuple[str, float], ...]:
-    return tuple(sorted(column.changes.items()))
 
 
 def fitted(
