@@ -340,13 +340,15 @@ def baseline(errors: xarray.Dataset) -> dict[str, list[float]]:
     }
 
 
-def gain(errors: xarray.Dataset, fewest: int = 1) -> dict[str, Any]:
+def gain(errors: xarray.Dataset, seed: int = 1, fewest: int = 1) -> dict[str, Any]:
     """The entry ``gain`` of diagnosis.json: root mean square position errors after 60 s.
 
     Parameters
     ----------
     errors : xarray.Dataset
         Of a `Comparison`, or from `simulated`.
+    seed : int
+        Of the bootstrap.
     fewest : int
         Blocks that it needs.
 
@@ -369,7 +371,7 @@ def gain(errors: xarray.Dataset, fewest: int = 1) -> dict[str, Any]:
     before, rival, after, floor = roots(squares.mean(1))
     # Block bootstrap for its confidence interval: neighbouring predictions overlap, so blocks are
     # drawn instead of segments.
-    drawn = share_explained(*roots(_resampled(squares, times))[[0, 2, 3]])
+    drawn = share_explained(*roots(_resampled(squares, times, seed))[[0, 2, 3]])
     entry = gain_entry(int(HORIZONS[-1]), (before, after, floor), drawn, float(rival))
     if _blocks(times).max() + 1 < fewest:
         entry["ci95"] = None
@@ -453,7 +455,7 @@ def resampled_sums(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     return values @ rng.multinomial(count, np.full(count, 1.0 / count), size=DRAWS).T
 
 
-def _resampled(squares, times):
+def _resampled(squares, times, seed):
     """Mean squares of draws of blocks, (models, draws) array."""
     block = _blocks(times)
     blocks = block.max() + 1
@@ -461,5 +463,5 @@ def _resampled(squares, times):
     sums = np.stack(
         [np.bincount(block, weights, blocks) for weights in (*squares, np.ones(block.size))]
     )
-    drawn = resampled_sums(sums, np.random.default_rng(1))
+    drawn = resampled_sums(sums, np.random.default_rng(seed))
     return drawn[:-1] / drawn[-1]
