@@ -40,7 +40,7 @@ from shipcosim.diagnose.inference.fitting import (
     prepared,
     theta_of,
 )
-from shipcosim.diagnose.inference.innovations import Noise, inner_products
+from shipcosim.diagnose.inference.innovations import Noise
 from shipcosim.diagnose.inference.linearisation import Regressor, moved
 from shipcosim.diagnose.inference.parts import InParts, beside, linearised_by_parts
 from shipcosim.diagnose.inference.problem import identification_problem, tuned_noise
@@ -192,7 +192,7 @@ def _clear_tries(explained: ExplainedLog) -> list[_Fitted]:
     tried = []
     for base in _bases(explained):
         # All columns of the base once, for every cause beside it.
-        linear = linearised_by_parts(base.about, base.record, base.model, base.columns)
+        linear = base.linear
         tried += [_fitted(problem, one, linear) for one in _tries(problem, base, linear)]
     return sorted(
         (one for one in tried if one is not None and _is_clear(one)), key=lambda one: -one.score
@@ -260,7 +260,7 @@ def _tries(problem: IdentificationProblem, base: Fit, linear: InParts) -> list[_
     # Filter the columns of the chosen courses row by row, all in one pass.
     for one in chosen:
         linear = beside(linear, _shaped(problem.base_of(one.group), one.course.at(time)))
-    products = inner_products(linear, problem.noise, problem.record).products
+    products = problem.gram(linear).products
     found: dict[str, _Try] = {}
     place = len(base.columns)
     # Evidence of each course, with what the search over its times costs; the best course of each
@@ -306,7 +306,7 @@ def _fitted(problem: IdentificationProblem, one: _Try, linear: InParts) -> _Fitt
         model = base.model.with_values(values)
         there = linearised_by_parts(base.about, base.record, model, own)
         mixed = _mixed(plain, there, shares, count)
-        filtered = inner_products(mixed, problem.noise, problem.record)
+        filtered = problem.gram(mixed)
         if not np.isfinite(filtered.products).all():
             return None
         # The base stays at its own point of linearisation, the cause at its present values.
@@ -432,7 +432,7 @@ def _blocks(problem, base, linear, wanted) -> _Blocks:
     # Blocks of COURSE_BLOCK each, within limits, so that the number of courses stays small.
     count = int(np.clip((time[-1] - time[0]) / COURSE_BLOCK, 8, MOST_COURSE_BLOCKS))
     linear = beside(linear, problem.base_of(regressors_of(wanted)))
-    parts = inner_products(linear, problem.noise, problem.record, count).blocks
+    parts = problem.gram(linear, count).blocks
     edges = np.linspace(time[0], time[-1] + problem.record.step, count + 1)
     places: dict[str, list[slice]] = {}
     for hypothesis, _, where in placed(wanted, len(base.columns) + 1):
@@ -586,7 +586,7 @@ def _sizes_over_time(problem, one: _Fitted) -> tuple[SizeOverTime, ...]:
     for spell in spells:
         linear = beside(linear, _shaped(plain, Course(SPELL, (spell,)).at(time)))
     # One joint fit of all parts beside the base, so that their sizes are estimated together.
-    products = inner_products(linear, problem.noise, problem.record).products
+    products = problem.gram(linear).products
     count = len(base.columns)
     own = range(count, count + len(group) * len(spells))
     _, theta, covariance = _weighed(products, base, own)

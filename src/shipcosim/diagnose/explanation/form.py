@@ -11,7 +11,6 @@ from shipcosim.diagnose.explanation.unmodelled import is_healthy
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, fitted, prepared
-from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.inference.parts import beside, linearised_by_parts
 from shipcosim.diagnose.inference.problem import beside_likeliest, tuned_noise
@@ -100,9 +99,9 @@ def scores_by_scale(problem: IdentificationProblem) -> dict[float, float]:
     # Columns of the form's numbers, linearised once for all scales.
     sizes = problem.model.form_sizes
     of_form = [Regressor({path: size}) for path, size in sizes.items()]
-    form = linearised_by_parts(fit.about, problem.record, fit.model, of_form, kept=False)
+    form = linearised_by_parts(fit.about, problem.record, fit.model, of_form)
     linear = beside(beside(fit.linear, form), problem.base_of(regressors_of(wanted)))
-    products = inner_products(linear, problem.noise, problem.record).products
+    products = problem.gram(linear).products
     found = {}
     # The scale only sets the prior of these columns: each is one more evidence from the same
     # products.

@@ -11,7 +11,7 @@ import numpy as np
 from shipcosim.diagnose.inference.innovations import Noise, innovations, smoothed
 from shipcosim.diagnose.inference.linearisation import Linear, advanced, rows_first, runge_kutta
 from shipcosim.diagnose.inference.thresholds import FASTEST, FASTEST_TURN, REFERENCE_JOLTS
-from shipcosim.diagnose.ship.inputs import Record, part_of
+from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.instruments import LAGS
 from shipcosim.diagnose.ship.measured_motion import at_rows, readings, true_motion, wind_over_ground
 from shipcosim.diagnose.ship.model import ShipModel
@@ -237,7 +237,7 @@ def predicted(
     # All predictions go on together, one row after the other; only the wanted horizons are stored.
     for k in range(horizons[-1]):
         for i in range(parts):
-            during = [_at(one, rows + k) for one in inputs[2 * i : 2 * i + 3]]
+            during = [one.at(rows + k) for one in inputs[2 * i : 2 * i + 3]]
             loads = [load(k * record.step + (i + share) * h) for share in (0.0, 0.5, 1.0)]
             motion = _bounded(runge_kutta(motion, h, during, model, loads))
         if k + 1 in horizons:
@@ -265,15 +265,6 @@ def _bounded(motion):
     u = np.clip(motion.u, -FASTEST, FASTEST)
     v = np.clip(motion.v, -FASTEST, FASTEST)
     return motion._replace(u=u, v=v, r=np.clip(motion.r, -FASTEST_TURN, FASTEST_TURN))
-
-
-def _at(inputs, rows):
-    """Inputs at some rows."""
-    units = part_of(inputs.units, rows)
-    wind = (
-        None if series is None else series[rows] for series in (inputs.wind_speed, inputs.wind_from)
-    )
-    return type(inputs)(inputs.time[rows], units, *wind)
 
 
 def missing(found: Motion, seen: Motion, rows: np.ndarray) -> dict[str, np.ndarray]:

@@ -7,7 +7,6 @@ import numpy as np
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
-from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import Regressor, moved
 from shipcosim.diagnose.inference.parts import beside
 from shipcosim.diagnose.inference.regressors import regressors_of, screening_regressors
@@ -37,7 +36,7 @@ def screened(problem: IdentificationProblem, fit: Fit) -> list[Gain]:
     # Only hypotheses that are not fitted already, about the ship without a cause.
     wanted = [s for s in problem.hypotheses if s not in fit.hypotheses]
     linear = beside(fit.linear, problem.base_of(regressors_of(wanted)))
-    products = inner_products(linear, problem.noise, problem.record).products
+    products = problem.gram(linear).products
     return gains(products, fit.columns, fit.centre, wanted, fit.model.get)
 
 

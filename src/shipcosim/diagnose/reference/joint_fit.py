@@ -18,7 +18,7 @@ from shipcosim.diagnose.inference.fitting import (
     own_columns,
     tolerated,
 )
-from shipcosim.diagnose.inference.innovations import Gram, inner_products
+from shipcosim.diagnose.inference.innovations import Gram
 from shipcosim.diagnose.inference.linearisation import Regressor, moved
 from shipcosim.diagnose.inference.parts import beside
 from shipcosim.diagnose.inference.regressors import regressors_of
@@ -216,7 +216,7 @@ def screened_jointly(logs: SeveralLogs, fit: JointFit) -> list[Gain]:
         part = fit.parts[name]
         added = regressors_of(own for _, own in logs.all_within(name, wanted))
         linear = beside(part.linear, problem.base_of(added))
-        found[name] = inner_products(linear, problem.noise, problem.record).products
+        found[name] = problem.gram(linear).products
     # Add them up over the logs, and compute the gain of each hypothesis.
     layout = screening_layout(logs, fit.layout, wanted)
     products = np.sum([layout.spread(name, one) for name, one in found.items()], axis=0)

@@ -18,7 +18,6 @@ from shipcosim.diagnose.explanation.verdict import (
     judge_against_healthy,
     usual_gain,
 )
-from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.regressors import placed, regressors_of
 from shipcosim.diagnose.inference.thresholds import (
     NULL_GAIN_WITHOUT_WIND,
@@ -131,7 +130,7 @@ def joint_excitation(verdict: JointVerdict) -> Excitation:
     for name, problem in logs.problems.items():
         own = (one for _, one in logs.all_within(name, logs.hypotheses))
         columns = nothing.parts[name].columns + regressors_of(own)
-        products = inner_products(problem.base_of(columns), problem.noise, problem.record).products
+        products = problem.gram(problem.base_of(columns)).products
         together = together + layout.spread(name, products)
     # Columns of each cause, and the evidence that it needs to count as testable.
     groups = [(one, places) for one, _, places in placed(logs.hypotheses, len(nothing.columns))]
