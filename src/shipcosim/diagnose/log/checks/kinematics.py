@@ -101,7 +101,7 @@ class Logged:
 
     def axes(self, series: np.ndarray) -> np.ndarray:
         """A complex series (n,) by the axes of the position, (n, a)."""
-        return np.column_stack([series.real, series.imag])[:, : self.seen.shape[1]]
+        return np.column_stack([np.real(series), np.imag(series)])[:, : self.seen.shape[1]]
 
 
 def logged_position(log: dict) -> Logged:

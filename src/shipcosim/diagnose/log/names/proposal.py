@@ -116,12 +116,18 @@ def _known_together(every):
     found = []
     for guess in every:
         words = letters[guess.column]
-        if len(words) == 1 and words[0] in sure:
-            role = roles.get(words[0], guess.role)
-            if guess.role != role:
-                guess = Guess(guess.column, role, Channel(column=guess.column), unit=guess.unit)
-            guess = replace(guess, rank=min(guess.rank, SURE), why="")
-        found.append(guess)
+        letter = words[0] if len(words) == 1 else ""
+        if letter in sure and (
+            guess.role not in ("", roles.get(letter, guess.role)) or not guess.role
+        ):
+            guess = Guess(
+                guess.column, roles.get(letter, ""), Channel(column=guess.column), unit=guess.unit
+            )
+        found.append(
+            replace(guess, rank=min(guess.rank, SURE), why="")
+            if letter in sure and guess.role
+            else guess
+        )
     return found
 
 
