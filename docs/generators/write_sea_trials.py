@@ -95,9 +95,7 @@ def _told(telling):
 
 def whole_table(found):
     """Errors of all trials with the causes fitted to all of them: in-sample."""
-    before, after = (
-        errors(found.trials, found.model, c, orders=True) for c in ({}, changes_of(found.best))
-    )
+    before, after = (errors(found.trials, found.model, c) for c in ({}, changes_of(found.best)))
     return ", ".join(
         f"{name} {before[name]:.1f} → {after[name]:.1f} %"
         for name in ("straight run: speed", "turning circle: speed", "turning circle: rate")
@@ -113,7 +111,7 @@ def draw(found, picture=PICTURE):
     for (track, heading), trial in zip(axes.T, chosen, strict=True):
         side = "port" if trial.side < 0 else "starboard"
         causes = found.held_out[OTHER[side]].fitted
-        (motions,) = sailed([trial], found.model, [{}, causes], orders=True)
+        (motions,) = sailed([trial], found.model, [{}, causes])
         lines = (("measured", MEASURED, trial.measured), ("as modelled", BEFORE, motions[0]))
         for name, colour, motion in (
             *lines,

@@ -266,6 +266,17 @@ def it_has(name: str, known: Iterable[str]) -> str:
     return "It has" + suggestion(name, known).removeprefix("There is")
 
 
+def counted(number: int, what: str) -> str:
+    """A number of things, for a sentence.
+
+    Examples
+    --------
+    >>> counted(1, "row"), counted(2, "row")
+    ('1 row', '2 rows')
+    """
+    return f"{int(number)} {what}{'s' if number > 1 else ''}"
+
+
 def shortened(names: Iterable[object], most: int = 5, between: str = ", ") -> str:
     """Names for a sentence, and how many there are beyond the first ones.
 

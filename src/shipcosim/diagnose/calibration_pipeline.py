@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-import shipcosim
 from shipcosim.diagnose.compared_log import learned_from, surely_taught
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.finding import Finding
@@ -31,8 +30,8 @@ from shipcosim.diagnose.reference.calibration import (
     reference_of,
 )
 from shipcosim.diagnose.reference.joint_fit import JointFit
-from shipcosim.diagnose.reference.learned_reference import learned_errors, learned_reference
-from shipcosim.diagnose.reference.log_errors import LogErrors
+from shipcosim.diagnose.reference.learned_reference import learned_reference
+from shipcosim.diagnose.reference.log_errors import LogErrors, errors_by_models
 from shipcosim.diagnose.reference.parameter_set import FILE as SET
 from shipcosim.diagnose.reference.parameter_set import write_parameter_set
 from shipcosim.diagnose.reference.reference import FILE, KnownNumber, Reference, ReferenceLog
@@ -180,14 +179,7 @@ def calibrate(
     ordinary = {
         kind: max(one[kind] for one in fitted.unmodelled.values()) for kind in _KINDS_OF_THE_LOG
     }
-    reference = reference_of(
-        fitted,
-        ship,
-        ordinary,
-        _reference_logs(found),
-        system=given.name,
-        version=shipcosim.__version__,
-    )
+    reference = reference_of(fitted, ship, ordinary, _reference_logs(found), given.name)
     each = tuple(
         CalibratedLog(
             name, one.faults, _weather(fitted.fit, name), errors[name], fitted.unmodelled[name]
@@ -222,16 +214,16 @@ def _calibrated_craft(
         right = "Give more logs, with turns and with thrust ahead and astern."
     if craft is None:
         raise error_at(", ".join(found), what, right)
-    reference = learned_reference(
-        craft, ship, _reference_logs(found), given.name, shipcosim.__version__
-    )
+    reference = learned_reference(craft, ship, _reference_logs(found), given.name)
     # With several logs each is predicted by what the others taught (cross-validation).
     each = craft.each_without or (craft,)
     logs = []
     for others, (name, one) in zip(each, found.items(), strict=True):
         model = one.comparison.given(one.problem.model)
         names = [other for other in found if other != name]
-        errors = learned_errors(one.problem.record, model, others, craft, names)
+        # Predictions by the system, by the craft without this log, and by the craft with all logs.
+        models = {"before": model, "after": others.on(model), "floor": craft.on(model)}
+        errors = errors_by_models(one.problem.record, models, names)
         logs.append(CalibratedLog(name, one.faults, {}, errors, {}))
     refusals = tuple(_reasons_not_to_trust(logs, {}))
     remark = _ALL_LEARNED if is_assumed else _ANOTHER_CRAFT

@@ -64,7 +64,7 @@ def answered(log, model, right, truth):
     record = as_ordered(record_of(read.repaired, read.ship), read.repaired, read.ship)
     found = sea_trials_of(record, read.ship, orders=True)
     causes = causes_of_trials(read.ship, read_catalogue(), orders=True)
-    evidence = trial_evidence(found, read.ship, causes, orders=True)
+    evidence = trial_evidence(found, read.ship, causes)
     ranking = ranked(evidence)
     sets = [best_of(ranking), *rivals_of(ranking)]
     said = f"{len(found)} trials: {' | '.join(one.label for one in sets)}"
@@ -82,7 +82,7 @@ def answered(log, model, right, truth):
     }
     shafts = dict.fromkeys(model.azimuths, trials.LEGS[0][1] / 60.0)
     more = [trial for _, pair in as_trials(chosen, read.ship, shafts, changes) for trial in pair]
-    again = ranked(trial_evidence([*found, *more], read.ship, causes, orders=True))
+    again = ranked(trial_evidence([*found, *more], read.ship, causes))
     sets = [best_of(again), *rivals_of(again)]
     then = f"{' and '.join(one.name for one in chosen)}: {' | '.join(one.label for one in sets)}"
     return (

@@ -32,7 +32,7 @@ def found():
     few = [one for one in catalogue(model) if "35 deg" in one.name and "half speed" in one.name]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(separation, "catalogue", lambda _: few)
-        return studied(pair, model, causes, orders=True)
+        return studied(pair, model, causes)
 
 
 def test_the_page_says_what_is_wrong_what_fits_alike_and_what_to_sail(found, tmp_path, data_of):

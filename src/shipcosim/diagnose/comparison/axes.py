@@ -175,9 +175,7 @@ class Axis:
 
     def unexplained(self, given: np.ndarray) -> float:
         """Mean square of the measured force that is left beside a given load, (n,) array, and all but the thrusters."""
-        return regressed(
-            self.felt - given, self.rest, self.positive, self.block, self._prior
-        ).squares
+        return self._beside(given).squares
 
     @property
     def felt_unit(self) -> float:
@@ -224,7 +222,11 @@ class Axis:
     @cached_property
     def _without(self) -> Regression:
         """The measured force explained by all but the thrusters."""
-        return regressed(self.felt, self.rest, self.positive, self.block, self._prior)
+        return self._beside(np.zeros(self.felt.size))
+
+    def _beside(self, given: np.ndarray) -> Regression:
+        """The measured force less a given load explained by all but the thrusters."""
+        return regressed(self.felt - given, self.rest, self.positive, self.block, self._prior)
 
     def _water(self, found: Regression, k: int) -> tuple[float, float]:
         """Size of the water's load as fitted, along the model's, with its standard deviation."""

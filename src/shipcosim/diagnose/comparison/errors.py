@@ -1,5 +1,7 @@
 """Simulated against measured: errors of open-loop predictions from smoothed measurements, over a craft's own times."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from shipcosim.diagnose.comparison.measured_force import Felt
@@ -78,7 +80,7 @@ def errors_of(record: Record, felt: Felt, model: ShipModel) -> dict[str, list[fl
         rows = starts_of(record, felt, horizons[-1])
     # The smoothed measurements serve as initial state and as truth.
     seen = felt.smooth_motion
-    counts = [max(1, round(horizon / record.step)) for horizon in horizons]
+    counts = counts_of(horizons, record.step)
     # Errors of the predictions by channel, (horizons, s) arrays.
     logged, ship = replayable(record, model, seen)
     start = true_motion(at_rows(seen, rows), ship)
@@ -111,26 +113,8 @@ def errors_over_none(
     # The same starts as the simulation's, so that the errors compare.
     rows = starts_of(record, felt, errors["horizon_s"][-1])
     seen = felt.smooth_motion
-    counts = np.array([max(1, round(horizon / record.step)) for horizon in errors["horizon_s"]])[
-        1:, None
-    ]
-    time = counts * record.step
-    # With constant velocities the ship sails along an arc: its chord is the distance times sinc of
-    # half the turn, in the direction at half the turn.
-    (x, y, psi, u, v, r) = (value[rows] for value in seen)
-    turned = (
-        np.exp(1j * psi)
-        * (u + 1j * v)
-        * time
-        * np.exp(0.5j * r * time)
-        * np.sinc(0.5 * r * time / np.pi)
-    )
-    kept = Motion(
-        x + turned.real,
-        y + turned.imag,
-        psi + r * time,
-        *(value + 0.0 * time for value in (u, v, r)),
-    )
+    counts = np.array(counts_of(errors["horizon_s"], record.step))[1:, None]
+    kept = sailed_steadily(at_rows(seen, rows), counts * record.step)
     # Ratio of root mean squares by horizon; the worst counts.
     off = missing(kept, seen, rows + counts)
     ratios = {}
@@ -138,6 +122,27 @@ def errors_over_none(
         none = np.sqrt((off[channel] ** 2).mean(axis=1))
         ratios[channel] = float((np.array(errors[name])[1:] / np.maximum(none, 1e-12)).max())
     return ratios
+
+
+def sailed_steadily(start: Motion, time: np.ndarray) -> Motion:
+    """The motion of a craft some time [s] later, if it keeps its velocity and its rate of turn."""
+    # With constant velocities the ship sails along an arc: its chord is the distance times sinc of
+    # half the turn, in the direction at half the turn.
+    (x, y, psi, u, v, r) = start
+    turned = (
+        np.exp(1j * psi)
+        * (u + 1j * v)
+        * time
+        * np.exp(0.5j * r * time)
+        * np.sinc(0.5 * r * time / np.pi)
+    )
+    kept = (value + 0.0 * time for value in (u, v, r))
+    return Motion(x + turned.real, y + turned.imag, psi + r * time, *kept)
+
+
+def counts_of(horizons: Iterable[float], step: float) -> list[int]:
+    """Rows in each horizon [s] of a log with that step [s] from row to row."""
+    return [max(1, round(horizon / step)) for horizon in horizons]
 
 
 def starts_of(record: Record, felt: Felt, horizon: float) -> np.ndarray:

@@ -39,7 +39,7 @@ class Normal:
         start = np.array([one.start for one in self.numbers])
         fixed = np.ones(start.size, bool)
         fixed[free] = False
-        positive = [one.sign != 0 and not one.is_logarithmic for one in self.numbers]
+        positive = [one.sign != 0 and not one.is_factor for one in self.numbers]
         found = np.tile(start, (len(self.matrix), 1))
         if not free:
             return found
@@ -102,7 +102,7 @@ def fitted(
     """Normal equations about the coordinates that fit all rows, searched from those of the file or from near ones."""
     # Gauss-Newton from the file's numbers, with limited steps of numbers that enter as logarithms.
     about = np.array([one.start for one in numbers]) if near is None else near
-    is_bent = [one.is_logarithmic for one in numbers]
+    is_bent = [one.is_factor for one in numbers]
     normal = normal_about(logs, numbers, about)
     for _ in range(STEPS if near is None else 1):
         step = normal.solved(free)[-1] - about

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shipcosim.diagnose.comparison.commanded import commanded_by
-from shipcosim.diagnose.comparison.errors import starts_of
+from shipcosim.diagnose.comparison.errors import counts_of, sailed_steadily, starts_of
 from shipcosim.diagnose.comparison.measured_force import Felt, felt_by
 from shipcosim.diagnose.craft.numbers import CraftNumber, with_numbers
 from shipcosim.diagnose.craft.thresholds import FEWEST_PARTS, MOST_PARTS, MOST_STARTS, PART
@@ -103,16 +103,7 @@ class CraftLog:
         """Prediction errors, (1, 3, h, s) array, of a craft that keeps the velocity and the rate of turn of the start."""
         start = at_rows(self.seen, self.rows)
         time = self.record.step * np.array(self.counts)[:, None, None]
-        # The way along an arc: the velocity at half of its turn, shorter by the chord over the arc.
-        half = 0.5 * start.r * time
-        way = (
-            (start.u + 1j * start.v)
-            * np.exp(1j * (start.psi + half))
-            * time
-            * np.sinc(half / np.pi)
-        )
-        x, y, psi = start.x + way.real, start.y + way.imag, start.psi + 2.0 * half
-        return self._off(start._replace(x=x, y=y, psi=psi))
+        return self._off(sailed_steadily(start, time))
 
     def _off(self, found: Motion) -> np.ndarray:
         """Predicted less seen place and heading after each horizon, (k, 3, h, s), of (h, k, s) arrays."""
@@ -160,7 +151,7 @@ def craft_log(
     # Parts long enough for predictions within each; too few parts cannot be held out.
     felt = felt_by(record, model.length)
     seen = felt.smooth_motion
-    counts = [max(1, round(horizon / record.step)) for horizon in horizons]
+    counts = counts_of(horizons, record.step)
     size = record.time.size
     count = int(min(MOST_PARTS, size // (PART * counts[-1])))
     if whole:
@@ -174,16 +165,7 @@ def craft_log(
     rows = rows[:: max(1, -(-rows.size // MOST_STARTS))]
     if np.unique(parts[rows]).size < count:
         return None
-    # Inputs without delay and wind over ground, one more row than steps.
+    # Without delay and with the wind over ground, what is logged in a row acts in that row.
     logged, neutral = replayable(record, model, seen)
-    inputs = logged.inputs(neutral)
-    units = {name: (_one_more(one), _one_more(two)) for name, (one, two) in inputs.units.items()}
-    wind = (
-        None if one is None else _one_more(one) for one in (inputs.wind_speed, inputs.wind_from)
-    )
-    inputs = Inputs(record.time, units, *wind)
+    inputs = Inputs(record.time, logged.units, *(logged.wind or (None, None)))
     return CraftLog(logged, neutral, felt, seen, inputs, parts, rows, counts)
-
-
-def _one_more(series: np.ndarray) -> np.ndarray:
-    return np.concatenate([series, series[-1:]])

@@ -46,6 +46,7 @@ class CraftNumber:
         That it may have: 1, -1, or 0 for either.
     unit : str
     is_factor : bool
+        Its coordinate is a logarithm: a factor of e either way is one step. Else it may go to zero.
     is_of_file : bool
         The file has it, or should have: it is free from the start.
     """
@@ -61,14 +62,9 @@ class CraftNumber:
     is_of_file: bool = True
 
     @property
-    def is_logarithmic(self) -> bool:
-        """Whether a factor of e either way is one step of its coordinate; else it may go to zero."""
-        return self.is_factor
-
-    @property
     def start(self) -> float:
         """Coordinate of the file's value; a learned value is expected within about 1 of it."""
-        return 0.0 if self.is_logarithmic else self.given / self.step
+        return 0.0 if self.is_factor else self.given / self.step
 
     @property
     def step(self) -> float:
@@ -77,7 +73,7 @@ class CraftNumber:
 
     def value(self, coordinate: Any) -> Any:
         """The number by its coordinate, a float or an array."""
-        if not self.is_logarithmic:
+        if not self.is_factor:
             return self.step * coordinate
         return self.given * np.exp(np.clip(coordinate, -MOST, MOST))
 

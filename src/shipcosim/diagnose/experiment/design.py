@@ -268,30 +268,26 @@ def _shared_columns(fits):
     found = {}
     for fit in fits:
         for column in fit.columns:
-            found.setdefault(_key(column), column)
+            found.setdefault(column.key, column)
     own = set()
     for fit in fits:
         turned = paths_of(fit.hypotheses)
         turned |= {path for one in fit.hypotheses for path in one.definition.companions}
-        own |= {_key(column) for column in fit.columns if column.gives_way(turned)}
+        own |= {column.key for column in fit.columns if column.gives_way(turned)}
     return [column for key, column in found.items() if key not in own]
-
-
-def _key(column):
-    return tuple(sorted(column.changes.items()))
 
 
 def _beside(fit, model, motion, record, right, tolerated, known):
     """The problem of a fit on a motion by another truth: what it misses more than the truth, and all its columns."""
-    shared = [_key(column) for column in known]
-    own = [column for column in fit.columns if _key(column) not in shared]
+    shared = [column.key for column in known]
+    own = [column for column in fit.columns if column.key not in shared]
     # Difference of what both models miss: only what the wrong model adds.
     mine = linearise(motion, record, model, own)
     mine.driven[..., 0] -= right.driven[..., 0]
     mine.seen[..., 0] -= right.seen[..., 0]
     both = beside(mine, tolerated)  # missed, own, all known
-    order = {key: i for i, key in enumerate([*map(_key, own), *shared], start=1)}
-    return both.chosen([order[_key(column)] for column in fit.columns])
+    order = {column.key: i for i, column in enumerate([*own, *known], start=1)}
+    return both.chosen([order[column.key] for column in fit.columns])
 
 
 def _missed(white, covariance):

@@ -12,11 +12,11 @@ from shipcosim.diagnose.inference.innovations import Noise
 from shipcosim.diagnose.numerics import gaussian_filter
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.diagnose.ship.inputs import Inputs, Record
-from shipcosim.diagnose.ship.measured_motion import at_rows
+from shipcosim.diagnose.ship.measured_motion import at_rows, wind_over_ground
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.diagnose.ship.track_keeping import DpController
-from shipcosim.models.core.kinematics import to_body, to_ned
+from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.motion import Motion
 
 LONGEST = 15.0
@@ -407,10 +407,7 @@ def true_wind(record: Record, motion: Motion, model: ShipModel) -> tuple[float, 
         north = -speed * np.cos(direction)
         east = -speed * np.sin(direction)
     else:
-        # Relative to true wind: add the ship's velocity, then turn to north and east.
-        u = motion.u - speed * np.cos(direction)
-        v = motion.v - speed * np.sin(direction)
-        north, east = to_ned(motion.psi, u, v)
+        north, east = wind_over_ground(speed, direction, motion)
     # Mean of the components, as directions wrap.
     north = float(np.mean(north))
     east = float(np.mean(east))

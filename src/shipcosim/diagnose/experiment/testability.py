@@ -11,7 +11,6 @@ from shipcosim.diagnose.finding import VisibleSize
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor
-from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.regressors import placed, regressors_of
 from shipcosim.diagnose.inference.thresholds import (
     DEVIATIONS,
@@ -79,7 +78,7 @@ def excitation_of(log: JudgedLog) -> Excitation:
     known = without_causes(log.fits).columns
     columns = [*known, *regressors_of(problem.hypotheses)]
     groups = [(one, places) for one, _, places in placed(problem.hypotheses, len(known))]
-    products = inner_products(problem.base_of(columns), problem.noise, problem.record).products
+    products = problem.gram(problem.base_of(columns)).products
     without_wind = NULL_GAIN_WITHOUT_WIND if problem.record.wind is None else 0.0
     least = TESTABLE + usual_gain(problem.model) + without_wind
     return Excitation(products, columns, groups, least)

@@ -40,7 +40,7 @@ from shipcosim.diagnose.inference.fitting import (
     prepared,
     theta_of,
 )
-from shipcosim.diagnose.inference.innovations import Noise, inner_products
+from shipcosim.diagnose.inference.innovations import Noise
 from shipcosim.diagnose.inference.linearisation import Regressor, moved
 from shipcosim.diagnose.inference.parts import InParts, beside, linearised_by_parts
 from shipcosim.diagnose.inference.problem import identification_problem, tuned_noise
@@ -78,9 +78,10 @@ class _Try(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class _FitWithCourse(Fit):
-    """A fit of a cause with a course beside steady ones, whose linear problem has the course in it."""
+class _Fitted(Fit):
+    """A cause with a course fitted beside the steady ones of a fit; its linear problem has the course in it."""
 
+    of: _Try
     mixed: InParts
 
     @property
@@ -88,29 +89,10 @@ class _FitWithCourse(Fit):
         """The linear problem that was fitted."""
         return self.mixed
 
-
-class _Fitted(NamedTuple):
-    """A cause with a course fitted beside the steady ones of a fit."""
-
-    of: _Try
-    score: float
-    fit: _FitWithCourse
-
     @property
-    def columns(self) -> list[Regressor]:
-        """Columns of the cause."""
-        return self.fit.columns[len(self.of.base.columns) :]
-
-    @property
-    def theta(self) -> np.ndarray:
-        """Estimates of the cause's columns."""
-        return self.fit.theta[len(self.of.base.columns) :]
-
-    @property
-    def covariance(self) -> np.ndarray:
-        """Covariance of the cause's columns."""
-        count = len(self.of.base.columns)
-        return self.fit.covariance[count:, count:]
+    def own(self) -> slice:
+        """Places of the cause's columns."""
+        return slice(len(self.of.base.columns), None)
 
 
 def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
@@ -139,7 +121,7 @@ def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
     one, tries = max(sought, key=_worth)
     if tries and not enough and max(found.problem.noise.walk[:2]) > EXPLAINED_WALK:
         # Noise that was tuned without the course hides it: each side is weighed beside its own noise.
-        tuned = _with_noise(one, tuned_noise(one.identification.problem, tries[0].fit))
+        tuned = _with_noise(one, tuned_noise(one.identification.problem, tries[0]))
         first = given.fits[0]
         rival = _with_noise(given, tuned_noise(found.problem, first)).identification.problem
         again = fitted(rival, first.hypotheses, first.values)
@@ -166,7 +148,7 @@ def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
         {of.name: of.neutral * of.factor for of in hypothesis.parameters},
         (problem.record.time, best.of.course.at(problem.record.time)),
         explained.fits,
-        unmodelled_gains(problem, best.fit),
+        unmodelled_gains(problem, best),
     )
     return _of_its_rows(explained, best.of, course)
 
@@ -210,7 +192,7 @@ def _clear_tries(explained: ExplainedLog) -> list[_Fitted]:
     tried = []
     for base in _bases(explained):
         # All columns of the base once, for every cause beside it.
-        linear = linearised_by_parts(base.about, base.record, base.model, base.columns)
+        linear = base.linear
         tried += [_fitted(problem, one, linear) for one in _tries(problem, base, linear)]
     return sorted(
         (one for one in tried if one is not None and _is_clear(one)), key=lambda one: -one.score
@@ -278,7 +260,7 @@ def _tries(problem: IdentificationProblem, base: Fit, linear: InParts) -> list[_
     # Filter the columns of the chosen courses row by row, all in one pass.
     for one in chosen:
         linear = beside(linear, _shaped(problem.base_of(one.group), one.course.at(time)))
-    products = inner_products(linear, problem.noise, problem.record).products
+    products = problem.gram(linear).products
     found: dict[str, _Try] = {}
     place = len(base.columns)
     # Evidence of each course, with what the search over its times costs; the best course of each
@@ -324,7 +306,7 @@ def _fitted(problem: IdentificationProblem, one: _Try, linear: InParts) -> _Fitt
         model = base.model.with_values(values)
         there = linearised_by_parts(base.about, base.record, model, own)
         mixed = _mixed(plain, there, shares, count)
-        filtered = inner_products(mixed, problem.noise, problem.record)
+        filtered = problem.gram(mixed)
         if not np.isfinite(filtered.products).all():
             return None
         # The base stays at its own point of linearisation, the cause at its present values.
@@ -339,9 +321,7 @@ def _fitted(problem: IdentificationProblem, one: _Try, linear: InParts) -> _Fitt
     posterior = (columns, filtered, theta, covariance, centre)
     about = (model, base.about, base.motion, base.record)
     spread = base.std | deviations((one.hypothesis,), covariance)
-    return _Fitted(
-        one, total, _FitWithCourse(hypotheses, values, spread, total, *posterior, *about, mixed)
-    )
+    return _Fitted(hypotheses, values, spread, total, *posterior, *about, one, mixed)
 
 
 def _mixed(plain: InParts, there: InParts, shares: np.ndarray, count: int) -> InParts:
@@ -452,7 +432,7 @@ def _blocks(problem, base, linear, wanted) -> _Blocks:
     # Blocks of COURSE_BLOCK each, within limits, so that the number of courses stays small.
     count = int(np.clip((time[-1] - time[0]) / COURSE_BLOCK, 8, MOST_COURSE_BLOCKS))
     linear = beside(linear, problem.base_of(regressors_of(wanted)))
-    parts = inner_products(linear, problem.noise, problem.record, count).blocks
+    parts = problem.gram(linear, count).blocks
     edges = np.linspace(time[0], time[-1] + problem.record.step, count + 1)
     places: dict[str, list[slice]] = {}
     for hypothesis, _, where in placed(wanted, len(base.columns) + 1):
@@ -583,7 +563,9 @@ def _finding(one: _Fitted, chance: float) -> Finding:
         hypothesis.cause,
         hypothesis.component,
         probability=chance,
-        parameters=_estimates(hypothesis, one.columns, one.theta, one.covariance),
+        parameters=_estimates(
+            hypothesis, one.columns[one.own], one.theta[one.own], one.covariance[one.own, one.own]
+        ),
         segments=course.spells,
         onset=course.start,
         course=course.kind,
@@ -598,13 +580,13 @@ def _sizes_over_time(problem, one: _Fitted) -> tuple[SizeOverTime, ...]:
     # Equal parts, each with its own copy of the cause's columns.
     edges = np.linspace(time[0], time[-1] + problem.record.step, SIZES_OVER_TIME + 1)
     spells = list(zip(map(float, edges[:-1]), map(float, edges[1:]), strict=True))
-    group = one.columns
+    group = one.columns[one.own]
     plain = linearised_by_parts(base.about, base.record, base.model, group)
     linear = base.linear
     for spell in spells:
         linear = beside(linear, _shaped(plain, Course(SPELL, (spell,)).at(time)))
     # One joint fit of all parts beside the base, so that their sizes are estimated together.
-    products = inner_products(linear, problem.noise, problem.record).products
+    products = problem.gram(linear).products
     count = len(base.columns)
     own = range(count, count + len(group) * len(spells))
     _, theta, covariance = _weighed(products, base, own)

@@ -10,8 +10,7 @@ from shipcosim.diagnose.explanation.search import ExplainedLog, explain
 from shipcosim.diagnose.explanation.unmodelled import is_healthy
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.evidence import evidence
-from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted, prepared
-from shipcosim.diagnose.inference.innovations import inner_products
+from shipcosim.diagnose.inference.fitting import IdentificationProblem, fitted, prepared
 from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.inference.parts import beside, linearised_by_parts
 from shipcosim.diagnose.inference.problem import beside_likeliest, tuned_noise
@@ -50,7 +49,7 @@ def learnt(problem: IdentificationProblem) -> IdentificationProblem:
         return problem
     # Choose the scale of largest evidence (empirical Bayes), at a cost for leaving the model's
     # form.
-    scores = scores_by_scale(problem, fitted(problem))
+    scores = scores_by_scale(problem)
     scale = max(scores, key=lambda scale: scores[scale] - FORM_COST * (scale > 0.0))
     if not scale:
         return problem
@@ -82,30 +81,27 @@ def with_settled_form(explained: ExplainedLog) -> ExplainedLog:
     return ExplainedLog(again, fits, is_healthy(plain, fits[0]))
 
 
-def scores_by_scale(problem: IdentificationProblem, fit: Fit) -> dict[float, float]:
+def scores_by_scale(problem: IdentificationProblem) -> dict[float, float]:
     """Evidence of a log by the scale of the form, each with its likeliest cause at first sight.
 
     Parameters
     ----------
     problem : IdentificationProblem
         With a ship of the model's form.
-    fit : Fit
-        To it, beside which further causes are looked at.
 
     Returns
     -------
     dict of float to float
         Of scale 0 and `FORM_SCALES`. [nats, up to a constant of the log]
     """
-    wanted = [s for s in problem.hypotheses if s not in fit.hypotheses]
+    fit = fitted(problem)
+    wanted = problem.hypotheses
     # Columns of the form's numbers, linearised once for all scales.
-    sizes = {
-        path: size for path, size in problem.model.form_sizes.items() if path not in fit.values
-    }
+    sizes = problem.model.form_sizes
     of_form = [Regressor({path: size}) for path, size in sizes.items()]
-    form = linearised_by_parts(fit.about, problem.record, fit.model, of_form, kept=False)
+    form = linearised_by_parts(fit.about, problem.record, fit.model, of_form)
     linear = beside(beside(fit.linear, form), problem.base_of(regressors_of(wanted)))
-    products = inner_products(linear, problem.noise, problem.record).products
+    products = problem.gram(linear).products
     found = {}
     # The scale only sets the prior of these columns: each is one more evidence from the same
     # products.

@@ -5,7 +5,7 @@ moves thrusters and weather together, and a ship that keeps still moves by its n
 and here nothing is wrong that could be one.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -27,6 +27,9 @@ from shipcosim.models.core.motion import Motion
 
 DAMPING = ("X_u", "Y_v", "N_r", "X_uu", "Y_modvv", "N_modrr")
 """Numbers of a hull by which the water takes energy out: zero or negative."""
+HEALTHY_LOGS = 50
+"""Healthy logs that are simulated. Assumed."""
+_AT_ONCE = 5  # healthy logs that are filtered together, to bound memory
 
 
 def null_gains(
@@ -34,9 +37,7 @@ def null_gains(
     motion: Motion,
     wanted: Sequence[Hypothesis],
     *,
-    count: int = 50,
-    seed: int = 0,
-    batch: int = 5,
+    count: int = HEALTHY_LOGS,
 ) -> dict[str, np.ndarray]:
     """Gain of hypotheses on simulated healthy logs like this one.
 
@@ -49,23 +50,27 @@ def null_gains(
         Those that are asked for.
     count : int
         Number of healthy ships.
-    seed : int
-    batch : int
-        How many are filtered at once.
 
     Returns
     -------
     dict of str to (m,) array
         By the hypothesis's label. [nats] Ships that lose the track say nothing and are left out.
     """
-    columns, products = healthy_products(
-        problem, motion, wanted, count=count, seed=seed, batch=batch
-    )
+    columns, products = healthy_products(problem, motion, wanted, count=count)
+    return gains_of_each(products[on_track(products)], columns, wanted, problem.model.get)
+
+
+def gains_of_each(
+    products: np.ndarray,
+    columns: Sequence[Regressor],
+    wanted: Sequence[Hypothesis],
+    value_of: Callable[[str], float],
+) -> dict[str, np.ndarray]:
+    """Gain of hypotheses on each of several logs, (m, 1 + p, 1 + p) products: by label, (m,) arrays. [nats]"""
+    centre = np.zeros(len(columns))
     found = {hypothesis.label: [] for hypothesis in wanted}
-    for one in products[on_track(products)]:
-        for gain, hypothesis, _ in gains(
-            one, columns, np.zeros(len(columns)), wanted, problem.model.get
-        ):
+    for one in products:
+        for gain, hypothesis, _ in gains(one, columns, centre, wanted, value_of):
             found[hypothesis.label].append(gain)
     return {label: np.array(values) for label, values in found.items()}
 
@@ -75,9 +80,7 @@ def healthy_products(
     motion: Motion,
     wanted: Sequence[Hypothesis],
     *,
-    count: int = 50,
-    seed: int = 0,
-    batch: int = 5,
+    count: int = HEALTHY_LOGS,
 ) -> tuple[list[Regressor], np.ndarray]:
     """Inner products of simulated healthy logs like this one, arguments as of `null_gains`.
 
@@ -87,18 +90,18 @@ def healthy_products(
         The known numbers; the log, these, and the screening regressors of each wanted hypothesis in turn.
     """
     # Simulate all ships at once, then filter them in batches to bound memory.
-    records = healthy_records(problem, motion, count, np.random.default_rng(seed))
+    records = healthy_records(problem, motion, count, np.random.default_rng(0))
     problem = replace(problem, hypotheses=tuple(wanted), known_of=problem.hypotheses)
 
     def products_of(first):
         # Each healthy log is linearised about its own smoothed motion.
-        some = slice(first, first + batch)
+        some = slice(first, first + _AT_ONCE)
         units = part_of(records.units, some)
         record = replace(records, measured=records.measured[some], units=units)
         here = prepared(replace(problem, record=record, motion=first_motion(record)), rounds=1)
         return inner_products(here.linear, problem.noise, record).products
 
-    return problem.known(()), np.concatenate(each(products_of, range(0, count, batch)))
+    return problem.known(()), np.concatenate(each(products_of, range(0, count, _AT_ONCE)))
 
 
 def on_track(products: np.ndarray) -> np.ndarray:

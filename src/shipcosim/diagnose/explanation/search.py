@@ -13,11 +13,16 @@ from shipcosim.diagnose.explanation.unmodelled import is_healthy
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted
 from shipcosim.diagnose.inference.screening import Gain, screened
+from shipcosim.diagnose.inference.thresholds import ENOUGH
 from shipcosim.diagnose.inference.workers import each
 
 STRAIN = (
     2.5  # tolerances off, from which on a number's cause is fitted whatever it gains at first sight
 )
+_LIKELY = 6  # causes that are fitted first; beside a set of causes half as many
+_NEAR = 12.0
+"""Causes this far below the best are still fitted, or 85 % of its gain: at first sight what is not linear, as a
+current, gains too little. [nats]"""
 
 
 @dataclass(frozen=True)
@@ -52,9 +57,6 @@ def explain(
     problem: Any,
     *,
     most: int = 3,
-    likely: int = 6,
-    near: float = 12.0,
-    enough: float = 5.0,
     fitted: Callable[..., Fit] = fitted,
     screened: Callable[..., list[Gain]] = screened,
 ) -> list[Fit]:
@@ -66,13 +68,6 @@ def explain(
         Or what `fitted` and `screened` take as one, as several logs together.
     most : int
         Causes at once.
-    likely : int
-        Candidates that are fitted at each stage.
-    near : float
-        Candidates this far below the best are still fitted, or 85 % of its gain: at first sight what is not linear, as
-        a current, gains too little. [nats]
-    enough : float
-        What a further cause has to gain. [nats]
     fitted, screened : callable
         How a set of causes is fitted, and how all causes are first looked at beside one.
 
@@ -93,9 +88,9 @@ def explain(
         for fit, gains in zip(front, each(lambda fit: screened(problem, fit), front), strict=True):
             most_gain = gains[0][0]
             least = max(
-                most_gain - max(near, 0.85 * most_gain), -2.0 if stage == 0 else enough - 2.0
+                most_gain - max(_NEAR, 0.85 * most_gain), -2.0 if stage == 0 else ENOUGH - 2.0
             )
-            first = likely if stage == 0 else likely // 2
+            first = _LIKELY if stage == 0 else _LIKELY // 2
             # A number far outside its tolerance suggests a cause that the linear screening
             # underrates.
             strained = _strained(fit)
@@ -113,7 +108,7 @@ def explain(
         # The two best new sets go on, if they gain enough over all found before.
         ranked = sorted(tried.values(), key=lambda fit: -fit.score)
         front = [
-            fit for fit in ranked[:2] if fit.score > max(ranked[0].score - near, best + enough)
+            fit for fit in ranked[:2] if fit.score > max(ranked[0].score - _NEAR, best + ENOUGH)
         ]
         if not front:
             break

@@ -228,7 +228,7 @@ def load_form(log: JudgedLog) -> LoadForm | None:
     for column, share, deviation in zip(fit.columns, fit.theta, std, strict=True):
         # Only columns of one lasting number: no causes, no quantities of the day.
         path, size = next(iter(column.changes.items()))
-        if len(column.changes) > 1 or path in fit.values or ShipModel.is_of_day(path):
+        if len(column.changes) > 1 or path in fit.values or column.is_of_day:
             continue
         is_form = path in sizes and column.prior == 1.0
         if is_form:

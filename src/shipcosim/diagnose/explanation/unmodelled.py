@@ -4,7 +4,6 @@ import numpy as np
 
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
-from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.parts import with_columns
 from shipcosim.diagnose.inference.thresholds import (
     BASIS_FUNCTIONS,
@@ -62,7 +61,7 @@ def unmodelled_gains(problem: IdentificationProblem, fit: Fit) -> dict[str, floa
     linear = with_columns(
         fit.linear, sum(map(sum, kinds.values())), lambda rows: _columns(problem, fit, shown, rows)
     )
-    products = inner_products(linear, problem.noise, problem.record).products
+    products = problem.gram(linear).products
     base = len(fit.columns)
     # The fit's columns keep their priors; unmodelled ones are switched on in turn.
     prior = np.concatenate(

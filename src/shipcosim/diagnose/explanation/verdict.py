@@ -268,7 +268,7 @@ def judge(
         for fit in fair
         if fit.hypotheses and fit is not best and _with_odds(fit) > _with_odds(best) - APART
     ]
-    rivals = [fit for fit in rivals if not set(labels(best)) < set(labels(fit))]
+    rivals = [fit for fit in rivals if not names(best.hypotheses) < names(fit.hypotheses)]
     findings = tuple(
         sorted(
             (_finding(s, best, candidates) for s in best.hypotheses), key=lambda f: -f.probability
@@ -276,9 +276,9 @@ def judge(
     )
     # With rivals only causes common to all of them are named.
     if rivals:
-        named = {label for fit in (best, *rivals) for label in labels(fit)}
-        same = tuple(c for c in candidates if c.label in named)
-        shared = set(labels(best)).intersection(*(labels(fit) for fit in rivals))
+        each = [names(fit.hypotheses) for fit in (best, *rivals)]
+        same = tuple(c for c in candidates if c.label in frozenset.union(*each))
+        shared = frozenset.intersection(*each)
         findings = tuple(f for f in findings if f.label in shared)
         return Judgement("ambiguous", best, findings, candidates, same, tuple(rivals))
     return Judgement("named", best, findings, candidates, ())
@@ -324,11 +324,6 @@ def _best_steady(ranked, unmodelled):
             break
         best = other
     return best
-
-
-def labels(fit: Fit) -> list[str]:
-    """Labels of the causes of a fit."""
-    return [hypothesis.label for hypothesis in fit.hypotheses]
 
 
 def admissible(fit: Fit, fits: Sequence[Fit], null: dict[str, float]) -> bool:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from shipcosim import library
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.series import conversion
-from shipcosim.ssp import SystemStructure, parameter
+from shipcosim.ssp import SystemStructure, Variable, parameter
 from shipcosim.ssp.read.parameters import ParameterValue
 
 AXES = ("X", "Y", "N")
@@ -87,6 +87,11 @@ class ExtensionDraft:
         parts = self.structure.components
         return [name for name in names if name in parts and variable in parts[name].variables]
 
+    def variable(self, place: str, name: str) -> Variable | None:
+        """A variable of a component; None where there is none such."""
+        parts = self.structure.components
+        return parts[place].variables.get(name) if place in parts else None
+
     def put(
         self, finding: Finding, signal: str, given: Estimated, unit: str | None, *, note: str = ""
     ) -> None:
@@ -110,12 +115,11 @@ class ExtensionDraft:
         self, finding: Finding, place: str, name: str, estimate: ParameterEstimate
     ) -> None:
         """Give a parameter of a component its estimate, in the FMU's unit; a remark where there is none such."""
-        parts = self.structure.components
-        variable = parts[place].variables.get(name) if place in parts else None
+        variable = self.variable(place, name)
         if variable is None:
             what = (
                 f"'{place}' has no parameter '{name}'"
-                if place in parts
+                if place in self.structure.components
                 else f"there is no component '{place}'"
             )
             self.remark(finding, f"{what}, so it is not carried")

@@ -169,9 +169,8 @@ def _carry(draft: ExtensionDraft, finding: Finding, catalogue: Mapping[str, Caus
         }
         with_onset |= _insert(draft, finding, rule, own)
         if rule.neighbour_inputs:
-            connect_neighbours(
-                draft, finding, rule, dict.fromkeys(_place(number) for number in numbers)
-            )
+            places = (number.rpartition(".")[0] for number in numbers)
+            connect_neighbours(draft, finding, rule, dict.fromkeys(places))
         if rule.by == "log":
             draft.remark(finding, "it is one of the log, not of the ship: shift the channels")
             numbers.clear()
@@ -190,8 +189,7 @@ def _put_craft(draft: ExtensionDraft, craft: LearnedCraft) -> None:
     learned = Finding("craft", None, probability=1.0)
     for path, value in craft.after.items():
         place, _, name = path.rpartition(".")
-        parts = draft.structure.checked().components
-        variable = parts[place].variables.get(name) if place in parts else None
+        variable = draft.variable(place, name)
         unit = variable.unit if variable is not None and variable.unit else "1"
         draft.put_parameter(learned, place, name, ParameterEstimate(value, craft.std[path], unit))
 
@@ -217,14 +215,14 @@ def _multiplied(
     draft: ExtensionDraft, paths: Iterable[str], factor: ParameterEstimate
 ) -> dict[str, ParameterEstimate]:
     """Numbers of the system times a factor; those that are 0, or that the system does not have, are left out."""
-    parts = draft.structure.checked().components
     found = {}
     for path in paths:
-        place = _place(path)
-        name = path.rpartition(".")[2]
-        variable = parts[place].variables.get(name) if place in parts else None
-        value = parts[place].start_value(name) if variable is not None else None
-        if variable is not None and isinstance(value, int | float) and value != 0.0:
+        place, _, name = path.rpartition(".")
+        variable = draft.variable(place, name)
+        if variable is None:
+            continue
+        value = draft.structure.components[place].start_value(name)
+        if isinstance(value, int | float) and value != 0.0:
             size = factor.estimate * value, factor.std * abs(value)
             found[path] = ParameterEstimate(*size, variable.unit or "1")
     return found
@@ -281,11 +279,10 @@ def _put_parameter(
     draft: ExtensionDraft, finding: Finding, number: str, estimate: ParameterEstimate, cause: Cause
 ) -> None:
     """Put a number into the component that has it: as a parameter, else on its connections."""
-    place = _place(number)
-    name = number.rpartition(".")[2]
-    parts = draft.structure.checked().components
+    place, _, name = number.rpartition(".")
     rule = _on_connections(cause).get(name)
-    if rule is not None and place in parts and name not in parts[place].variables:
+    is_there = place in draft.structure.components
+    if rule is not None and is_there and draft.variable(place, name) is None:
         put_on_connections(draft, finding, place, estimate, rule)
     else:
         draft.put_parameter(finding, place, name, estimate)
@@ -304,10 +301,6 @@ def _on_connections(cause: Cause) -> dict[str, OnConnections]:
         if one.on_connections
         for of in one.of
     }
-
-
-def _place(number: str) -> str:
-    return number.rpartition(".")[0]
 
 
 def _paths(draft: ExtensionDraft, pattern: str, finding: Finding) -> list[str]:

@@ -71,8 +71,12 @@ class IdentificationProblem:
 
     def base_of(self, columns: Iterable[Regressor]) -> InParts:
         """The problem about the ship without a cause, with these columns of the basis."""
-        places = {_key(column): i for i, column in enumerate(self.basis, start=1)}
-        return self.linear.chosen([places[_key(column)] for column in columns])
+        places = {column.key: i for i, column in enumerate(self.basis, start=1)}
+        return self.linear.chosen([places[column.key] for column in columns])
+
+    def gram(self, linear: InParts, parts: int = 8) -> Gram:
+        """Inner products of a linear problem of this log, filtered by its noise, as `inner_products`."""
+        return inner_products(linear, self.noise, self.record, parts)
 
     def known(self, hypotheses: Sequence[Hypothesis]) -> list[Regressor]:
         """Columns of the numbers that are known within a tolerance, except those that these hypotheses change."""
@@ -139,7 +143,7 @@ class Fit:
     @property
     def linear(self) -> InParts:
         """The linear problem that was fitted; it is made again, as all of many fits would fill the memory."""
-        return linearised_by_parts(self.about, self.record, self.model, self.columns, kept=False)
+        return linearised_by_parts(self.about, self.record, self.model, self.columns)
 
     @property
     def label(self) -> str:
@@ -158,7 +162,7 @@ def prepared(problem: IdentificationProblem, rounds: int = 3) -> IdentificationP
     motion = problem.motion
     for _ in range(rounds):
         alone = linearised_by_parts(motion, problem.record, problem.model, [])
-        products = inner_products(alone, problem.noise, problem.record).products
+        products = problem.gram(alone).products
         motion = _smoothed(alone, products[..., 0, 0], problem, motion)
     # The columns are expensive: they are linearised only about the last motion.
     base = linearised_by_parts(motion, problem.record, problem.model, problem.basis)
@@ -188,10 +192,6 @@ def _smoothed(
         and np.all(np.less(fastest, _RUNS_AWAY * np.array(before) + 0.1))
     )
     return found if follows else motion
-
-
-def _key(column: Regressor) -> tuple[tuple[str, float], ...]:
-    return tuple(sorted(column.changes.items()))
 
 
 def fitted(
@@ -350,7 +350,7 @@ def linearised(
     """A problem about some values of the ship's numbers and a motion, with these columns."""
     model = problem.model.with_values(values)
     linear = linearised_by_parts(motion, problem.record, model, columns)
-    products = inner_products(linear, problem.noise, problem.record)
+    products = problem.gram(linear)
     # θ of the ship model that the columns were linearised about; 0 for known numbers.
     centre = np.zeros(len(columns))
     for i, column in enumerate(columns):

@@ -50,6 +50,16 @@ class Regressor:
     vector: tuple[str, ...] = ()
     beside: bool = False
 
+    @property
+    def key(self) -> tuple[tuple[str, float], ...]:
+        """What tells it apart from other regressors: its changes in order."""
+        return tuple(sorted(self.changes.items()))
+
+    @property
+    def is_of_day(self) -> bool:
+        """Whether it changes a number that is another on each day."""
+        return any(ShipModel.is_of_day(path) for path in self.changes)
+
     def gives_way(self, taken: Collection[str]) -> bool:
         """True if a cause on these numbers replaces this regressor."""
         return not self.beside and not self.changes.keys().isdisjoint(taken)

@@ -90,8 +90,6 @@ def linearised_by_parts(
     record: Record,
     model: ShipModel,
     regressors: Sequence[Regressor],
-    *,
-    kept: bool = True,
 ) -> InParts:
     """The linear problem about a motion, by parts.
 
@@ -102,8 +100,6 @@ def linearised_by_parts(
     record : Record
     model : ShipModel
     regressors : sequence of Regressor
-    kept : bool
-        Whether a log that is not too long is linearised once for all.
 
     Returns
     -------
@@ -114,7 +110,7 @@ def linearised_by_parts(
     columns = len(regressors)
     done = []
     anew = InParts(rows, columns, lambda which: linearise(motion, record, model, regressors, which))
-    if not kept or rows * (1 + columns) > _KEPT:
+    if rows * (1 + columns) > _KEPT:
         return anew
 
     def part(which):

@@ -11,11 +11,11 @@ import numpy as np
 from shipcosim.diagnose.inference.innovations import Noise, innovations, smoothed
 from shipcosim.diagnose.inference.linearisation import Linear, advanced, rows_first, runge_kutta
 from shipcosim.diagnose.inference.thresholds import FASTEST, FASTEST_TURN, REFERENCE_JOLTS
-from shipcosim.diagnose.ship.inputs import Record, part_of
+from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.instruments import LAGS
-from shipcosim.diagnose.ship.measured_motion import at_rows, readings, true_motion
+from shipcosim.diagnose.ship.measured_motion import at_rows, readings, true_motion, wind_over_ground
 from shipcosim.diagnose.ship.model import ShipModel
-from shipcosim.models.core.kinematics import to_body, to_ned
+from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.motion import Motion
 
 _FORCE = slice(6, 9)
@@ -75,12 +75,8 @@ def _one_more(series):
 
 def _true_wind(speed, direction, motion):
     """Speed and direction over ground of the wind that meets the moving ship so."""
-    # Wind vector over ground: the ship's velocity less the relative wind, which is named by where
-    # it comes from.
-    along = motion.u - speed * np.cos(direction)
-    across = motion.v - speed * np.sin(direction)
-    # Turn it into north and east; the direction is again where it comes from.
-    north, east = to_ned(motion.psi, along, across)
+    # The direction is again where it comes from.
+    north, east = wind_over_ground(speed, direction, motion)
     return np.hypot(north, east), np.unwrap(np.arctan2(-east, -north))
 
 
@@ -241,7 +237,7 @@ def predicted(
     # All predictions go on together, one row after the other; only the wanted horizons are stored.
     for k in range(horizons[-1]):
         for i in range(parts):
-            during = [_at(one, rows + k) for one in inputs[2 * i : 2 * i + 3]]
+            during = [one.at(rows + k) for one in inputs[2 * i : 2 * i + 3]]
             loads = [load(k * record.step + (i + share) * h) for share in (0.0, 0.5, 1.0)]
             motion = _bounded(runge_kutta(motion, h, during, model, loads))
         if k + 1 in horizons:
@@ -269,15 +265,6 @@ def _bounded(motion):
     u = np.clip(motion.u, -FASTEST, FASTEST)
     v = np.clip(motion.v, -FASTEST, FASTEST)
     return motion._replace(u=u, v=v, r=np.clip(motion.r, -FASTEST_TURN, FASTEST_TURN))
-
-
-def _at(inputs, rows):
-    """Inputs at some rows."""
-    units = part_of(inputs.units, rows)
-    wind = (
-        None if series is None else series[rows] for series in (inputs.wind_speed, inputs.wind_from)
-    )
-    return type(inputs)(inputs.time[rows], units, *wind)
 
 
 def missing(found: Motion, seen: Motion, rows: np.ndarray) -> dict[str, np.ndarray]:

@@ -7,8 +7,7 @@ import numpy as np
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
-from shipcosim.diagnose.inference.innovations import inner_products
-from shipcosim.diagnose.inference.linearisation import Regressor
+from shipcosim.diagnose.inference.linearisation import Regressor, moved
 from shipcosim.diagnose.inference.parts import beside
 from shipcosim.diagnose.inference.regressors import regressors_of, screening_regressors
 
@@ -37,7 +36,7 @@ def screened(problem: IdentificationProblem, fit: Fit) -> list[Gain]:
     # Only hypotheses that are not fitted already, about the ship without a cause.
     wanted = [s for s in problem.hypotheses if s not in fit.hypotheses]
     linear = beside(fit.linear, problem.base_of(regressors_of(wanted)))
-    products = inner_products(linear, problem.noise, problem.record).products
+    products = problem.gram(linear).products
     return gains(products, fit.columns, fit.centre, wanted, fit.model.get)
 
 
@@ -89,10 +88,7 @@ def gains(
             here[[i for i, column in enumerate(columns) if column.gives_way(taken)]] = 0.0
             # Log Bayes factor and posterior mean, which gives first values for a full fit.
             score, theta, _ = evidence(products, here, np.where(here > 0.0, centre, 0.0))
-            values = {}
-            for column, share in zip(group, theta[place : place + len(group)], strict=True):
-                for path, size in column.changes.items():
-                    values[path] = values.get(path, value_of(path)) + share * size
+            values = moved(group, theta[place : place + len(group)], value_of)
             tries.append((score - nothing, values))
             place += len(group)
         gain, values = _together(tries, hypothesis)

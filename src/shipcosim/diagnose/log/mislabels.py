@@ -9,6 +9,7 @@ import numpy as np
 from shipcosim.diagnose.finding import Finding, Segment, log_fault
 from shipcosim.diagnose.log.checks.samples import noise_of, quantum
 from shipcosim.diagnose.log.degree_size import local_plane
+from shipcosim.diagnose.log.roles import POSITION, VELOCITY
 from shipcosim.diagnose.log.rows import inside
 from shipcosim.diagnose.numerics import finite
 
@@ -17,8 +18,6 @@ THRUSTER_LABELS = ("channel_swap", "sign")
 DRIVES = ("_rpm", "_thrust", "_azimuth")
 """How roles of what drives a thruster end."""
 KNOT = 1852.0 / 3600.0  # m/s
-POSITION = ("north", "east")
-VELOCITY = ("surge", "sway")
 WIND = ("wind_speed", "wind_from")
 ANGLES = ("heading", "wind_from")
 CHANNEL_UNITS = {

@@ -26,7 +26,7 @@ from shipcosim.diagnose.log.roles import NAVIGATION, OVER_EARTH, role_of
 from shipcosim.diagnose.log.thresholds import LATEST, SHORTEST_STEP
 from shipcosim.diagnose.log.values import LARGEST, WrongUnit, values_of
 from shipcosim.diagnose.numerics import finite, usual_rise
-from shipcosim.errors import Problem, ShipcosimError, error_at, reading, shortened
+from shipcosim.errors import Problem, ShipcosimError, counted, error_at, reading, shortened
 from shipcosim.series import make_table
 
 if TYPE_CHECKING:
@@ -370,7 +370,7 @@ def _local_position(source, signals, said):
         (nowhere, "the position 0, 0, which is no fix"),
     ):
         if rows.any():
-            said.append(f"{int(rows.sum())} row{'s' * int(rows.sum() > 1)} with {why}: left empty.")
+            said.append(f"{counted(rows.sum(), 'row')} with {why}: left empty.")
     values = [np.where(lost | nowhere, np.nan, degrees[name]) for name in LARGEST]
     # Local plane about the first fix; east by the length of a degree at its latitude.
     north, east, first = local_plane(*values)

@@ -7,6 +7,7 @@ from shipcosim.diagnose.log.checks.samples import outliers
 from shipcosim.diagnose.log.rows import arrays_of, usable_rows
 from shipcosim.diagnose.log.thresholds import HOLE, UNEVEN
 from shipcosim.diagnose.numerics import finite
+from shipcosim.errors import counted
 
 
 def remarks(log: xarray.Dataset) -> list[str]:
@@ -21,24 +22,24 @@ def remarks(log: xarray.Dataset) -> list[str]:
     known = finite(time)
     said = []
     if len(known) < len(time):
-        said.append(f"{_rows(len(time) - len(known))} without a time: left out.")
+        said.append(f"{counted(len(time) - len(known), 'row')} without a time: left out.")
     if (back := known[1:][np.diff(known) < 0.0]).size:
         said.append(
-            f"{_rows(back.size)} earlier than the one before, the first at {back[0]:g} s: sorted by time."
+            f"{counted(back.size, 'row')} earlier than the one before, the first at {back[0]:g} s: sorted by time."
         )
     ordered = np.sort(known)
     if (again := ordered[1:][np.diff(ordered) == 0.0]).size:
         said.append(
-            f"{_rows(again.size)} with a time that was there, the first at {again[0]:g} s: the first is kept."
+            f"{counted(again.size, 'row')} with a time that was there, the first at {again[0]:g} s: the first is kept."
         )
     rows = usable_rows(time)
     said += _steps(time[rows])
     for name, variable in log.data_vars.items():
         if empty := int(np.sum(~np.isfinite(variable.values[rows]))):
-            said.append(f"{name}: {_rows(empty)} without a number.")
+            said.append(f"{name}: {counted(empty, 'row')} without a number.")
     far = outliers(arrays_of(log.isel(time=rows)))
     said += [
-        f"{role}: {_rows(int(bad.sum()))} far off both neighbours: left out."
+        f"{role}: {counted(bad.sum(), 'row')} far off both neighbours: left out."
         for role, bad in far.items()
         if bad.any()
     ]
@@ -54,10 +55,6 @@ def handled(log: xarray.Dataset) -> list[str]:
     return [*remarks(log), *said, *([] if any("not used" in one for one in said) else plain)]
 
 
-def _rows(count):
-    return f"{count} row{'s' * (count > 1)}"
-
-
 def _steps(time):
     """Holes between rows, and rows that are unevenly spaced."""
     steps = np.diff(time)
@@ -66,7 +63,7 @@ def _steps(time):
     if holes.any():
         lost = int(np.sum(np.round(steps[holes] / usual) - 1))
         first = time[:-1][holes][0]
-        yield f"{_rows(lost)} of the usual step {usual:g} s not there, the first after {first:g} s: left empty."
+        yield f"{counted(lost, 'row')} of the usual step {usual:g} s not there, the first after {first:g} s: left empty."
     spread = float(np.median(np.abs(steps - usual)))
     if spread > UNEVEN * usual:
         yield f"rows are {usual:g} s apart, give or take {spread:.2g} s: interpolated to even steps."

@@ -48,6 +48,8 @@ ROLES = {
 OVER_EARTH = {"speed_over_ground", "course_over_ground", "north_velocity", "east_velocity"}
 """Roles that give surge and sway with the heading, and are none of the log that is read."""
 NAVIGATION = ("north", "east", "heading", "surge", "sway", "yaw_rate")
+POSITION = ("north", "east")
+VELOCITY = ("surge", "sway")
 
 THRUSTER_ROLES = {
     "rpm": Role("rpm", "shaft speed"),

@@ -30,14 +30,6 @@ _SHIP = {
     "wind_from": ("apparent_wind_from", "rad"),
 }
 """Role: output of the ship and its unit."""
-_WAVES = {
-    "x": "x_wave",
-    "y": "y_wave",
-    "psi": "psi_wave",
-    "u": "u_wave",
-    "v": "v_wave",
-    "r": "r_wave",
-}
 _NEEDED = ("north", "east", "heading")
 
 
@@ -78,41 +70,34 @@ def run_as_log(log: LogSource, ship: str, thrusters: Collection[str]) -> LogSour
         columns = read_columns(log)
         signals, units = ({name: pair[i] for name, pair in columns.items()} for i in (0, 1))
         file = {"source": str(log), "sha256": hashlib.sha256(Path(log).read_bytes()).hexdigest()}
-    if not _is_run(signals):
+    channels = channels_of_run(signals, ship, thrusters)
+    if not channels:
         return log
-    # Outputs of the ship by role; position and heading are needed.
-    named = {
-        role: f"{ship}.{output}"
-        for role, (output, _) in _SHIP.items()
-        if f"{ship}.{output}" in signals
-    }
-    if missing := [role for role in _NEEDED if role not in named]:
+    if missing := [role for role in _NEEDED if role not in channels]:
         there = sorted({name.rpartition(".")[0] for name in signals if "." in name})
         found = f"this is the table of a run, and it has no {', '.join(_SHIP[role][0] for role in missing)} of '{ship}'."
         remedy = f"Its components: {', '.join(there)}. Name the system that made it: --system SSP."
         raise error_at(file.get("source", "log"), found, remedy)
-    # Speeds and directions of the thrusters, from their components and from inputs of the system.
-    for name in thrusters:
-        for kind in ("rpm", "azimuth"):
-            if f"{name}_{kind}" not in signals and f"{name}.{kind}" in signals:
-                named[f"{name}_{kind}"] = f"{name}.{kind}"
-    named |= {
-        name: name
+    # Inputs of the system that are named as roles go before what its components show.
+    inputs = {
+        name: _channel(name, name)
         for name in signals
         if name.endswith(("_rpm", "_azimuth", "_thrust")) and "." not in name
     }
+    named = {role: one for role, one in channels.items() if role in _SHIP or role not in signals}
+    named |= inputs
     # Damaged cells make a column of texts.
     with reading(file.get("source", "log")):
         table = make_table(
             np.asarray(signals["time"], float),
-            [_column(*pair, ship, signals, units) for pair in named.items()],
+            [_column(role, one, signals, units) for role, one in named.items()],
         )
     table.encoding |= file
     return table
 
 
 def channels_of_run(
-    signals: Collection[str], ship: str | None, thrusters: Collection[str] | None
+    signals: Collection[str], ship: str, thrusters: Collection[str]
 ) -> dict[str, Channel]:
     """Channels of the table of a run, by role; none where it is another table.
 
@@ -120,30 +105,23 @@ def channels_of_run(
     ----------
     signals : collection of str
         Names of its columns.
-    ship : str, optional
-        Name of the ship's component; else the first with a position and a heading.
-    thrusters : collection of str, optional
-        Names of those of her thrusters; else all components with a speed.
+    ship : str
+        Name of the ship's component.
+    thrusters : collection of str
+        Names of those of her thrusters.
     """
-    if not _is_run(dict.fromkeys(signals)):
+    if not _is_run(signals):
         return {}
-    # The ship is the first component with position and heading, thrusters are all with a speed.
-    ships = [name.removesuffix(".psi") for name in signals if name.endswith(".psi")]
-    ship = ship or next(name for name in ships if f"{name}.x" in signals and f"{name}.y" in signals)
-    drives = [name.removesuffix(".rpm") for name in signals if name.endswith(".rpm")]
-    named = {role: f"{ship}.{output}" for role, (output, _) in _SHIP.items()}
-    named |= {
-        f"{name}_{kind}": f"{name}.{kind}"
-        for name in thrusters or drives
-        for kind in ("rpm", "azimuth")
-    }
-    units = {role: unit for role, (_, unit) in _SHIP.items()}
-    there = {"time": "time"} | {role: signal for role, signal in named.items() if signal in signals}
-    turn = {role: "rad" for role in there if role.endswith("_azimuth")}
-    return {
-        role: Channel(column=signal, unit=(units | turn).get(role))
-        for role, signal in there.items()
-    }
+    named = {"time": "time"} | {role: f"{ship}.{output}" for role, (output, _) in _SHIP.items()}
+    for name in thrusters:
+        named |= {f"{name}_{kind}": f"{name}.{kind}" for kind in ("rpm", "azimuth")}
+    return {role: _channel(role, signal) for role, signal in named.items() if signal in signals}
+
+
+def _channel(role: str, signal: str) -> Channel:
+    """Where a role comes from, with the unit that signals of a run have."""
+    unit = _SHIP[role][1] if role in _SHIP else "rad" if role.endswith("_azimuth") else None
+    return Channel(column=signal, unit=unit)
 
 
 def _names_components(path: Path) -> bool:
@@ -168,7 +146,7 @@ def _names(path: Path) -> list[str]:
         return [name.partition("[")[0] for name in file.readline(_LONGEST_HEADER).split(",")]
 
 
-def _is_run(signals: Mapping[str, object]) -> bool:
+def _is_run(signals: Collection[str]) -> bool:
     """Whether most columns are signals of components, one of them a ship, and none is a position by its role."""
     dotted = sum("." in name for name in signals)
     ships = (name.removesuffix(".psi") for name in signals if name.endswith(".psi"))
@@ -182,12 +160,11 @@ def _is_run(signals: Mapping[str, object]) -> bool:
     )
 
 
-def _column(role: str, signal: str, ship: str, signals: Mapping, units: Mapping) -> tuple:
+def _column(role: str, channel: Channel, signals: Mapping, units: Mapping) -> tuple:
     """A role's values with what waves add, and their unit."""
     # The instruments measure the low-frequency motion plus the motion by waves.
+    signal = channel.column
     values = np.asarray(signals[signal], float)
-    wave = _WAVES.get(signal.removeprefix(f"{ship}."))
-    if wave and f"{ship}.{wave}" in signals:
-        values = values + np.asarray(signals[f"{ship}.{wave}"], float)
-    default = _SHIP[role][1] if role in _SHIP else "rad" if role.endswith("_azimuth") else "rpm"
-    return role, values, units.get(signal) or default, ""
+    if role in _SHIP and f"{signal}_wave" in signals:
+        values = values + np.asarray(signals[f"{signal}_wave"], float)
+    return role, values, units.get(signal) or channel.unit or "rpm", ""

@@ -11,7 +11,6 @@ import xarray
 
 from shipcosim.diagnose.finding import Finding, ParameterEstimate, log_fault
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor, fitted, prepared
-from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import rows_first
 from shipcosim.diagnose.inference.parts import with_columns
 from shipcosim.diagnose.inference.screening import screened
@@ -252,7 +251,7 @@ def _left(problem, columns, count, driven):
         lambda rows: (driven(rows), np.zeros((rows.stop - rows.start, 6, count))),
     )
     # Inner products of the whitened log and regressors; the first row belongs to the log.
-    products = inner_products(linear, problem.noise, problem.record, parts=1).products
+    products = problem.gram(linear, parts=1).products
     theirs = slice(1, 1 + others)
     own = slice(1 + others, None)
     # Integrate the parameters out: the Schur complement, with their prior precisions.

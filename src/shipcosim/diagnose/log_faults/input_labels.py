@@ -16,7 +16,6 @@ from shipcosim.diagnose.finding import Finding, Segment
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.innovations import inner_products, innovations
-from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.inference.parts import explained, linearised_by_parts
 from shipcosim.diagnose.inference.workers import each
 from shipcosim.diagnose.log.mislabels import (
@@ -32,7 +31,6 @@ from shipcosim.diagnose.log.mislabels import (
 )
 from shipcosim.diagnose.log.rows import arrays_of, inside
 from shipcosim.diagnose.log_faults.thresholds import (
-    BESIDE_AN_END,
     FIRST_MOVE,
     LAGS_TRIED,
     LEAST_ROW_GAIN,
@@ -46,7 +44,6 @@ from shipcosim.diagnose.log_faults.thresholds import (
 )
 from shipcosim.diagnose.numerics import running_sums
 from shipcosim.diagnose.ship.inputs import Record, record_of, with_inputs_of
-from shipcosim.diagnose.ship.instruments import LAGS
 
 WHERE_TO = Mislabel(
     "frame",
@@ -123,7 +120,6 @@ def with_refined_segment(
     # Log-likelihoods by the ends of the segment, kept since the search returns to the same ones.
     time = problem.record.time
     known = {}
-    relabelled = _Relabelled(log, finding.mislabel, problem)
     least = round(SHORTEST_INPUT / problem.record.step)
     last = time.size - 1
 
@@ -134,7 +130,9 @@ def with_refined_segment(
         if not 0 <= ends[0] <= ends[1] - least <= last - least:
             return -np.inf
         if ends not in known:
-            known[ends] = relabelled.likelihood(ends, segment(ends))
+            relabelled = with_label(log, finding.mislabel, segment(ends))
+            record = with_inputs_of(problem.record, relabelled, problem.model)
+            known[ends] = likelihood(problem, record)
         return known[ends]
 
     def likelihoods_of(many):
@@ -183,49 +181,6 @@ def likelihood(problem: IdentificationProblem, record: Record) -> float:
     """Log-likelihood of a record about the motion of a problem, up to a constant. [nats]"""
     linear = linearised_by_parts(problem.motion, record, problem.model, [])
     return float(inner_products(linear, problem.noise, record).free)
-
-
-class _Relabelled:
-    """A log with a mislabel undone in one segment or another.
-
-    The log is linearised once as it is and once with the mislabel undone throughout. Of one that is undone in a segment
-    only the rows about its ends are neither of the two.
-    """
-
-    def __init__(self, log: xarray.Dataset, mislabel: Mislabel, problem: IdentificationProblem):
-        self.log = log
-        self.mislabel = mislabel
-        self.problem = problem
-        # Linear models of the log with the label as logged and undone throughout.
-        self.logged, self.right = (
-            self._linear(one).whole() for one in (log, with_label(log, mislabel))
-        )
-        # Lags of the actuators spread the effect of an end over some rows.
-        lags = [abs(problem.model.get(path)) for path in LAGS]
-        self.reach = BESIDE_AN_END + int(np.ceil(sum(lags) / problem.record.step))
-
-    def _linear(self, log):
-        record = with_inputs_of(self.problem.record, log, self.problem.model)
-        return linearised_by_parts(self.problem.motion, record, self.problem.model, [], kept=False)
-
-    def likelihood(self, ends: tuple[int, int], segment: Sequence[Segment]) -> float:
-        """Log-likelihood with the mislabel undone in a segment [s] between two rows, up to a constant. [nats]"""
-        problem = self.problem
-        # Take the rows inside from the corrected model, and those outside from the logged one.
-        steps = len(self.right.transition)
-        log = with_label(self.log, self.mislabel, segment)
-        record = with_inputs_of(problem.record, log, problem.model)
-        transition = self.logged.transition.copy()
-        driven = self.logged.driven.copy()
-        transition[ends[0] : ends[1]] = self.right.transition[ends[0] : ends[1]]
-        driven[ends[0] : ends[1]] = self.right.driven[ends[0] : ends[1]]
-        # Linearise anew only near the ends.
-        for end in ends:
-            rows = slice(max(end - self.reach, 0), min(end + self.reach, steps))
-            near = linearise(problem.motion, record, problem.model, [], rows)
-            transition[rows], driven[rows] = near.transition, near.driven
-        linear = self.right._replace(transition=transition, driven=driven)
-        return float(inner_products(linear, problem.noise, record).free)
 
 
 def _mislabels(log, model):

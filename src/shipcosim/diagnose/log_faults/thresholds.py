@@ -29,8 +29,6 @@ LAGS_TRIED = (2.0, 4.0, 6.0, 9.0)
 """Times by which the channel of one thruster may come late. [s] Assumed; a lag in between is found by its neighbour."""
 WHOLE = 0.85
 """Share of the log above which a segment is taken as all of it. Assumed."""
-BESIDE_AN_END = 4
-"""Rows on either side of an end that are neither as logged nor corrected: series are averaged over neighbours. [1]"""
 SEARCH_STEP = 60.0
 """Time between the first candidates for the end of a segment. [s]"""
 MOST_PLACES = 80

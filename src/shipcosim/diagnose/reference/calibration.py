@@ -7,13 +7,13 @@ from typing import cast
 
 import numpy as np
 
+import shipcosim
 from shipcosim.diagnose.explanation.form import of_scale, scores_by_scale
 from shipcosim.diagnose.explanation.search import explain
 from shipcosim.diagnose.explanation.unmodelled import errors_of_the_fit, unmodelled_gains
 from shipcosim.diagnose.explanation.verdict import admissible
 from shipcosim.diagnose.hypotheses.catalogue import paths_of
 from shipcosim.diagnose.inference.evidence import evidence
-from shipcosim.diagnose.inference.fitting import fitted
 from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.inference.screening import Gain
 from shipcosim.diagnose.inference.thresholds import ENOUGH, FORM_COST
@@ -113,7 +113,7 @@ def with_common_form(logs: SeveralLogs) -> tuple[SeveralLogs, float]:
     # Log-evidence of each scale of the form, added up over the logs.
     scores: dict[float, float] = {}
     for problem in logs.problems.values():
-        for scale, score in scores_by_scale(problem, fitted(problem)).items():
+        for scale, score in scores_by_scale(problem).items():
             scores[scale] = scores.get(scale, 0.0) + score
     # The usual scale is kept unless the logs clearly prefer another one.
     best = max(scores, key=lambda scale: scores[scale] + FORM_COST * (scale == USUAL_FORM))
@@ -197,7 +197,7 @@ def likeliest_scale(fit: JointFit, scale: float = 1.0) -> float:
 def _is_known_of_ship(column: Regressor, fit: JointFit) -> bool:
     """Whether a column is of known numbers of the ship, and of no cause."""
     turned = paths_of(fit.hypotheses)
-    return not any(ShipModel.is_of_day(path) or path in turned for path in column.changes)
+    return not column.is_of_day and turned.isdisjoint(column.changes)
 
 
 def numbers_of(fit: JointFit) -> tuple[list[str], np.ndarray, np.ndarray, np.ndarray]:
@@ -242,9 +242,7 @@ def reference_of(
     ship: ShipModel,
     ordinary: Mapping[str, float],
     logs: Sequence[ReferenceLog],
-    *,
     system: str,
-    version: str,
 ) -> Reference:
     """What a calibration leaves uncertain of a ship's numbers.
 
@@ -256,8 +254,8 @@ def reference_of(
     ordinary : mapping of str to float
         Gain of unmodelled errors in these logs. [nats]
     logs : sequence of ReferenceLog
-    system, version : str
-        Name of the system; version of this program.
+    system : str
+        Its name.
 
     Returns
     -------
@@ -283,7 +281,7 @@ def reference_of(
     return Reference(
         schema=SCHEMA,
         form_scale=first.model.form_scale,
-        shipcosim=version,
+        shipcosim=shipcosim.__version__,
         system=system,
         system_sha256=fingerprint(ship, names),
         tolerance_scale=found.scale,

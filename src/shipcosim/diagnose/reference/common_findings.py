@@ -133,9 +133,8 @@ class RatioOfLogs:
 
     def _is_apart(self, name: str) -> bool:
         # Ratio of all other logs, which must not contain the log itself.
-        rest = ratio_of_logs({other: one for other, one in self.each.items() if other != name})
+        others = self.without(name)
         own = self.each[name]
-        others = rest.common
         if others is None:
             return False
         # Difference of the logarithms in units of its standard deviation.

@@ -18,14 +18,13 @@ from shipcosim.diagnose.inference.fitting import (
     own_columns,
     tolerated,
 )
-from shipcosim.diagnose.inference.innovations import Gram, inner_products
+from shipcosim.diagnose.inference.innovations import Gram
 from shipcosim.diagnose.inference.linearisation import Regressor, moved
 from shipcosim.diagnose.inference.parts import beside
 from shipcosim.diagnose.inference.regressors import regressors_of
 from shipcosim.diagnose.inference.screening import Gain, gains
 from shipcosim.diagnose.reference.several_logs import Layout, SeveralLogs, laid_out, values_in
 from shipcosim.diagnose.reference.thresholds import CLOSE
-from shipcosim.diagnose.ship.model import ShipModel
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,8 +123,7 @@ def fitted_jointly(
 
 def _scaled(column: Regressor, scale: float) -> Regressor:
     """Column of a known number, with its tolerance scaled if the number is the ship's."""
-    of_day = any(ShipModel.is_of_day(path) for path in column.changes)
-    return column if of_day else replace(column, prior=scale * column.prior)
+    return column if column.is_of_day else replace(column, prior=scale * column.prior)
 
 
 def _layout(
@@ -158,10 +156,7 @@ def _layout(
     layout = laid_out(known, companions + parameters, named)
     # Known numbers come first in the layout; those that are not of a day are common.
     first = len(layout.regressors) - len(companions) - len(parameters)
-    common = [
-        i < first and not any(ShipModel.is_of_day(path) for path in column.changes)
-        for i, column in enumerate(layout.regressors)
-    ]
+    common = [i < first and not column.is_of_day for i, column in enumerate(layout.regressors)]
     return layout, np.array(common, bool)
 
 
@@ -221,7 +216,7 @@ def screened_jointly(logs: SeveralLogs, fit: JointFit) -> list[Gain]:
         part = fit.parts[name]
         added = regressors_of(own for _, own in logs.all_within(name, wanted))
         linear = beside(part.linear, problem.base_of(added))
-        found[name] = inner_products(linear, problem.noise, problem.record).products
+        found[name] = problem.gram(linear).products
     # Add them up over the logs, and compute the gain of each hypothesis.
     layout = screening_layout(logs, fit.layout, wanted)
     products = np.sum([layout.spread(name, one) for name, one in found.items()], axis=0)

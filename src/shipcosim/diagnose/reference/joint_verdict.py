@@ -6,7 +6,11 @@ from typing import cast
 import numpy as np
 
 from shipcosim.diagnose.experiment.testability import Excitation
-from shipcosim.diagnose.explanation.null_distribution import healthy_products, on_track
+from shipcosim.diagnose.explanation.null_distribution import (
+    gains_of_each,
+    healthy_products,
+    on_track,
+)
 from shipcosim.diagnose.explanation.search import explain, without_causes
 from shipcosim.diagnose.explanation.unmodelled import errors_of_the_fit, unmodelled_gains
 from shipcosim.diagnose.explanation.verdict import (
@@ -14,9 +18,7 @@ from shipcosim.diagnose.explanation.verdict import (
     judge_against_healthy,
     usual_gain,
 )
-from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.regressors import placed, regressors_of
-from shipcosim.diagnose.inference.screening import gains
 from shipcosim.diagnose.inference.thresholds import (
     NULL_GAIN_WITHOUT_WIND,
     TESTABLE,
@@ -115,13 +117,7 @@ def _null_gains(logs, fit, fits):
         kept = kept & on_track(products)
         together = together + layout.spread(name, products)
     # Gain of each cause on each simulated set of logs, where the ship stayed on its track.
-    found = {one.label: [] for one in wanted}
-    for products in together[kept]:
-        for gain, one, _ in gains(
-            products, nothing.columns, np.zeros(len(nothing.columns)), wanted, nothing.get
-        ):
-            found[one.label].append(gain)
-    return found
+    return gains_of_each(together[kept], nothing.columns, wanted, nothing.get)
 
 
 def joint_excitation(verdict: JointVerdict) -> Excitation:
@@ -134,7 +130,7 @@ def joint_excitation(verdict: JointVerdict) -> Excitation:
     for name, problem in logs.problems.items():
         own = (one for _, one in logs.all_within(name, logs.hypotheses))
         columns = nothing.parts[name].columns + regressors_of(own)
-        products = inner_products(problem.base_of(columns), problem.noise, problem.record).products
+        products = problem.gram(problem.base_of(columns)).products
         together = together + layout.spread(name, products)
     # Columns of each cause, and the evidence that it needs to count as testable.
     groups = [(one, places) for one, _, places in placed(logs.hypotheses, len(nothing.columns))]

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+import shipcosim
 from shipcosim.diagnose.craft.learned import LearnedCraft
-from shipcosim.diagnose.reference.log_errors import LogErrors, errors_by_models
 from shipcosim.diagnose.reference.reference import (
     SCHEMA,
     KnownNumber,
@@ -14,7 +14,6 @@ from shipcosim.diagnose.reference.reference import (
     fingerprint,
 )
 from shipcosim.diagnose.reference.thresholds import USUAL_FORM
-from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.model import ShipModel
 
 _LEAST_SPREAD = (
@@ -23,7 +22,7 @@ _LEAST_SPREAD = (
 
 
 def learned_reference(
-    craft: LearnedCraft, ship: ShipModel, logs: Sequence[ReferenceLog], system: str, version: str
+    craft: LearnedCraft, ship: ShipModel, logs: Sequence[ReferenceLog], system: str
 ) -> Reference:
     """What logs teach of a craft, as a reference.
 
@@ -33,8 +32,8 @@ def learned_reference(
     ship : ShipModel
         With the system's own numbers.
     logs : sequence of ReferenceLog
-    system, version : str
-        Name of the system; version of this program.
+    system : str
+        Its name.
     """
     # Each number with its spread between the logs, but no less than a share of its size.
     numbers = []
@@ -51,7 +50,7 @@ def learned_reference(
     return Reference(
         schema=SCHEMA,
         form_scale=USUAL_FORM,
-        shipcosim=version,
+        shipcosim=shipcosim.__version__,
         system=system,
         system_sha256=fingerprint(ship, list(craft.after)),
         tolerance_scale=1.0,
@@ -61,27 +60,3 @@ def learned_reference(
         numbers=tuple(numbers),
         correlation=tuple(tuple(map(float, row)) for row in np.eye(len(numbers))),
     )
-
-
-def learned_errors(
-    record: Record, ship: ShipModel, others: LearnedCraft, craft: LearnedCraft, names: Sequence[str]
-) -> LogErrors | None:
-    """Errors of a log by the system, by the craft as the other logs teach her, and as all do.
-
-    Parameters
-    ----------
-    record : Record
-    ship : ShipModel
-        As the system has her, with surrogates.
-    others, craft : LearnedCraft
-    names : sequence of str
-        Of the other logs.
-
-    Returns
-    -------
-    LogErrors or None
-        None where no stretch of the log is whole.
-    """
-    # Predictions by the system, by the craft without this log, and by the craft with all logs.
-    models = {"before": ship, "after": others.on(ship), "floor": craft.on(ship)}
-    return errors_by_models(record, models, names)

@@ -13,7 +13,6 @@ import numpy as np
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.linearisation import Regressor
-from shipcosim.diagnose.ship.model import ShipModel
 
 _SEPARATOR = "|"
 
@@ -181,5 +180,4 @@ def laid_out(
 
 def _key(log: str, column: Regressor) -> object:
     """What tells columns of known numbers apart: those of the day by their log, too."""
-    changes = tuple(sorted(column.changes.items()))
-    return (log, changes) if any(ShipModel.is_of_day(path) for path in column.changes) else changes
+    return (log, column.key) if column.is_of_day else column.key

@@ -70,7 +70,6 @@ class TrialEvidence:
     ----------
     trials : tuple of SeaTrial
     model : ShipModel
-    orders : bool
     hypotheses : tuple of Hypothesis
     measured : (f,) array
         Features of all trials, one after the other.
@@ -88,7 +87,6 @@ class TrialEvidence:
 
     trials: tuple[SeaTrial, ...]
     model: ShipModel
-    orders: bool
     hypotheses: tuple[Hypothesis, ...]
     measured: np.ndarray
     predicted: np.ndarray
@@ -104,7 +102,7 @@ class TrialEvidence:
 
 
 def trial_evidence(
-    trials: Sequence[SeaTrial], model: ShipModel, hypotheses: Sequence[Hypothesis], *, orders: bool
+    trials: Sequence[SeaTrial], model: ShipModel, hypotheses: Sequence[Hypothesis]
 ) -> TrialEvidence:
     """Linearise sea trials about the ship as modelled, and find how well their features repeat.
 
@@ -114,8 +112,6 @@ def trial_evidence(
     model : ShipModel
     hypotheses : sequence of Hypothesis
         Causes to weigh.
-    orders : bool
-        As for `sailed`.
 
     Returns
     -------
@@ -128,9 +124,7 @@ def trial_evidence(
     ]
     known = known_numbers(model)
     both = [dict.fromkeys(p.paths, sign * size) for sign in (1.0, -1.0) for p, size in causes]
-    found = predicted(
-        trials, model, [{}, *both, *({path: size} for path, size in known)], orders=orders
-    )
+    found = predicted(trials, model, [{}, *both, *({path: size} for path, size in known)])
     slopes = (found[1 : 1 + len(causes)] - found[1 + len(causes) : 1 + 2 * len(causes)]) / (
         2.0 * _PART
     )
@@ -140,7 +134,7 @@ def trial_evidence(
     noise = blocks([covariance_of(trial, length) for trial in trials])
     measured = np.concatenate([features_of(trial, trial.measured) for trial in trials])
     first = TrialEvidence(
-        tuple(trials), model, orders, tuple(hypotheses), measured, found[0], slopes, beside, noise
+        tuple(trials), model, tuple(hypotheses), measured, found[0], slopes, beside, noise
     )
     # How well they repeat is unknown: take the scale of largest evidence with up to two causes.
     scaled = [replace(first, noise=scale**2 * noise, scale=scale) for scale in thresholds.SCALES]
@@ -178,11 +172,9 @@ def predicted(
     trials: Sequence[SeaTrial],
     model: ShipModel,
     changes: Sequence[dict[str, float]],
-    *,
-    orders: bool,
 ) -> np.ndarray:
-    """Features of trials by changed ships, (p, f) array of all trials one after the other; as for `sailed`."""
-    motions = sailed(trials, model, changes, orders=orders)
+    """Features of trials by changed ships, (p, f) array of all trials one after the other."""
+    motions = sailed(trials, model, changes)
     return np.array(
         [
             np.concatenate(
@@ -197,7 +189,7 @@ def predicted(
 
 
 def slopes_of(
-    trials: Sequence[SeaTrial], model: ShipModel, sets: Sequence[SetOfCauses], *, orders: bool
+    trials: Sequence[SeaTrial], model: ShipModel, sets: Sequence[SetOfCauses]
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     """Features of trials by fitted sets, (f,) array, and their slopes by parameter, (p, f), over a typical size."""
     # The set itself, then each of its parameters moved.
@@ -205,7 +197,7 @@ def slopes_of(
     for one in sets:
         moves = _PART * np.eye(len(one.values))
         changes += [changes_of(one), *(_changes(one.hypotheses, one.values + by) for by in moves)]
-    features = iter(predicted(trials, model, changes, orders=orders))
+    features = iter(predicted(trials, model, changes))
     found = []
     for one in sets:
         here = next(features)
@@ -238,7 +230,7 @@ def changes_of(found: SetOfCauses) -> dict[str, float]:
 
 def allowed_for(found: TrialEvidence, one: SetOfCauses) -> dict[str, float]:
     """What compass and antenna are most likely off, beside a fitted set: numbers of the ship and what is added."""
-    here = predicted(found.trials, found.model, [changes_of(one)], orders=found.orders)[0]
+    here = predicted(found.trials, found.model, [changes_of(one)])[0]
     # Posterior mean of known numbers given the residual: their share of the total covariance.
     shares = found.known @ np.linalg.solve(found.covariance, found.measured - here)
     return {
@@ -330,7 +322,7 @@ def _fitted(found, sets):
     ]
     # Gauss-Newton: simulate each set where it is and solve again.
     for _ in range(thresholds.ROUNDS):
-        about = slopes_of(found.trials, found.model, fits, orders=found.orders)
+        about = slopes_of(found.trials, found.model, fits)
         fits = [
             _solved(found, fit.hypotheses, slopes, here, fit.values)
             for fit, (here, slopes) in zip(fits, about, strict=True)

@@ -13,6 +13,7 @@ import numpy as np
 
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.windows import SeaTrial
+from shipcosim.models.core.kinematics import to_ned
 
 _TIMES = tuple(f"t{heading:.0f}" for heading in thresholds.HEADINGS)
 _SPEEDS = tuple(f"speed at {heading:.0f}" for heading in thresholds.HEADINGS_OF_SPEED)
@@ -99,14 +100,8 @@ def _ways(motion, trial, turned):
     """
     (north, east) = motion[:, :2].T
     time = trial.time
-    u, v = motion[0, 3:5]
     # Direction of the first course through the water: velocity over ground less the drift.
-    towards = np.array(
-        [
-            np.cos(motion[0, 2]) * u - np.sin(motion[0, 2]) * v,
-            np.sin(motion[0, 2]) * u + np.cos(motion[0, 2]) * v,
-        ]
-    )
+    towards = np.array(to_ned(*motion[0, 2:5]))
     drift = _drift(motion, trial, turned)
     c, s = (towards - drift) / np.hypot(*(towards - drift))
     # Track relative to the drifting water.

@@ -223,7 +223,7 @@ def _seen(one, side, motion, units, h):
     cut = {name: (speed[part], direction[part]) for name, (speed, direction) in units.items()}
     time = h * np.arange(last - first)
     helm = float(np.sin(abs(one.legs[-1].helm)))
-    return SeaTrial(one.kind, side, (h * first, h * last), helm, time, motion[part], cut)
+    return SeaTrial(one.kind, side, (h * first, h * last), helm, time, motion[part], cut, True)
 
 
 def _orders(units, shafts, power, helm, bow):

@@ -18,8 +18,6 @@ def sailed(
     trials: Sequence[SeaTrial],
     model: ShipModel,
     changes: Sequence[Mapping[str, float]],
-    *,
-    orders: bool,
 ) -> list[np.ndarray]:
     """What instruments would show of ships that sail the orders of trials from where these began.
 
@@ -28,11 +26,10 @@ def sailed(
     Parameters
     ----------
     trials : sequence of SeaTrial
+        All of orders, or none.
     model : ShipModel
     changes : sequence of p mappings of str to float
         By ship: numbers and what is added to them.
-    orders : bool
-        Whether the log has orders, which the units follow, instead of what the units did.
 
     Returns
     -------
@@ -53,9 +50,8 @@ def sailed(
     h = float(trials[0].time[1])
     many = (len(changes), len(trials))
     state = Motion(*(np.broadcast_to(value, many).copy() for value in state))
-    table = np.stack(
-        [_shown(now, ships) for now in _way(state, units, ships, most, h, orders)], axis=-2
-    )
+    way = _way(state, units, ships, most, h, trials[0].orders)
+    table = np.stack([_shown(now, ships) for now in way], axis=-2)
     return [table[:, i, :n] for i, n in enumerate(lengths)]  # ships, trials, rows, channels
 
 

@@ -55,7 +55,7 @@ def separations(found: TrialEvidence, sets: Sequence[SetOfCauses]) -> list[Separ
     model = found.model
     planned = as_trials(catalogue(model), model, _shafts(found.trials, model), changes_of(sets[0]))
     trials = [trial for _, pair in planned for trial in pair]
-    there = slopes_of(trials, model, sets, orders=True)
+    there = slopes_of(trials, model, sets)
     # Numbers that stay uncertain: known ones, and causes that the trials said nothing of.
     numbers = known_numbers(model)
     untold = _untold(found, sets)
@@ -68,7 +68,7 @@ def separations(found: TrialEvidence, sets: Sequence[SetOfCauses]) -> list[Separ
         first | {path: first.get(path, 0.0) + _PART * size for path, size in one.items()}
         for one in sizes
     ]
-    beside = (predicted(trials, model, moved, orders=True) - there[0][0]) / _PART
+    beside = (predicted(trials, model, moved) - there[0][0]) / _PART
     # What the trials said constrains sets and numbers: predict the new features from that
     # posterior.
     known = replace(found, known=np.vstack((found.known, *(found.slopes[i] for i, _ in untold))))
@@ -76,9 +76,7 @@ def separations(found: TrialEvidence, sets: Sequence[SetOfCauses]) -> list[Separ
     of_day = np.array([ShipModel.is_of_day(path) for one in sizes for path in list(one)[:1]])
     priors = [
         _prediction(known, at_trials, here, beside, of_day, spread)
-        for at_trials, here in zip(
-            slopes_of(found.trials, model, sets, orders=found.orders), there, strict=True
-        )
+        for at_trials, here in zip(slopes_of(found.trials, model, sets), there, strict=True)
     ]
     results = []
     at = 0

@@ -287,19 +287,14 @@ def study(
         found = f"no turning circle among {len(trials)} manoeuvres: {', '.join(t.name for t in trials) or 'none'}."
         right = f"A circle is an order held until she has turned by {thresholds.CIRCLE:.0f} deg, from a straight course."
         raise error_at(source_of(read.repaired), found, right)
-    return studied(
-        trials,
-        read.ship,
-        causes_of_trials(read.ship, read.causes, orders=orders),
-        say,
-        orders=orders,
-    )
+    causes_of_log = causes_of_trials(read.ship, read.causes, orders=orders)
+    return studied(trials, read.ship, causes_of_log, say)
 
 
 def motions_of(found: SeaTrialStudy) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Motions (n, 6) of all trials by the ship as modelled, and with the best set, compass and antenna as told."""
     best = changes_of(found.best) | allowed_for(found.evidence, found.best)
-    motions = sailed(found.trials, found.model, [{}, best], orders=found.evidence.orders)
+    motions = sailed(found.trials, found.model, [{}, best])
     return [motion[0] for motion in motions], [motion[1] for motion in motions]
 
 
@@ -329,8 +324,6 @@ def studied(
     model: ShipModel,
     hypotheses: Sequence[Hypothesis],
     progress: Callable[..., None] = lambda *_: None,
-    *,
-    orders: bool,
 ) -> SeaTrialStudy:
     """The study of known sea trials: each side judged by the other, then all together.
 
@@ -340,8 +333,6 @@ def studied(
     model : ShipModel
     hypotheses : sequence of Hypothesis
     progress : callable
-    orders : bool
-        As for `study`.
 
     Returns
     -------
@@ -360,30 +351,28 @@ def studied(
                 trial for trial in trials if trial.kind != "straight run" and trial not in own
             ]
             straight = [trial for trial in trials if trial.kind == "straight run"]
-            held_out[name] = _judged([*straight, *own], others, model, hypotheses, orders)
+            held_out[name] = _judged([*straight, *own], others, model, hypotheses)
     # The result itself is fitted on all trials.
     progress("fitted on all manoeuvres")
-    whole = trial_evidence(trials, model, hypotheses, orders=orders)
+    whole = trial_evidence(trials, model, hypotheses)
     ranking = ranked(whole)
     best = best_of(ranking)
     rivals = rivals_of(ranking)
-    (after,) = predicted(
-        trials, model, [changes_of(best) | allowed_for(whole, best)], orders=orders
-    )
+    (after,) = predicted(trials, model, [changes_of(best) | allowed_for(whole, best)])
     progress("what would tell causes apart")
     separated = separations(whole, [best, *rivals]) if best.hypotheses and rivals else []
     return SeaTrialStudy(whole, held_out, tuple(ranking), after, tuple(separated))
 
 
-def _judged(train, others, model, hypotheses, orders):
+def _judged(train, others, model, hypotheses):
     both_sides = [
         one for one in hypotheses if one.component is None
     ]  # one unit alone: told by comparing both sides
-    found = trial_evidence(train, model, both_sides, orders=orders)
+    found = trial_evidence(train, model, both_sides)
     ranking = tuple(ranked(found))
     best = best_of(ranking)
     fitted = changes_of(best) | allowed_for(found, best)
-    before, after = (errors(others, model, changes, orders=orders) for changes in ({}, fitted))
+    before, after = (errors(others, model, changes) for changes in ({}, fitted))
     fitted_on, judged_on = (tuple(trial.name for trial in some) for some in (train, others))
     return HeldOut(fitted_on, judged_on, ranking, before, after, fitted)
 
@@ -421,7 +410,7 @@ def rivals_of(ranking: Iterable[SetOfCauses]) -> list[SetOfCauses]:
 
 
 def errors(
-    trials: Sequence[SeaTrial], model: ShipModel, changes: dict[str, float], *, orders: bool
+    trials: Sequence[SeaTrial], model: ShipModel, changes: dict[str, float]
 ) -> dict[str, float]:
     """Root mean square errors of a changed ship on trials, by kind and feature, in per cent (drift in deg).
 
@@ -431,8 +420,6 @@ def errors(
     model : ShipModel
     changes : dict of str to float
         What is added to the ship's numbers.
-    orders : bool
-        As for `study`.
 
     Returns
     -------
@@ -441,7 +428,7 @@ def errors(
     """
     measured = [features_of(trial, trial.measured) for trial in trials]
     # Simulate all trials with the changes and compare features: logarithms as relative errors.
-    sailed = predicted(trials, model, [changes], orders=orders)[0]
+    sailed = predicted(trials, model, [changes])[0]
     found = {}
     at = 0
     for trial, own in zip(trials, measured, strict=True):

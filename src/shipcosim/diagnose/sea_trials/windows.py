@@ -37,6 +37,8 @@ class SeaTrial:
         North, east, heading (unwrapped), surge, sway, yaw rate, SI; speeds as the way says.
     units : dict of str to tuple of two (n,) arrays
         Speed or thrust and direction of each thruster. [rev/s or N, rad]
+    orders : bool
+        Whether these are orders, which the units follow, instead of what the units did.
     """
 
     kind: str
@@ -46,6 +48,7 @@ class SeaTrial:
     time: np.ndarray
     measured: np.ndarray
     units: ThrusterSeries
+    orders: bool
 
     @property
     def name(self) -> str:
@@ -103,7 +106,9 @@ def sea_trials_of(
         for one in kept
         if not (orders and one[0] == "straight run" and _clipped(one[1], record, model))
     ]
-    trials = [_trial(kind, rows, record, measured, clock, helm, length) for kind, rows in kept]
+    trials = [
+        _trial(kind, rows, record, measured, clock, helm, length, orders) for kind, rows in kept
+    ]
     return sorted(trials, key=lambda trial: trial.logged)
 
 
@@ -127,17 +132,11 @@ def as_ordered(record: Record, log: xarray.Dataset, model: ShipModel) -> Record:
     at = after - (record.time - time[after - 1] < time[after] - record.time)
     units = {}
     for name, (speed, direction) in record.units.items():
-        told = {f"{name}_rpm": (speed, 1.0 / 60.0), f"{name}_thrust": (speed, 1.0)}
-        role = next(
-            (
-                role
-                for role in told
-                if role in log and role.removeprefix(f"{name}_") in model.drives(name)
-            ),
-            None,
-        )
         # Orders as logged; the averaged ones where the log has a hole.
-        own = speed if role is None else told[role][1] * _known(log[role].values, speed, at)
+        own = speed
+        for drive, factor in (("thrust", 1.0), ("rpm", 1.0 / 60.0)):
+            if drive in model.drives(name) and f"{name}_{drive}" in log:
+                own = factor * _known(log[f"{name}_{drive}"].values, speed, at)
         azimuth = f"{name}_azimuth"
         units[name] = (
             own,
@@ -298,7 +297,7 @@ def _held(series, record):
     return off & np.roll(off, -rows)
 
 
-def _trial(kind, rows, record, measured, clock, helm, length):
+def _trial(kind, rows, record, measured, clock, helm, length, orders):
     """The rows of a manoeuvre on even steps of its own clock."""
     # Even steps of the ship's time scale on the corrected clock; orders are steps, so they are not
     # interpolated.
@@ -319,6 +318,5 @@ def _trial(kind, rows, record, measured, clock, helm, length):
     side = 0 if kind == "straight run" else int(np.sign(order))
     logged = float(record.time[rows][0]), float(record.time[rows][-1])
     size = float(np.median(np.abs(helm[rows])))
-    return SeaTrial(
-        kind, side, logged, size, time, np.stack([even(c) for c in measured.T], axis=1), units
-    )
+    motion = np.stack([even(c) for c in measured.T], axis=1)
+    return SeaTrial(kind, side, logged, size, time, motion, units, orders)

@@ -57,6 +57,18 @@ class Inputs(NamedTuple):
     wind_speed: Arithmetic | None
     wind_from: Arithmetic | None
 
+    def at(self, rows: Any) -> Inputs:
+        """Inputs at some of the rows, the last axis of the arrays."""
+        units = {
+            name: (drive[..., rows], direction[..., rows])
+            for name, (drive, direction) in self.units.items()
+        }
+        wind = (
+            None if series is None else series[..., rows]
+            for series in (self.wind_speed, self.wind_from)
+        )
+        return Inputs(self.time[rows], units, *wind)
+
 
 @dataclass(frozen=True)
 class Record:

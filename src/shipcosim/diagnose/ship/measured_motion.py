@@ -2,7 +2,10 @@
 
 from typing import Any
 
+import numpy as np
+
 from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.models.core.kinematics import to_ned
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.ship import instruments
 
@@ -49,3 +52,20 @@ def true_motion(seen: Motion, model: ShipModel) -> Motion:
     return Motion(*instruments.true_motion(*seen, **own.errors))._replace(
         psi=seen.psi - own.heading_bias
     )
+
+
+def wind_over_ground(
+    speed: np.ndarray, direction: np.ndarray, motion: Motion
+) -> tuple[np.ndarray, np.ndarray]:
+    """Velocity over ground to north and east of the wind that meets a moving ship so. [m/s]
+
+    Parameters
+    ----------
+    speed, direction : array
+        Apparent; the direction is where it comes from, against the bow. [m/s, rad]
+    motion : Motion
+    """
+    # The ship's velocity less the relative wind, turned to north and east.
+    along = motion.u - speed * np.cos(direction)
+    across = motion.v - speed * np.sin(direction)
+    return to_ned(motion.psi, along, across)

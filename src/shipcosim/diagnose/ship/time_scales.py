@@ -26,11 +26,6 @@ class Scales(NamedTuple):
     yaw: float
 
     @property
-    def fastest(self) -> float:
-        """The shortest of the three; what happens faster than this the ship does not follow. [s]"""
-        return min(self)
-
-    @property
     def slowest(self) -> float:
         """The longest of the three. [s]"""
         return max(self)

@@ -11,10 +11,11 @@ from collections.abc import Collection, Mapping
 import numpy as np
 
 from shipcosim.diagnose.ship.dynamics import motion_rates
-from shipcosim.diagnose.ship.inputs import Inputs, Record, ThrusterSeries
+from shipcosim.diagnose.ship.inputs import Record, ThrusterSeries
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.models.core.integrate import euler
+from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Motion
 
@@ -88,7 +89,8 @@ def kept_on_track(
             for i, part in enumerate(inputs):
                 # a small ship answers within a row, through which a log's thrusters go on evenly
                 now = dp.speeds(told, record, k + (i + 0.5) / parts) if parts > 1 else speeds
-                ship, rates = _moved(ship, rates, _at(part, k, now), ships, h / parts, dp)
+                driven = part.at(k)._replace(units=now)  # the record's wind alone
+                ship, rates = _moved(ship, rates, driven, ships, h / parts, dp)
             if jolts is not None:
                 ship = ship._replace(
                     u=ship.u + jolts[k][0], v=ship.v + jolts[k][1], r=ship.r + jolts[k][2]
@@ -118,16 +120,6 @@ def _between(series, row):
         if row == int(row)
         else (low + 1 - row) * series[..., low] + (row - low) * series[..., low + 1]
     )
-
-
-def _at(inputs, k, units):
-    """What drives the ships over a step: the wind of the record, and thrusters as commanded."""
-    wind = (
-        (None, None)
-        if inputs.wind_speed is None
-        else (inputs.wind_speed[..., k], inputs.wind_from[..., k])
-    )
-    return Inputs(inputs.time[k], units, *wind)
 
 
 def _moved(ship, last, inputs, model, h, dp):
@@ -180,11 +172,8 @@ class DpController:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Load that brings the ships back to the track, in their body frames; and the integral action."""
         # Position error in body axes, and velocity error.
-        c = np.cos(ship.psi)
-        s = np.sin(ship.psi)
-        dx = want.x - ship.x
-        dy = want.y - ship.y
-        error = np.stack([c * dx + s * dy, c * dy - s * dx, want.psi - ship.psi])
+        ahead, across = to_body(ship.psi, want.x - ship.x, want.y - ship.y)
+        error = np.stack([ahead, across, want.psi - ship.psi])
         rate = np.stack([want.u - ship.u, want.v - ship.v, want.r - ship.r])
         # PID law tau = M (w^2 e + 2 zeta w e_dot +
         # integral), limited to what a ship can be asked for.

@@ -85,9 +85,6 @@ class Comparison:
         Where the segments start.
     seen : Motion
         What the predictions are measured against.
-    observers : dict of str to tuple of str, float and float or None
-        By model, what did best on the training rows: frame of the force, within what time it is learnt [s], at what
-        rate it fades in the prediction [1/s], None where only its start is used.
     predictors : dict of str to Predictor
         Of the models ``plain`` and ``extended``.
     """
@@ -97,7 +94,6 @@ class Comparison:
     train: np.ndarray
     rows: np.ndarray
     seen: Motion
-    observers: dict[str, tuple[str, float, float | None]]
     predictors: dict[str, Predictor]
 
 
@@ -106,7 +102,6 @@ def compare(
     fit: Fit,
     *,
     train: np.ndarray | None = None,
-    part: Fit | None = None,
     plain: ShipModel | None = None,
 ) -> Comparison | None:
     """Predict with the plain model, a bias observer, the causes of a fit, and see how far each is off.
@@ -119,8 +114,6 @@ def compare(
         To the whole log. Its causes are fitted again on the training rows; near its motion is the reference.
     train : (n,) bool array, optional
         Rows to fit on; the first 65 %.
-    part : Fit, optional
-        The fit to these rows, where it is known: that of several logs together.
     plain : ShipModel, optional
         The ship as the system has her, where the problem's has more corrected than that.
 
@@ -136,10 +129,8 @@ def compare(
     if inside.size == 0 or rows.size == 0 or record.time[rows[-1]] - record.time[rows[0]] < BLOCK:
         return None
     # Causes are fitted again on the training rows alone.
-    if part is None:
-        part = fitted(
-            trained(problem, train), fit.hypotheses, fit.values, rounds=3 if fit.hypotheses else 1
-        )
+    rounds = 3 if fit.hypotheses else 1
+    part = fitted(trained(problem, train), fit.hypotheses, fit.values, rounds)
     # Reference: smoothed with a free force, so that it favours no model.
     linear = linearise(fit.motion, record, fit.model, [])
     seen = reference(linear, fit.motion, problem.noise, record, fit.model)
@@ -156,14 +147,14 @@ def compare(
     if not fit.hypotheses and plain is None:
         models["extended"] = models["plain"]
     found = {}
-    observers = {}
     predictors = {}
     # Errors of each model, with the held force of its observer where it has one.
     for name, held in _HELD.items():
         judged = _judged(models[name], inside[::2], rows, seen, held is not None)
-        for label, (errors, observer, _) in zip((name, held), judged, strict=False):
-            found[label], observers[label] = errors, observer
-        predictors[name] = models[name].predictor(judged[0][-1], ship_models[name])
+        for label, (errors, _) in zip((name, held), judged, strict=False):
+            found[label] = errors
+        # Predictions without a force start from what the observer knew that does best so.
+        predictors[name] = models[name].predictor(judged[0][1], ship_models[name])
     variables = {
         channel: (
             ("model", "horizon", "segment"),
@@ -174,9 +165,7 @@ def compare(
     }
     coordinates = {"model": list(MODELS), "horizon": list(HORIZONS)}
     coordinates |= conditions(record, seen, rows, train, problem.model)
-    return Comparison(
-        xarray.Dataset(variables, coordinates), part, train, rows, seen, observers, predictors
-    )
+    return Comparison(xarray.Dataset(variables, coordinates), part, train, rows, seen, predictors)
 
 
 def _judged(model, inside, rows, seen, holds):
@@ -184,8 +173,8 @@ def _judged(model, inside, rows, seen, holds):
 
     Returns
     -------
-    list of tuple of dict, tuple and int
-        Errors by channel, the observer as in `Comparison`, its number.
+    list of tuple of dict and int
+        Errors by channel, and the number of the observer.
     """
     # One pass over training and held-out starts; the observer is chosen by the longest horizon on
     # the training starts only.
@@ -198,9 +187,7 @@ def _judged(model, inside, rows, seen, holds):
             channel: values[:, some][:, fade, number, len(inside) :]
             for channel, values in missed.items()
         }
-        found.append(
-            (errors, (*model.choices[number], FADES[fade] if some.start else None), number)
-        )
+        found.append((errors, number))
     return found
 
 

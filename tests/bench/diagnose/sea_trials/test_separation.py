@@ -36,8 +36,6 @@ def test_sailing_what_is_prescribed_tells_the_planted_drag_from_the_others(found
     ]
     assert chosen and all(one.kind in SOUGHT for one in chosen)
     more = [trial for _, pair in as_trials(chosen, found.model, SHAFTS, PLANTED) for trial in pair]
-    ranking = ranked(
-        trial_evidence([*found.trials, *more], found.model, found.hypotheses, orders=True)
-    )
+    ranking = ranked(trial_evidence([*found.trials, *more], found.model, found.hypotheses))
     assert {cause.cause for cause in best_of(ranking).hypotheses} == {"drift_drag", "late_orders"}
     assert not rivals_of(ranking)

@@ -48,7 +48,7 @@ def test_a_ship_of_the_model_s_form_keeps_it():
 def test_a_ship_of_another_form_is_healthy_once_her_form_may_differ(problems):
     with threadpool_limits(1):
         problem = problems["healthy"]
-        scores = scores_by_scale(problem, fitted(problem))
+        scores = scores_by_scale(problem)
         assert max(scores.values()) > scores[0.0] + 20.0
         formed = learnt(problem)
         assert formed.model.form_scale > 0.0

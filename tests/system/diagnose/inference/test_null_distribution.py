@@ -73,7 +73,7 @@ def test_gaps_of_the_log_are_in_the_healthy_logs():
 
 def test_no_cause_gains_by_chance_on_a_log_that_moves():
     gains = null_gains(
-        problem("mass"), fits("mass")[0].motion, problem("mass").hypotheses, count=COUNT, batch=3
+        problem("mass"), fits("mass")[0].motion, problem("mass").hypotheses, count=COUNT
     )
     assert set(gains) == {hypothesis.label for hypothesis in problem("mass").hypotheses}
     assert all(values.shape == (COUNT,) for values in gains.values())

@@ -43,6 +43,4 @@ def reference(name="well", seed=3):
     """The reference of it."""
     found, log = calibration(name, seed), ReferenceLog(name=name, rows=361, span_s=(0.0, 360.0))
     ordinary = found.unmodelled[name]
-    return reference_of(
-        found, twin.model(), ordinary, [log], system="gunnerus_open", version="test"
-    )
+    return reference_of(found, twin.model(), ordinary, [log], "gunnerus_open")

@@ -123,7 +123,6 @@ def test_logs_have_names_of_their_own():
 )
 def test_logs_that_do_not_tell_the_form_leave_it_as_uncertain_as_usual(monkeypatch, scores, says):
     """A log of stationkeeping says nothing of drag: the model's form is certain only where logs say so."""
-    monkeypatch.setattr(calibration, "fitted", lambda problem: None)
     monkeypatch.setattr(calibration, "scores_by_scale", lambda *_: scores)
     monkeypatch.setattr(calibration, "of_scale", lambda problem, scale: scale)
     logs, gain = calibration.with_common_form(SeveralLogs({"monday": "as it is"}, is_well=True))

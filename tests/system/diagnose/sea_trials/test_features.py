@@ -25,7 +25,7 @@ def circle(side=1, current=(0.0, 0.0), compass=0.0, course=0.7, drift=0.1):
     measured = np.column_stack(
         (north, east, heading, u, v, np.full(time.size, side * SPEED / RADIUS))
     )
-    return SeaTrial("turning circle", side, (0.0, float(time[-1])), 0.5, time, measured, {})
+    return SeaTrial("turning circle", side, (0.0, float(time[-1])), 0.5, time, measured, {}, True)
 
 
 def told(trial):

@@ -50,7 +50,7 @@ def ranking(logs):
     causes = causes_of_trials(twin.model(), read_catalogue(), orders=True)
 
     def of(log):
-        return ranked(trial_evidence(manoeuvres(log), twin.model(), causes, orders=True))
+        return ranked(trial_evidence(manoeuvres(log), twin.model(), causes))
 
     return {name: of(log) for name, log in logs.items()}
 
@@ -80,7 +80,7 @@ def test_a_motion_tells_the_time_that_a_wrong_clock_does_not():
 
 def test_a_straight_run_is_sailed_until_the_speed_has_settled(logs):
     run = next(one for one in manoeuvres(logs["healthy"]) if one.kind == "straight run")
-    (motion,) = sailed([run], twin.model(), [{}], orders=True)
+    (motion,) = sailed([run], twin.model(), [{}])
     speed = np.hypot(motion[0, :, 3], motion[0, :, 4])
     assert abs(speed[-1] / speed[-40] - 1.0) < 1e-3
     assert np.exp(features_of(run, motion[0])) == pytest.approx(speed[-1])

@@ -32,9 +32,7 @@ def found():
         for one in causes_of_trials(twin.model(), read_catalogue(), orders=True)
         if one.cause in drags
     ]
-    return trial_evidence(
-        sea_trials_of(record, read.ship, orders=True), twin.model(), causes, orders=True
-    )
+    return trial_evidence(sea_trials_of(record, read.ship, orders=True), twin.model(), causes)
 
 
 @pytest.fixture(scope="module")

@@ -123,7 +123,6 @@ def test_a_healthy_log_gains_nothing(loss, twin):
 def test_both_sides_have_the_same_observers_so_that_without_a_cause_nothing_is_beyond_them(
     twin, loss
 ):
-    assert twin.observers["extended_observer"] == twin.observers["bias_observer"]
     assert twin.errors.sel(model="extended_observer").equals(
         twin.errors.sel(model="bias_observer").assign_coords(model="extended_observer")
     )

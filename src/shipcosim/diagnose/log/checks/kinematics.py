@@ -12,6 +12,7 @@ from functools import lru_cache
 import numpy as np
 
 from shipcosim.angles import unwrap_series
+from shipcosim.diagnose.log.roles import POSITION, VELOCITY
 from shipcosim.diagnose.log.thresholds import (
     CLEAR_MOTION,
     LONGEST_BRIDGE,
@@ -41,6 +42,7 @@ RATIOS = (
     6.0,
     50.0,
 )  # variance of wander over noise
+_FEWEST_ROWS = 30  # in which position and velocity are compared. Assumed.
 
 
 @dataclass(frozen=True)
@@ -75,33 +77,72 @@ class Motion:
         return self.seen - spline_integral(self.time, self.velocity)
 
 
-def position_motion(log: dict) -> Motion | None:
-    """Positions against velocity turned by the heading; None where there is too little of them.
+@dataclass(frozen=True)
+class Logged:
+    """A position of one or two axes as logged, and the velocity that is its rate once it is turned.
+
+    Attributes
+    ----------
+    rows : (n,) array of int
+        Of the log, in which all is known.
+    time : (n,) array
+        [s]
+    seen : (n, a) array
+        Position or heading, unwrapped. [m or deg]
+    velocity, turn : (n,) complex arrays
+        As logged, and by what it is turned: of surge and i sway by the heading. [m/s or deg/s, 1]
+    """
+
+    rows: np.ndarray
+    time: np.ndarray
+    seen: np.ndarray
+    velocity: np.ndarray
+    turn: np.ndarray
+
+    def axes(self, series: np.ndarray) -> np.ndarray:
+        """A complex series (n,) by the axes of the position, (n, a)."""
+        return np.column_stack([np.real(series), np.imag(series)])[:, : self.seen.shape[1]]
+
+
+def logged_position(log: dict) -> Logged:
+    """Position with surge, sway and heading.
 
     Parameters
     ----------
     log : dict of (n,) arrays
         `time` [s] and roles in their units, NaN where not to be used.
     """
-    roles = ("north", "east", "surge", "sway", "heading")
-    rows = complete_rows(log, roles)
-    if len(rows) < 30:
-        return None
-    # Turn the velocity from body to earth axes.
-    north, east, surge, sway, heading = (log[role][rows] for role in roles)
-    over_ground = (surge + 1j * sway) * np.exp(1j * np.radians(heading))
-    velocity = np.column_stack([over_ground.real, over_ground.imag])
-    return _motion(log["time"][rows], np.column_stack([north, east]), velocity)
+    rows = complete_rows(log, (*POSITION, *VELOCITY, "heading"))
+    if not len(rows):
+        return _EMPTY
+    seen = np.column_stack([log[role][rows] for role in POSITION])
+    velocity = log["surge"][rows] + 1j * log["sway"][rows]
+    return Logged(
+        rows, log["time"][rows], seen, velocity, np.exp(1j * np.radians(log["heading"][rows]))
+    )
+
+
+def logged_heading(log: dict) -> Logged:
+    """Heading with the yaw rate; `log` as of `logged_position`."""
+    rows = complete_rows(log, ("heading", "yaw_rate"))
+    if not len(rows):
+        return _EMPTY
+    seen = np.degrees(unwrap_series(np.radians(log["heading"][rows])))[:, None]
+    rate = log["yaw_rate"][rows].astype(complex)
+    return Logged(rows, log["time"][rows], seen, rate, np.ones(len(rows)))
+
+
+_EMPTY = Logged(np.zeros(0, int), np.zeros(0), np.zeros((0, 1)), np.zeros(0), np.zeros(0))
+
+
+def position_motion(log: dict) -> Motion | None:
+    """Positions against velocity turned by the heading; None where there is too little of them."""
+    return _motion(logged_position(log))
 
 
 def heading_motion(log: dict) -> Motion | None:
     """Relation of heading and yaw rate; None if there are too few rows."""
-    rows = complete_rows(log, ("heading", "yaw_rate"))
-    if len(rows) < 30:
-        return None
-    rate = log["yaw_rate"][rows, None]
-    heading = np.degrees(unwrap_series(np.radians(log["heading"][rows])))[:, None]
-    return _motion(log["time"][rows], heading, rate)
+    return _motion(logged_heading(log))
 
 
 def complete_rows(log: dict, roles: Sequence[str]) -> np.ndarray:
@@ -111,8 +152,12 @@ def complete_rows(log: dict, roles: Sequence[str]) -> np.ndarray:
     return np.flatnonzero(np.all([np.isfinite(log[role]) for role in roles], axis=0))
 
 
-def _motion(time, seen, velocity):
-    return Motion(time, seen, velocity, after_gaps(time) | jumps(seen))
+def _motion(logged):
+    if len(logged.rows) < _FEWEST_ROWS:
+        return None
+    starts = after_gaps(logged.time) | jumps(logged.seen)
+    velocity = logged.axes(logged.velocity * logged.turn)
+    return Motion(logged.time, logged.seen, velocity, starts)
 
 
 def after_gaps(time: np.ndarray) -> np.ndarray:

@@ -4,23 +4,25 @@ A velocity that comes late by a lag tells the way made that long before; a late 
 lag the level between what is seen and the way told leaves innovations. The right lag leaves the smallest.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.angles import unwrap_series
 from shipcosim.diagnose.finding import Finding, ParameterEstimate, Segment
 from shipcosim.diagnose.log.checks.kinematics import (
+    Logged,
     Motion,
     after_gaps,
-    complete_rows,
     filter_for,
     jumps,
+    logged_heading,
+    logged_position,
     whiteness,
 )
 from shipcosim.diagnose.log.checks.segments import best_segment
-from shipcosim.diagnose.log.mislabels import POSITION, VELOCITY, finding_of, late, undone
+from shipcosim.diagnose.log.mislabels import finding_of, late, undone
+from shipcosim.diagnose.log.roles import POSITION, VELOCITY
 from shipcosim.diagnose.log.rows import inside
 from shipcosim.diagnose.log.thresholds import (
     LABEL_CLIP,
@@ -36,23 +38,6 @@ from shipcosim.diagnose.log.thresholds import (
     SMALLEST_LAG_ROWS,
 )
 from shipcosim.diagnose.numerics import spline_integral
-
-
-@dataclass(frozen=True)
-class _Pair:
-    """A position (n, a), and the velocity (n,) that is its rate once it is turned, as complex numbers."""
-
-    time: np.ndarray
-    seen: np.ndarray
-    velocity: np.ndarray
-    turn: np.ndarray
-
-    def way(self, lag: float) -> np.ndarray:
-        """The way told (n, a) if the velocity comes late by `lag`, or below 0 the position by as much. [s]"""
-        velocity = np.interp(self.time + max(lag, 0.0), self.time, self.velocity)
-        way = spline_integral(self.time, velocity * self.turn)
-        way = np.interp(self.time + min(lag, 0.0), self.time, way)
-        return np.column_stack([way.real, way.imag])[:, : self.seen.shape[1]]
 
 
 class _Lag(NamedTuple):
@@ -72,9 +57,12 @@ def late_channels(log: dict) -> list[Finding]:
         `time` [s] and roles in their units, NaN where not to be used; labels corrected.
     """
     found = []
-    pairs = ((_heading, ("heading",), ("yaw_rate",)), (_position, POSITION, VELOCITY))
-    for pair_of, position, velocity in pairs:
-        lag = _lag(pair_of(log))
+    relations = (
+        (logged_heading, ("heading",), ("yaw_rate",)),
+        (logged_position, POSITION, VELOCITY),
+    )
+    for logged_by, position, velocity in relations:
+        lag = _lag(logged_by(log))
         if lag is None:
             continue
         # No sensor is early: the later of both is late.
@@ -87,30 +75,19 @@ def late_channels(log: dict) -> list[Finding]:
     return found
 
 
-def _heading(log):
-    rows = complete_rows(log, ("heading", "yaw_rate"))
-    if not len(rows):
-        return None
-    seen = np.degrees(unwrap_series(np.radians(log["heading"][rows])))[:, None]
-    rate = log["yaw_rate"][rows].astype(complex)
-    return _Pair(log["time"][rows], seen, rate, np.ones(len(rows)))
+def _way(logged: Logged, lag: float) -> np.ndarray:
+    """The way told (n, a) if the velocity comes late by `lag`, or below 0 the position by as much. [s]"""
+    time = logged.time
+    velocity = np.interp(time + max(lag, 0.0), time, logged.velocity)
+    way = spline_integral(time, velocity * logged.turn)
+    return logged.axes(np.interp(time + min(lag, 0.0), time, way))
 
 
-def _position(log):
-    rows = complete_rows(log, (*POSITION, *VELOCITY, "heading"))
-    if not len(rows):
-        return None
-    seen = np.column_stack([log[role][rows] for role in POSITION])
-    velocity = (log["surge"] + 1j * log["sway"])[rows]
-    turn = np.exp(1j * np.radians(log["heading"][rows]))
-    return _Pair(log["time"][rows], seen, velocity, turn)
-
-
-def _lag(pair: _Pair | None) -> _Lag | None:
+def _lag(logged: Logged) -> _Lag | None:
     """The lag that makes a log likeliest; None where none is large and clear enough."""
-    if pair is None or len(pair.time) < 2:
+    if len(logged.time) < 2:
         return None
-    time = pair.time
+    time = logged.time
     step = float(np.median(np.diff(time)))
     spacing = max(step, LAG_SPACING)
     lags = spacing * np.arange(-np.floor(LARGEST_LAG / spacing), LARGEST_LAG / spacing)
@@ -120,7 +97,7 @@ def _lag(pair: _Pair | None) -> _Lag | None:
     if len(rows) < 2 * len(lags):
         return None
     time = time[rows]
-    white, rival = _white(pair, rows, lags)
+    white, rival = _white(logged, rows, lags)
     squares = _squares(white)
     none = int(np.argmin(np.abs(lags)))
     gains = 0.5 * (squares[:, [none]] - squares)
@@ -135,9 +112,9 @@ def _lag(pair: _Pair | None) -> _Lag | None:
     otherwise = _squares(white[here, none] - rival[here] @ explained)
     # What the lag leaves is white noise as elsewhere; of another fault it would explain a part only.
     rest = white[here, best]
-    rough = whiteness(np.column_stack([rest.real, rest.imag])[:, : pair.seen.shape[1]])
+    rough = whiteness(logged.axes(rest))
     gain = min(gains[here, best].sum(), 0.5 * np.sum(otherwise - squares[here, best])) / rough
-    is_noise = squares[here, best].mean() < NOISIER * pair.seen.shape[1] and rough < ROUGHEST
+    is_noise = squares[here, best].mean() < NOISIER * logged.seen.shape[1] and rough < ROUGHEST
     is_clear = gain - (SEGMENT_COST if segment else 0.0) > LAG_GAIN
     if not (0 < best < len(lags) - 1 and is_noise and is_clear):
         return None
@@ -147,23 +124,23 @@ def _lag(pair: _Pair | None) -> _Lag | None:
     seconds = lags[best] + 0.5 * spacing * (after - before) / bend
     if abs(seconds) < max(SMALLEST_LAG, SMALLEST_LAG_ROWS * step):
         return None
-    if segment is not None and segment[1] > pair.time[-1] - 2.0 * LARGEST_LAG:
-        segment = segment[0], float(pair.time[-1])
+    if segment is not None and segment[1] > logged.time[-1] - 2.0 * LARGEST_LAG:
+        segment = segment[0], float(logged.time[-1])
     return _Lag(float(seconds), float(spacing / np.sqrt(bend)), segment)
 
 
-def _white(pair, rows, lags):
+def _white(logged, rows, lags):
     """What each lag leaves of some rows, (n, k), and way and turn without a lag, (n, 2), as complex white noise."""
-    time = pair.time[rows]
-    seen = pair.seen[rows]
+    time = logged.time[rows]
+    seen = logged.seen[rows]
     axes = seen.shape[1]
-    levels = np.stack([seen - pair.way(lag)[rows] for lag in lags], axis=2)
+    levels = np.stack([seen - _way(logged, lag)[rows] for lag in lags], axis=2)
     starts = after_gaps(time) | jumps(seen)
     whiteners = filter_for(Motion(time, seen, seen, starts), levels)
     # The filter of the lag that leaves least is that of the log's noise.
     noise = [np.mean(np.log(one.std * one.scale[one.gains < 1.0])) for one in whiteners]
-    turn = np.column_stack([pair.turn.real, pair.turn.imag])[rows, :axes]
-    series = np.dstack([levels, pair.way(0.0)[rows], turn])
+    turn = logged.axes(logged.turn)[rows]
+    series = np.dstack([levels, _way(logged, 0.0)[rows], turn])
     white = whiteners[int(np.argmin(noise))](series)
     white = white[:, 0] + (1j * white[:, 1] if axes == 2 else 0.0)
     return white[:, :-2], white[:, -2:]

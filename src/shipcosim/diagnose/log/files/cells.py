@@ -9,6 +9,7 @@ import numpy as np
 
 from shipcosim.diagnose.numerics import finite
 from shipcosim.dialects import NOTHING, WITH_UNIT
+from shipcosim.errors import counted
 
 _SIDES = ("N", "S", "E", "W")  # after a number of a position, no unit
 _FILLERS = re.compile(r"9{2,}(\.9+)?|8{4,}|3276[78]|65535|214748364[78]|4294967295")
@@ -92,10 +93,8 @@ def without_fillers(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str
             rows |= values == filler
     if not rows.any():
         return values, []
-    count = int(rows.sum())
-    said = (
-        f"Column '{name}': {values[rows][0]:g} means 'no value' in {count} row{'s' * (count > 1)}."
-    )
+    where = counted(rows.sum(), "row")
+    said = f"Column '{name}': {values[rows][0]:g} means 'no value' in {where}."
     # Another number may mean the same.
     left, more = without_fillers(name, np.where(rows, np.nan, values))
     return left, [said, *more]

@@ -8,6 +8,7 @@ import zipfile
 from pathlib import Path
 from typing import Any
 
+from shipcosim.diagnose.log.files.text import head_of
 from shipcosim.dialects import is_text
 from shipcosim.errors import ShipcosimError, error_at, suggestion
 
@@ -17,8 +18,7 @@ LARGEST_WORKBOOK = 1 << 30
 
 def is_workbook(path: Path) -> bool:
     """Whether a file is a workbook: an archive with one, or a binary file with such a name."""
-    with path.open("rb") as file:
-        head = file.read(8)
+    head = head_of(path, 8)
     if path.suffix.lower() in (".xlsx", ".xlsm"):
         return head.startswith(b"PK") or not is_text(head)
     if not head.startswith(b"PK\x03\x04"):

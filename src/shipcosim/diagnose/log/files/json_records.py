@@ -6,13 +6,12 @@ import json
 import re
 from pathlib import Path
 
-from shipcosim.diagnose.log.files.text import text_of
+from shipcosim.diagnose.log.files.text import head_of, text_of
 
 
 def is_json(path: Path) -> bool:
     """Whether a file holds records of JSON by its first characters."""
-    with path.open("rb") as file:
-        return re.match(rb'(?:\xef\xbb\xbf)?\s*(?:\[\s*)?\{\s*"', file.read(512)) is not None
+    return re.match(rb'(?:\xef\xbb\xbf)?\s*(?:\[\s*)?\{\s*"', head_of(path, 512)) is not None
 
 
 def text_of_records(path: Path) -> tuple[str, list[str]]:

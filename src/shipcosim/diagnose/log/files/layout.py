@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.dialects import cells_in, is_comment, is_figure, is_nothing, separator_of
-from shipcosim.errors import error_at
+from shipcosim.errors import counted, error_at
 
 
 @dataclass(frozen=True)
@@ -87,8 +87,7 @@ def layout_of(
 
 
 def _skipped(above: list[int]) -> tuple[str, ...]:
-    count = len(above)
-    return (f"{count} line{'s' * (count > 1)} above the header left out.",) if count else ()
+    return (f"{counted(len(above), 'line')} above the header left out.",) if above else ()
 
 
 def _first_row(source: str, lines: list[str], separator: str) -> tuple[int, int]:

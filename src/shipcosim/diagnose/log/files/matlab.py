@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from shipcosim.diagnose.log.files.text import head_of
 from shipcosim.errors import error_at
 
 READ = """
@@ -22,10 +23,7 @@ pickle.dump(scipy.io.loadmat(sys.argv[1], simplify_cells=True), sys.stdout.buffe
 
 def is_matlab(path: Path) -> bool:
     """Whether a file is one of MATLAB by its first bytes."""
-    if not path.is_file():
-        return False
-    with path.open("rb") as file:
-        return file.read(10) == b"MATLAB 5.0"
+    return head_of(path, 10) == b"MATLAB 5.0"
 
 
 def columns_of_matlab(

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from shipcosim.diagnose.log.files.table import LogColumns
-from shipcosim.diagnose.log.files.text import text_of
+from shipcosim.diagnose.log.files.text import head_of, text_of
 from shipcosim.errors import error_at
 
 _STAMP = r"(?P<day>\d{4}-\d\d-\d\d)[-TZ ](?P<clock>\d\d:\d\d:\d\d(?:[.,]\d+)?)Z?"
@@ -42,10 +42,7 @@ _ANGLES = ("Heading", "COG", "Wind Angle")
 
 def is_messages(path: Path) -> bool:
     """Whether a file holds messages of NMEA 2000 by its first lines."""
-    if not path.is_file():
-        return False
-    with path.open("rb") as file:
-        head = file.read(4096).decode("latin-1").splitlines()
+    head = head_of(path, 4096).decode("latin-1").splitlines()
     lines = [line for line in head[:20] if line.strip() and not line.startswith("#")]
     return any(
         _RAW.fullmatch(line) or _TOLD.fullmatch(line) or line[:1] == "{" and '"pgn":' in line

@@ -6,6 +6,7 @@ import tomllib
 from pathlib import Path
 
 from shipcosim.diagnose.log.files.excel import is_workbook
+from shipcosim.diagnose.log.files.text import head_of
 from shipcosim.dialects import LFS_POINTER, is_text
 from shipcosim.errors import error_at
 
@@ -25,10 +26,7 @@ def refuse_foreign(path: Path) -> None:
     >>> refuse_foreign(Path("log.csv"))
     """
     # The first bytes tell the format, whatever the name; the name decides only without them.
-    head = b""
-    if path.is_file():
-        with path.open("rb") as file:
-            head = file.read(512)
+    head = head_of(path, 512)
     text = head.decode("latin-1")
     kind = next((kind for mark, kind in _BY_CONTENT.items() if text.startswith(mark)), None)
     suffix = path.suffix.lower()

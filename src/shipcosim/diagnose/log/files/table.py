@@ -22,7 +22,7 @@ from shipcosim.diagnose.log.files.text import text_of
 from shipcosim.diagnose.log.files.times import seconds_of_parts
 from shipcosim.diagnose.log.names.units import is_unit, name_and_unit
 from shipcosim.dialects import NOTHING, cells_in, decimal_of, is_comment
-from shipcosim.errors import Problem, ShipcosimError, error_at
+from shipcosim.errors import Problem, ShipcosimError, counted, error_at
 from shipcosim.series import ending_of, read_columns
 
 _FEW = (
@@ -154,14 +154,14 @@ def _rows(source: str, lines: list[str], layout: Layout) -> tuple[list[str], lis
     said = []
     comments = sum(1 for line in rest if line.strip()) - len(rows)
     if comments:
-        said.append(f"{_count(comments, 'comment line')} between rows left out.")
+        said.append(f"{counted(comments, 'comment line')} between rows left out.")
     # Many short rows have empty cells at their end; a few
     # odd rows are left out; anything else is no table.
     rows, counts = _without_last_separator(rows, separator, width)
     bad = counts != width
     if (counts < width).mean() > _FEW and bad.sum() > 1 and not (counts > width).any():
         said.append(
-            f"{_count(bad.sum(), 'row')} with fewer cells than the header: what they lack is left empty."
+            f"{counted(bad.sum(), 'row')} with fewer cells than the header: what they lack is left empty."
         )
         return rows, said
     if bad.mean() > max(_FEW, 1.5 / len(rows)):
@@ -169,7 +169,7 @@ def _rows(source: str, lines: list[str], layout: Layout) -> tuple[list[str], lis
     if bad.any():
         shown = rows[int(np.flatnonzero(bad)[0])][:40]
         said.append(
-            f"{_count(bad.sum(), 'row')} without {width} cells left out, the first '{shown}'."
+            f"{counted(bad.sum(), 'row')} without {width} cells left out, the first '{shown}'."
         )
         rows = [line for line, wrong in zip(rows, bad, strict=True) if not wrong]
     # Loggers that are started again write the header again.
@@ -180,14 +180,9 @@ def _rows(source: str, lines: list[str], layout: Layout) -> tuple[list[str], lis
         if header[-1] in line and cells_in(line, separator) == header
     }
     if again:
-        said.append(f"The header is repeated in {_count(len(again), 'row')}: left out.")
+        said.append(f"The header is repeated in {counted(len(again), 'row')}: left out.")
         rows = [line for i, line in enumerate(rows) if i not in again]
     return rows, said
-
-
-def _count(number: int, what: str) -> str:
-    """``1 row``, ``2 rows``."""
-    return f"{int(number)} {what}{'s' if number > 1 else ''}"
 
 
 def _without_last_separator(rows, separator, width):

@@ -15,6 +15,14 @@ LONGEST_LINE = 1_000_000
 _TOO_LONG = re.compile(rb"(?<![^\r\n])[^\r\n]{%d}" % LONGEST_LINE)
 
 
+def head_of(path: Path, size: int) -> bytes:
+    """First bytes of a file, as many as `size`; none of a folder."""
+    if not path.is_file():
+        return b""
+    with path.open("rb") as file:
+        return file.read(size)
+
+
 def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
     """Text of a file and remarks on its encoding.
 

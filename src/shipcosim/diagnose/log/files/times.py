@@ -13,7 +13,7 @@ import numpy as np
 
 from shipcosim.diagnose.numerics import finite
 from shipcosim.dialects import seconds_of_spans
-from shipcosim.errors import error_at
+from shipcosim.errors import counted, error_at
 
 EPOCHS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
 _SINCE = 3e8  # s after 1970 that a log can be from: 1979 to 2103
@@ -361,5 +361,5 @@ def seconds_of_clock(seconds: np.ndarray, period: float = DAY) -> tuple[np.ndarr
     passed = int(days[-1]) if len(days) else 0
     turn = "midnight" if period == DAY else "the hour"
     return times, [
-        f"Clock times pass {turn} {passed} time{'s' * (passed > 1)}: they go on."
+        f"Clock times pass {turn} {counted(passed, 'time')}: they go on."
     ] if passed else []

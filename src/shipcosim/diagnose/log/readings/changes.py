@@ -15,16 +15,15 @@ from shipcosim.diagnose.log.mislabels import (
     AXES_TURNED,
     CHANNEL_UNITS,
     HEADING_FROM_EAST,
-    POSITION,
     POSITION_IN_DEGREES,
     TURNED,
-    VELOCITY,
     Mislabel,
     mislabel_of_unit,
     negative,
     swap_of,
     velocity_frame,
 )
+from shipcosim.diagnose.log.roles import POSITION, VELOCITY
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,7 @@ import numpy as np
 
 from shipcosim.diagnose.finding import Finding, ParameterEstimate, log_fault
 from shipcosim.diagnose.log.mislabels import (
-    POSITION,
     POSITION_IN_DEGREES,
-    VELOCITY,
     finding_of,
     turned_axes,
     turned_grid,
@@ -24,6 +22,7 @@ from shipcosim.diagnose.log.readings.judgement import (
 )
 from shipcosim.diagnose.log.readings.relations import position_relations, rate_relations
 from shipcosim.diagnose.log.readings.wind import wind_relations
+from shipcosim.diagnose.log.roles import POSITION, VELOCITY
 from shipcosim.diagnose.log.thresholds import (
     COMPASS_OFF,
     LEFT_OPEN,

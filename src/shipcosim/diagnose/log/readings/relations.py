@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shipcosim.angles import wrap_series
-from shipcosim.diagnose.log.checks.kinematics import complete_rows
-from shipcosim.diagnose.log.mislabels import POSITION, VELOCITY
+from shipcosim.diagnose.log.checks.kinematics import complete_rows, logged_position
 from shipcosim.diagnose.log.readings.changes import LogInterpretation
 from shipcosim.diagnose.log.readings.fit import fitted
 from shipcosim.diagnose.log.thresholds import (
@@ -78,12 +77,11 @@ def rows_of_relations(log: dict) -> list[RowsOfRelation]:
     if len(rows) and _can_be_followed(change := wrap_series(np.diff(log["heading"][rows]))):
         told = spline_integral(log["time"][rows], log["yaw_rate"][rows]).astype(complex)
         found.append(RowsOfRelation(rows, running_sums(change).astype(complex), {RATE: told}, 1))
-    rows = complete_rows(log, ("heading", *POSITION, *VELOCITY))
+    logged = logged_position(log)
+    rows = logged.rows
     if len(rows) and _can_be_followed(wrap_series(np.diff(log["heading"][rows]))):
-        velocity = (log["surge"] + 1j * log["sway"])[rows]
-        turn = np.exp(1j * np.radians(log["heading"][rows]))
-        ways = _ways(log["time"][rows], velocity, turn)
-        found.append(RowsOfRelation(rows, (log["north"] + 1j * log["east"])[rows], ways, 2))
+        ways = _ways(logged.time, logged.velocity, logged.turn)
+        found.append(RowsOfRelation(rows, logged.seen[:, 0] + 1j * logged.seen[:, 1], ways, 2))
     return found
 
 
@@ -110,11 +108,10 @@ def position_relations(log: dict, headings: dict, positions: dict) -> dict:
     dict of (heading, position) to dict of form to Relation
     """
     # Rows in which velocity, heading and position have values; other readings of them have them there too.
-    rows = complete_rows(log, ("heading", *POSITION, *VELOCITY))
+    logged = logged_position(log)
+    rows = logged.rows
     if len(rows) < 2 * FEWEST_INCREMENTS:
         return {}
-    time = log["time"][rows]
-    velocity = (log["surge"] + 1j * log["sway"])[rows]
     known_positions = {position: seen[rows] for position, seen in positions.items()}
     # Integrate the velocity of each form, for each reading of the heading that can be followed.
     pairs: dict = {}
@@ -122,14 +119,14 @@ def position_relations(log: dict, headings: dict, positions: dict) -> dict:
         if not _can_be_followed(wrap_series(np.diff(values[rows]))):
             continue
         turn = np.exp(1j * np.radians(values[rows]))
-        ways = _ways(time, velocity, turn)
+        ways = _ways(logged.time, logged.velocity, turn)
         for position, seen in known_positions.items():
             pairs |= {(heading, position, form): (seen, way) for form, way in ways.items()}
     # Fit all pairs at once, since they share thinning
     # and whitening, and sort the results by reading.
     found: dict = {}
     labelled = (1.0, False, ("as is", "body"))
-    for (heading, position, form), relation in fitted(time, pairs, labelled).items():
+    for (heading, position, form), relation in fitted(logged.time, pairs, labelled).items():
         found.setdefault((heading, position), {})[form] = relation
     return found
 
