@@ -57,7 +57,7 @@ class Link:
 def links_of(
     sections: Mapping[str, str], there: Mapping[str, object] = MappingProxyType({})
 ) -> tuple[Link, ...]:
-    """Links to sections, from titles by anchor; those that are said not to be there are left out."""
+    """Links to sections, from titles by anchor, without those that a page lacks."""
     return tuple(
         Link(anchor, title) for anchor, title in sections.items() if there.get(anchor, True)
     )
