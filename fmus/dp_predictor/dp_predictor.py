@@ -2,7 +2,7 @@
 
 from shipcosim.fmi import Parameters
 from shipcosim.interfaces import KineticPredictor
-from shipcosim.interfaces.predictor import HORIZONS, Prediction, thrust_is_lost
+from shipcosim.interfaces.predictor import HORIZONS, NO_GOAL, Prediction, thrust_is_lost
 from shipcosim.models.allocation import pseudo_inverse
 from shipcosim.models.control.pid import ControlParameters
 from shipcosim.models.control.reference import ReferenceParameters
@@ -24,7 +24,7 @@ class DpPredictor(KineticPredictor):
 
     def predict(self, state, known):
         motions = choose(
-            known.no_goal | thrust_is_lost(known),
+            (self.x_goal == NO_GOAL) | thrust_is_lost(known),
             lambda: self.reckoned(state, known),
             lambda: self._held(state, known),
         )

@@ -210,7 +210,6 @@ class MotionPredictor(Fmu):
             Desired(*place, *rates, self.x_d_ddot, self.y_d_ddot, self.r_d_dot),
             (self.x_goal, self.y_goal, self.psi_goal),
             self.wave_frequency_hat,
-            no_goal=self.x_goal == NO_GOAL,
         )
 
     def _show(self, known, t):

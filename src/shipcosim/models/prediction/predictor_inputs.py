@@ -30,13 +30,11 @@ class Known(NamedTuple):
     wind_believed : like wind_speed
         1 where the DP controller believes that wind, 0 where it does not: then its load is part of the bias. [1]
     desired : Desired, optional
-        Desired motion of the DP controller now.
+        Desired motion of the DP controller now; None where it is unknown.
     goal : tuple of three, like wind_speed, optional
         Where its reference model goes to: position and heading. [m, m, rad]
     wave_frequency : like wind_speed, optional
         Of the motion in waves, as the DP controller estimates it. [rad/s]
-    no_goal : bool
-        Whether nobody says where she goes to: the three before mean nothing. [1]
     """
 
     ship: Motion
@@ -48,7 +46,6 @@ class Known(NamedTuple):
     desired: Desired | None = None
     goal: Triple | None = None
     wave_frequency: Arithmetic | None = None
-    no_goal: bool = True
 
 
 def air_velocity(known: Any) -> Vector:
