@@ -1,16 +1,20 @@
 """The command `build`: FMUs and packed systems of a project."""
 
 from collections.abc import Callable, Collection
+from concurrent.futures import as_completed
 from pathlib import Path
 from typing import Any
 
 from shipcosim import library
+from shipcosim.cosim.processes.pool import end_pool, new_pool, submitted
 from shipcosim.errors import Problem, ShipcosimError, raise_errors, suggestion
 from shipcosim.fmi.export.builder import build_fmu
 from shipcosim.native.export.packing import build_native_fmu
 from shipcosim.native.export.targets import targets_of
 from shipcosim.native.symbols import Untraceable
+from shipcosim.options import cores
 from shipcosim.ssp import pack, read_system
+from shipcosim.temporary import temporary_folder
 
 
 def build_named(
@@ -110,20 +114,43 @@ def build_native(
     ]
     jobs = {name: path for name, path in sources.items() if not names or name in names}
     examples = _parameters_in_systems(project) if jobs else {}
+    # Recording takes one core, so each core has a process.
+    found = {}
+    with temporary_folder() as folder:
+        pool = new_pool(min(cores(), max(1, len(jobs))), folder)
+        try:
+            futures = {
+                submitted(pool, _built_native, path, out, examples.get(name, ()), platforms): name
+                for name, path in jobs.items()
+            }
+            for done, future in enumerate(as_completed(futures), start=1):
+                found[futures[future]] = future.result()
+                if progress:
+                    progress(done, len(jobs))
+        finally:
+            end_pool(pool)
     built = []
     left = []
-    for done, (name, path) in enumerate(jobs.items(), start=1):
-        try:
-            built.append(build_native_fmu(path, out, examples.get(name, ()), platforms))
-        except Untraceable as reason:
+    for name in jobs:
+        path, reason, others = found[name]
+        problems += others
+        if path:
+            built.append(path)
+        if reason:
             left.append(Problem(name, f"stays in Python: {reason}."))
             (out / f"{name}.fmu").unlink(missing_ok=True)
-        except ShipcosimError as error:
-            problems += error.problems
-        if progress:
-            progress(done, len(jobs))
     raise_errors(problems)
     return built, left
+
+
+def _built_native(*job: Any) -> tuple[Path | None, str, list[Problem]]:
+    """The FMU that is built; or why it stays in Python, or its problems."""
+    try:
+        return build_native_fmu(*job), "", []
+    except Untraceable as reason:
+        return None, str(reason), []
+    except ShipcosimError as error:
+        return None, "", error.problems
 
 
 def _parameters_in_systems(project: Path) -> dict[str, list[dict[str, Any]]]:

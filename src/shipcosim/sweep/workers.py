@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import logging
-import os
-import signal
-import sys
-import tempfile
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
-from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
-from contextlib import contextmanager
-from functools import partial
-from multiprocessing import get_context
+from collections.abc import Sequence
+from concurrent.futures import (
+    BrokenExecutor,
+    CancelledError,
+    Future,
+)
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
-from shipcosim.cosim.processes.child import end_with_parent
+from shipcosim.cosim.processes.pool import end_pool, new_pool, submitted
 from shipcosim.errors import error_at, imported
 from shipcosim.options import cores
 from shipcosim.sweep.plan import Plan, PlannedRun
@@ -41,7 +37,7 @@ class Workers(ABC):
     n: int
     chunk_time: float
     ends: tuple[type[BaseException], ...]
-    _executor: Executor
+    _executor: Any
 
     @abstractmethod
     def submit(self, runs: Sequence[PlannedRun]) -> Future[Chunk]:
@@ -75,35 +71,21 @@ class Processes(Workers):
         self._folder = temporary_folder()
         self._job = Path(self._folder.name) / "job.pickle"
         self._job.write_bytes(pack(plan, engine, with_fmus=False).content)
-        self._executor = self._new()
+        self._executor = new_pool(self.n, self._folder.name)
 
     def submit(self, runs: Sequence[PlannedRun]) -> Future[Chunk]:
         """See `Workers`."""
-        with _without_main_module():
-            return self._executor.submit(run_chunk, str(self._job), runs)
+        return submitted(self._executor, run_chunk, str(self._job), runs)
 
     def renew(self) -> None:
         """See `Workers`."""
-        self._end()
-        self._executor = self._new()
+        end_pool(self._executor)
+        self._executor = new_pool(self.n, self._folder.name)
 
     def close(self) -> None:
         """See `Workers`."""
-        self._end()
+        end_pool(self._executor)
         self._folder.cleanup()
-
-    def _new(self) -> ProcessPoolExecutor:
-        begin = partial(_begin, os.getpid(), self._folder.name)
-        return ProcessPoolExecutor(self.n, mp_context=get_context("spawn"), initializer=begin)
-
-    def _end(self) -> None:
-        # Processes in a crashed or hanging run would not end by themselves.
-        processes = list((getattr(self._executor, "_processes", None) or {}).values())
-        self._executor.shutdown(wait=False, cancel_futures=True)
-        for process in processes:
-            process.terminate()
-        for process in processes:
-            process.join()
 
 
 class Cluster(Workers):
@@ -169,27 +151,3 @@ class Cluster(Workers):
         """See `Workers`."""
         self._executor.shutdown(wait=False)
         self._client.close()
-
-
-def _begin(parent: int, folder: str) -> None:
-    """Prepare a worker: it ends with its parent, no Ctrl-C, and one thread for numerical libraries."""
-    end_with_parent(parent)
-    # Workers are ended by a signal and remove nothing: what they leave is removed with the folder of the study.
-    tempfile.tempdir = folder
-    os.environ["TMPDIR"] = folder
-    # All cores have a process each; more threads would only compete.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    from threadpoolctl import threadpool_limits
-
-    threadpool_limits(1)
-
-
-@contextmanager
-def _without_main_module() -> Iterator[None]:
-    """Keep new processes from importing the calling script, which would start the study again."""
-    main = sys.modules["__main__"]
-    sys.modules["__main__"] = ModuleType("__main__")
-    try:
-        yield
-    finally:
-        sys.modules["__main__"] = main
