@@ -12,7 +12,6 @@ from shipcosim.fmi.export.builder import build_fmu
 from shipcosim.native.export.packing import build_native_fmu
 from shipcosim.native.export.targets import targets_of
 from shipcosim.native.symbols import Untraceable
-from shipcosim.options import cores
 from shipcosim.ssp import pack, read_system
 from shipcosim.temporary import temporary_folder
 
@@ -117,7 +116,7 @@ def build_native(
     # Recording takes one core, so each core has a process.
     found = {}
     with temporary_folder() as folder:
-        pool = new_pool(min(cores(), max(1, len(jobs))), folder)
+        pool = new_pool(folder)
         try:
             futures = {
                 submitted(pool, _built_native, path, out, examples.get(name, ()), platforms): name

@@ -71,7 +71,7 @@ class Processes(Workers):
         self._folder = temporary_folder()
         self._job = Path(self._folder.name) / "job.pickle"
         self._job.write_bytes(pack(plan, engine, with_fmus=False).content)
-        self._executor = new_pool(self.n, self._folder.name)
+        self._executor = new_pool(self._folder.name, self.n)
 
     def submit(self, runs: Sequence[PlannedRun]) -> Future[Chunk]:
         """See `Workers`."""
@@ -80,7 +80,7 @@ class Processes(Workers):
     def renew(self) -> None:
         """See `Workers`."""
         end_pool(self._executor)
-        self._executor = new_pool(self.n, self._folder.name)
+        self._executor = new_pool(self._folder.name, self.n)
 
     def close(self) -> None:
         """See `Workers`."""

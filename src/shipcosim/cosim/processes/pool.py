@@ -13,20 +13,21 @@ from types import ModuleType
 from typing import Any
 
 from shipcosim.cosim.processes.child import end_with_parent
+from shipcosim.options import cores
 
 
-def new_pool(n: int, folder: str) -> ProcessPoolExecutor:
+def new_pool(folder: str, n: int | None = None) -> ProcessPoolExecutor:
     """Processes that end with this one.
 
     Parameters
     ----------
-    n : int
-        How many.
     folder : str
         For what they leave, as they are ended by a signal and remove nothing.
+    n : int, optional
+        How many; as many as there are cores where it is not given.
     """
     begin = partial(_begin, os.getpid(), folder)
-    return ProcessPoolExecutor(n, mp_context=get_context("spawn"), initializer=begin)
+    return ProcessPoolExecutor(n or cores(), mp_context=get_context("spawn"), initializer=begin)
 
 
 def submitted(pool: ProcessPoolExecutor, function: Callable, *arguments: Any) -> Future:
