@@ -59,6 +59,8 @@ class ThrusterInteraction(Fmu):
         washes = tuple(
             rpm / 60.0 * d for rpm, d in zip(speeds, self.model.of_units("diameter"), strict=True)
         )
-        shares = thrust_shares(azimuths, washes, found=self.found, loss_scale=self.model.loss_scale)
+        shares = thrust_shares(
+            azimuths, washes, unit_pairs=self.found, loss_scale=self.model.loss_scale
+        )
         for number in range(UNITS):
             setattr(self, f"thrust_share_{number + 1}", shares[number])

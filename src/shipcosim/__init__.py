@@ -110,15 +110,15 @@ def __getattr__(name):
     if name not in __all__:
         raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
     if name == "capability":
-        import shipcosim.capability as found
+        import shipcosim.capability as attribute
     elif name == "diagnose":
-        import shipcosim.diagnose as found
+        import shipcosim.diagnose as attribute
     elif name == "sweep":
-        import shipcosim.sweep as found
+        import shipcosim.sweep as attribute
     else:
-        found = getattr(_place_of(name), name)
-    globals()[name] = found
-    return found
+        attribute = getattr(_place_of(name), name)
+    globals()[name] = attribute
+    return attribute
 
 
 def __dir__():

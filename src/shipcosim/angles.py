@@ -92,10 +92,10 @@ def unwrap_series(angle: np.ndarray) -> np.ndarray:
     >>> unwrap_series(np.array([3.0, np.nan, -3.0])).round(2).tolist()
     [3.0, nan, 3.28]
     """
-    found = np.array(angle, float)
-    known = np.isfinite(angle)
-    found[known] = np.unwrap(found[known])
-    return found
+    unwrapped = np.array(angle, float)
+    is_finite = np.isfinite(angle)
+    unwrapped[is_finite] = np.unwrap(unwrapped[is_finite])
+    return unwrapped
 
 
 def compass(degrees: float) -> str:

@@ -111,13 +111,13 @@ def kind_of_toml(path: Path) -> str:
     from shipcosim.diagnose.log.roles import role_of
 
     keys = _keys_of(path)
-    for kind, own in (
+    for kind, kind_keys in (
         ("ship", OF_SHIP),
         ("study", OF_STUDY),
         ("cause", OF_CAUSE),
         ("scenario", OF_SCENARIO),
     ):
-        if keys & own:
+        if keys & kind_keys:
             return kind
     return "channels" if any(role_of(key) for key in keys) else "scenario"
 
@@ -254,7 +254,7 @@ def _driven_by_water(file: str, system: System) -> list[Problem]:
 
     # A component with other loads is a ship; a predictor has her numbers too.
     ships = {
-        name: {one: part.start_value(one) for one in part.variables}
+        name: {variable: part.start_value(variable) for variable in part.variables}
         for name, part in system.components.items()
         if "tau_X_1" in part.variables
     }
@@ -279,10 +279,10 @@ def check_osp_scenario(path: Path) -> list[Problem]:
     stop = system.experiment.stop_time
     read = read_osp_scenario(path, step, stop or LATE)
     last = max((event.time for event in read.events), default=0.0) + step
-    found = check_scenario(
+    problems = check_scenario(
         Scenario(stop_time=stop or last, step_size=step, events=read.events), system
     )
-    return [*read.remarks, *(replace(problem, where=str(path)) for problem in found)]
+    return [*read.remarks, *(replace(problem, where=str(path)) for problem in problems)]
 
 
 def _is_log(path: Path) -> bool:
@@ -294,8 +294,8 @@ def _is_log(path: Path) -> bool:
     columns = columns_of(path)
     if any("." in name for name in columns.values):
         return False  # signals of components
-    found = propose(columns).channels()
-    return "time" in found and not {*NAVIGATION, "latitude"}.isdisjoint(found)
+    roles = propose(columns).channels()
+    return "time" in roles and not {*NAVIGATION, "latitude"}.isdisjoint(roles)
 
 
 def check_log(path: Path, channels: Path | None = None) -> list[Problem]:
@@ -305,16 +305,16 @@ def check_log(path: Path, channels: Path | None = None) -> list[Problem]:
     from shipcosim.diagnose.log.remarks import handled
 
     log = read_log(path, channels)
-    problems = [Problem(str(path), said, severity="remark") for said in handled(log)]
+    problems = [Problem(str(path), remark, severity="remark") for remark in handled(log)]
     with np.errstate(all="ignore"):  # numbers beyond all bounds are among what it looks for
-        found = examine(log)
-    for finding in found:
+        faults = examine(log)
+    for finding in faults:
         shown = [f"{first:g} to {last:g} s" for first, last in finding.segments[:3]]
         more = f" and {len(finding.segments) - 3} more" if len(finding.segments) > 3 else ""
         where = f"{path}, {', '.join(finding.channels[:3])}{', ...' if len(finding.channels) > 3 else ''}"
         values = "".join(f", {name} {e.estimate:.3g}" for name, e in finding.parameters.items())
-        found = f"{finding.cause}{values}: {finding.sentence}, {', '.join(shown) + more or 'throughout'}."
-        problems.append(Problem(where, found, f"Probability {finding.probability:.2f}."))
+        faults = f"{finding.cause}{values}: {finding.sentence}, {', '.join(shown) + more or 'throughout'}."
+        problems.append(Problem(where, faults, f"Probability {finding.probability:.2f}."))
     return problems
 
 
@@ -338,13 +338,13 @@ def check_table(path: Path) -> list[Problem]:
         )
     elif len(steps) and steps.max() > 1.5 * np.median(steps):
         row = int(np.argmax(steps))
-        found = f"{steps[row]:g} s without a row after {time[row]:g} s; the usual step is {np.median(steps):g} s."
-        problems.append(Problem(f"{path}, time", found, severity="remark"))
+        message = f"{steps[row]:g} s without a row after {time[row]:g} s; the usual step is {np.median(steps):g} s."
+        problems.append(Problem(f"{path}, time", message, severity="remark"))
     for name, variable in table.data_vars.items():
         missing = int(np.sum(~np.isfinite(variable.values))) if variable.dtype.kind == "f" else 0
         if missing:
-            found = f"{missing} row{'s' * (missing > 1)} without a number."
-            problems.append(Problem(f"{path}, {name}", found, severity="remark"))
+            message = f"{missing} row{'s' * (missing > 1)} without a number."
+            problems.append(Problem(f"{path}, {name}", message, severity="remark"))
     return problems
 
 

@@ -130,9 +130,9 @@ def name_in(text: str) -> str:
 
 def separator_of(lines: list[str]) -> str:
     """The separator that gives rows of equal length, of figures."""
-    told = next((line for line in lines[:1] if line.lower().startswith("sep=")), None)
-    if told and len(told.strip()) == 5:
-        return told.strip()[4]
+    stated = next((line for line in lines[:1] if line.lower().startswith("sep=")), None)
+    if stated and len(stated.strip()) == 5:
+        return stated.strip()[4]
     rows = [line for line in lines if line.strip() and not is_comment(line)]
     sample = (
         [rows[round(i * (len(rows) - 1) / _SAMPLE)] for i in range(_SAMPLE + 1)][_SAMPLE // 4 :]
@@ -217,14 +217,14 @@ def decimal_of(source: str, cells: list[str]) -> str | None:
         (cell for cell in cells if _is_decimal(cell, ".", ",") or cell.count(",") > 1), None
     )
     if decimal and grouping:
-        found = f"a comma is a decimal sign in '{decimal}' and groups thousands in '{grouping}'."
-        raise error_at(source, found, "Write all numbers alike.")
+        message = f"a comma is a decimal sign in '{decimal}' and groups thousands in '{grouping}'."
+        raise error_at(source, message, "Write all numbers alike.")
     if decimal or grouping:
         return "," if decimal else "."
     cell = cells[0]
-    found = f"'{cell}' can be {cell.replace(',', '.')} (decimal comma) or {cell.replace(',', '')} (thousands)."
+    message = f"'{cell}' can be {cell.replace(',', '.')} (decimal comma) or {cell.replace(',', '')} (thousands)."
     remedy = 'Say which in a channel file: file = {decimal = ","} or file = {decimal = "."}.'
-    raise error_at(source, found, remedy)
+    raise error_at(source, message, remedy)
 
 
 def _is_decimal(cell, sign, other):

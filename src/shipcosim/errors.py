@@ -27,7 +27,7 @@ def printable(text: str) -> str:
     >>> printable("a\x1b[31mred")
     'a\\x1b[31mred'
     """
-    return CONTROLS.sub(lambda found: ascii(found[0])[1:-1], text)
+    return CONTROLS.sub(lambda match: ascii(match[0])[1:-1], text)
 
 
 def capitalised(text: str) -> str:
@@ -114,7 +114,7 @@ class ShipcosimError(Exception):
         )
         return [
             f"\x1b[1;31m{head}\x1b[0m",
-            *(f"  {line}" for one in shown for line in str(one).splitlines()),
+            *(f"  {line}" for problem in shown for line in str(problem).splitlines()),
         ]
 
 
@@ -143,14 +143,14 @@ def reading(path: AnyPath, remedy: str = "Write or copy it again.") -> Iterator[
     except ShipcosimError:
         raise
     except MemoryError as error:
-        found = "is larger than the memory."
-        raise error_at(str(path), found, "Read a part of it.") from error
+        message = "is larger than the memory."
+        raise error_at(str(path), message, "Read a part of it.") from error
     except Exception as error:
         # The system says what is wrong with the disk or the rights; a library, with the content.
         reason = error.strerror if isinstance(error, OSError) else None
-        said = reason or reason_of(error)
-        found = f"cannot be read: {said}."
-        raise error_at(str(path), found, "" if reason else remedy) from error
+        reason_text = reason or reason_of(error)
+        message = f"cannot be read: {reason_text}."
+        raise error_at(str(path), message, "" if reason else remedy) from error
 
 
 def reason_of(error: Exception) -> str:
@@ -220,14 +220,14 @@ def worth_showing(problems: Iterable[Problem]) -> list[Problem]:
     return [*listed[:MOST_SHOWN], more]
 
 
-def suggestion(name: object, known: Iterable[str]) -> str:
+def suggestion(name: object, choices: Iterable[str]) -> str:
     """Remedy for an unknown name: what there is, and the nearest of it.
 
     Parameters
     ----------
     name : str
         That was not found. Python callers may give anything, such as a number: it is taken as its text.
-    known : iterable of str
+    choices : iterable of str
         Names that there are.
 
     Examples
@@ -235,11 +235,11 @@ def suggestion(name: object, known: Iterable[str]) -> str:
     >>> suggestion("thrust_comand", ["thrust_cmd"])
     "There is: thrust_cmd. Did you mean 'thrust_cmd'?"
     """
-    name, names = str(name), sorted(filter(None, known))
+    name, names = str(name), sorted(filter(None, choices))
     if not names:
         return "There is none."
     shown = ", ".join(names[:12]) + (f", ... ({len(names)} in all)" if len(names) > 12 else "")
-    same = [known for known in names[:MOST_COMPARED] if known.lower() == name.lower()]
+    same = [choice for choice in names[:MOST_COMPARED] if choice.lower() == name.lower()]
     close = (
         same or get_close_matches(name, names[:MOST_COMPARED], n=1)
         if len(name) < LONGEST_NAME
@@ -248,14 +248,14 @@ def suggestion(name: object, known: Iterable[str]) -> str:
     return f"There is: {shown}." + (f" Did you mean '{close[0]}'?" if close else "")
 
 
-def it_has(name: str, known: Iterable[str]) -> str:
+def it_has(name: str, choices: Iterable[str]) -> str:
     """Remedy for an unknown name: the known names, and the nearest one.
 
     Parameters
     ----------
     name : str
         That was not found.
-    known : iterable of str
+    choices : iterable of str
         Names that it has.
 
     Examples
@@ -263,7 +263,7 @@ def it_has(name: str, known: Iterable[str]) -> str:
     >>> it_has("thrust_comand", ["thrust_cmd"])
     "It has: thrust_cmd. Did you mean 'thrust_cmd'?"
     """
-    return "It has" + suggestion(name, known).removeprefix("There is")
+    return "It has" + suggestion(name, choices).removeprefix("There is")
 
 
 def counted(number: int, what: str) -> str:

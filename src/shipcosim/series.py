@@ -129,8 +129,8 @@ def write_table(table: xarray.Dataset, path: str | os.PathLike) -> None:
             str(path), f"a table cannot be written as '{path.suffix}'.", "Use .nc or .csv."
         )
     if no_text := [str(name) for name in table.variables if _NO_TEXT.search(str(name))]:
-        found = f"no file can hold the name {ascii(no_text[0])}: it has a zero byte or half a character."
-        raise error_at(str(path), found, "Rename the signal.")
+        message = f"no file can hold the name {ascii(no_text[0])}: it has a zero byte or half a character."
+        raise error_at(str(path), message, "Rename the signal.")
     write_file(path, writers[path.suffix](table))
 
 
@@ -190,7 +190,7 @@ def read_columns(path: str | os.PathLike) -> dict[str, tuple[np.ndarray, str]]:
         suffix = _suffix(path, (".nc", ".csv", ".csv.gz", ".parquet"))
         if suffix == ".nc":
             columns = _netcdf_columns(_open_netcdf(path))
-            return {name: found for name, found in columns.items() if len(found[0])}
+            return {name: column for name, column in columns.items() if len(column[0])}
         columns = _read_columns(path)
     problems = _repeated(path, [name for name, _, _ in columns])
     raise_errors(problems)
@@ -207,14 +207,14 @@ def ending_of(path: Path) -> str:
     return ".csv" if is_text(head) and ending in (".nc", ".parquet") else ending
 
 
-def _suffix(path: str | os.PathLike, known: Iterable[str]) -> str:
+def _suffix(path: str | os.PathLike, suffixes: Iterable[str]) -> str:
     path = Path(path)
     if path.is_dir():
-        raise error_at(str(path), "is a folder, no table.", f"Tables are {', '.join(known)}.")
+        raise error_at(str(path), "is a folder, no table.", f"Tables are {', '.join(suffixes)}.")
     suffix = ending_of(path) if path.is_file() else path.suffix
-    if suffix not in known:
-        found = f"'{path.suffix or path.name}' is no table."
-        raise error_at(str(path), found, f"Tables are {', '.join(known)}.")
+    if suffix not in suffixes:
+        message = f"'{path.suffix or path.name}' is no table."
+        raise error_at(str(path), message, f"Tables are {', '.join(suffixes)}.")
     if not path.is_file():
         raise error_at(str(path), "there is no such file.")
     return suffix
@@ -242,8 +242,8 @@ def write_file(path: str | os.PathLike, content: bytes) -> None:
     except OSError as error:
         is_full = error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
         remedy = f"{len(content) / 1e6:.1f} MB are needed." if is_full else ""
-        found = f"cannot be written: {error.strerror or error}."
-        raise error_at(str(path), found, remedy) from error
+        message = f"cannot be written: {error.strerror or error}."
+        raise error_at(str(path), message, remedy) from error
 
 
 def write_json(content: Mapping[str, Any], path: str | os.PathLike) -> None:
@@ -301,26 +301,30 @@ def _netcdf(table: xarray.Dataset) -> bytes:
         for name in table.data_vars:
             signal = table.variables[name]
             attributes = signal.attrs
-            own = str(name)
+            dataset_name = str(name)
             # HDF5 separates groups by slashes and takes dots for places; such names stand in an attribute.
-            if {"/", "%"} & set(own) or not own.strip("."):
-                own = quote(own, safe="").replace(".", "%2E")
+            if {"/", "%"} & set(dataset_name) or not dataset_name.strip("."):
+                dataset_name = quote(dataset_name, safe="").replace(".", "%2E")
                 attributes = {**attributes, OWN_NAME: str(name)}
-            _write_variable(file, own, signal.values, attributes).dims[0].attach_scale(time)
+            _write_variable(file, dataset_name, signal.values, attributes).dims[0].attach_scale(
+                time
+            )
     return content.getvalue()
 
 
 def _write_variable(
-    file: h5py.File, name: str, found: np.ndarray, attributes: Mapping[Any, Any]
+    file: h5py.File, name: str, values: np.ndarray, attributes: Mapping[Any, Any]
 ) -> h5py.Dataset:
     """A signal with its attributes as a dataset of HDF5; truth values and texts as xarray writes and reads them."""
     import h5py
 
-    if found.dtype.kind == "b":
-        found = found.astype("int8")
+    if values.dtype.kind == "b":
+        values = values.astype("int8")
         attributes = {**attributes, "dtype": "bool"}
-    texts = h5py.string_dtype() if found.dtype.kind in "OU" else None
-    written = file.create_dataset(name, data=found.astype(object) if texts else found, dtype=texts)
+    texts = h5py.string_dtype() if values.dtype.kind in "OU" else None
+    written = file.create_dataset(
+        name, data=values.astype(object) if texts else values, dtype=texts
+    )
     written.attrs.update(attributes)
     return written
 
@@ -341,7 +345,7 @@ def _cells_of(values: np.ndarray) -> Iterable[str]:
     numbers = values.astype("int8") if values.dtype == bool else values
     # Half the signals of a run keep their value: one text serves all rows. Bytes tell 0.0 from -0.0.
     if numbers.tobytes() == numbers[:1].tobytes() * len(numbers):
-        return [repr(one).removesuffix(".0") for one in numbers[:1].tolist()] * len(numbers)
+        return [repr(number).removesuffix(".0") for number in numbers[:1].tolist()] * len(numbers)
     return (repr(number).removesuffix(".0") for number in numbers.tolist())
 
 
@@ -368,12 +372,12 @@ def _open_netcdf(path: Path) -> xarray.Dataset:
     for variable in table.variables.values():
         if "units" in variable.attrs:
             variable.attrs["units"] = str(variable.attrs["units"])  # a plain 1 is no text
-    own = {
+    original_names = {
         name: variable.attrs.pop(OWN_NAME)
         for name, variable in table.variables.items()
         if OWN_NAME in variable.attrs
     }
-    return _within_valid_range(table.rename(own))
+    return _within_valid_range(table.rename(original_names))
 
 
 def _within_valid_range(table: xarray.Dataset) -> xarray.Dataset:
@@ -419,7 +423,7 @@ def _read_netcdf(path: Path) -> xarray.Dataset:
 
 def _netcdf_columns(table: xarray.Dataset) -> dict[str, tuple[np.ndarray, str]]:
     """The variables with one dimension. Units like "seconds since 2022-10-27" count seconds."""
-    found = {}
+    columns = {}
     for name, variable in table.variables.items():
         if variable.ndim != 1:
             continue
@@ -430,8 +434,8 @@ def _netcdf_columns(table: xarray.Dataset) -> dict[str, tuple[np.ndarray, str]]:
             # What is no number becomes a text, as in a CSV file.
             plain = [v.decode(errors="replace") if isinstance(v, bytes) else v for v in values]
             values = np.array(list(map(str, plain)), dtype=object)
-        found[str(name)] = values, str(variable.attrs.get("units", "")).partition(" since ")[0]
-    return found
+        columns[str(name)] = values, str(variable.attrs.get("units", "")).partition(" since ")[0]
+    return columns
 
 
 def _read_columns(path: Path) -> list[tuple[str, str, np.ndarray]]:
@@ -441,13 +445,13 @@ def _read_columns(path: Path) -> list[tuple[str, str, np.ndarray]]:
         raise error_at(
             str(path), "has no row below its header.", "Each row is a time and its values."
         )
-    found = []
+    of_file = []
     for header, cells in zip(headers, columns, strict=True):
         values, is_stamp = _plain(cells)
         parts = _HEADER.match(header)
         name, unit = (parts["name"], parts["unit"]) if parts else (header, "")
-        found.append((name_in(name.strip()), "s" if is_stamp else unit, values))
-    return found
+        of_file.append((name_in(name.strip()), "s" if is_stamp else unit, values))
+    return of_file
 
 
 def _read_csv(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
@@ -468,8 +472,8 @@ def _read_csv(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
     width = len(rows[0])
     for number, row in enumerate(rows, start=1):
         if len(row) != width:
-            found = f"has {len(row)} cells, and the header has {width}: {','.join(row)}"
-            raise error_at(f"{path}, row {number}", found[:100], _AS_CSV)
+            message = f"has {len(row)} cells, and the header has {width}: {','.join(row)}"
+            raise error_at(f"{path}, row {number}", message[:100], _AS_CSV)
     rows = _without_row_of_units(rows)
     return rows[0], list(zip(*rows[1:], strict=True))
 
@@ -492,8 +496,8 @@ def _without_row_of_units(rows: list[list[str]]) -> list[list[str]]:
 def _are_units(cells: list[str]) -> bool:
     """Whether all cells of a row are units, or empty."""
     units = [cell.strip("[]() ") for cell in cells]
-    known = [unit in ("", "-") or spelled_unit(unit) is not None for unit in units]
-    return any(units) and all(known) and not any(map(is_figure, units))
+    are_units = [unit in ("", "-") or spelled_unit(unit) is not None for unit in units]
+    return any(units) and all(are_units) and not any(map(is_figure, units))
 
 
 def unpacked_bytes(path: Path) -> bytes:
@@ -512,8 +516,8 @@ def unpacked_bytes(path: Path) -> bytes:
     with gzip.open(io.BytesIO(content)) as packed:
         text = packed.read(most + 1)
     if len(text) > most:
-        found = f"unpacks to more than {MOST_PACKED} times its size."
-        raise error_at(str(path), found, "Unpack it, and look at what it holds.")
+        message = f"unpacks to more than {MOST_PACKED} times its size."
+        raise error_at(str(path), message, "Unpack it, and look at what it holds.")
     return text
 
 
@@ -530,9 +534,10 @@ def _cells(path: Path, text: str) -> tuple[list[list[str]], str]:
         try:
             return [row for row in reader if row], "."
         except csv.Error as error:
-            found = f"has a quotation mark without its other, or a cell of more than {csv.field_size_limit():,} characters."
+            most = csv.field_size_limit()
+            message = f"has a quotation mark without its other, or a cell of more than {most:,} characters."
             raise error_at(
-                f"{path}, line {reader.line_num}", found, "Write or copy it again."
+                f"{path}, line {reader.line_num}", message, "Write or copy it again."
             ) from error
     rows = [cells_in(line, separator) for line in lines if line.strip()]
     with_comma = {cell for row in rows[1:] for cell in row if "," in cell and is_figure(cell)}
@@ -585,12 +590,12 @@ def _read_rows(path: Path) -> xarray.Dataset:
     for name, _, values in columns:
         if values.dtype == object:
             text = next(str(value) for value in values if value is not None)[:40]
-            found = f"holds texts, not numbers, as '{text}'."
-            problems.append(Problem(f"{path}, column '{name}'", found))
+            message = f"holds texts, not numbers, as '{text}'."
+            problems.append(Problem(f"{path}, column '{name}'", message))
     if "time" not in names and 2 * sum(map(is_figure, names)) > len(names):
-        found = "holds numbers where the names of the columns should be."
+        message = "holds numbers where the names of the columns should be."
         raise error_at(
-            f"{path}, first row", found, "Write a row above it, such as: time [s],y [m]."
+            f"{path}, first row", message, "Write a row above it, such as: time [s],y [m]."
         )
     problems += _repeated(path, names)
     if "time" not in names:
@@ -651,8 +656,8 @@ def _times(texts: np.ndarray) -> tuple[np.ndarray, bool]:
 
 def _seconds_of(stamps: np.ndarray) -> np.ndarray:
     """Seconds after the first stamp."""
-    known = stamps[~np.isnat(stamps)]
-    return (stamps - known[0] if len(known) else stamps - stamps) / np.timedelta64(1, "s")
+    valid = stamps[~np.isnat(stamps)]
+    return (stamps - valid[0] if len(valid) else stamps - stamps) / np.timedelta64(1, "s")
 
 
 def _repeated(path: Path, names: list[str]) -> list[Problem]:

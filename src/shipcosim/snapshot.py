@@ -140,8 +140,8 @@ def writer(
     if store is None or callable(store):
         return store
     if not Path(store).absolute().parent.is_dir():
-        found = "There is no such folder to store the state in."
-        raise error_at(str(store), found, "Make it first.")
+        message = "There is no such folder to store the state in."
+        raise error_at(str(store), message, "Make it first.")
     return partial(write_snapshot, path=store)
 
 

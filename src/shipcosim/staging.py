@@ -34,22 +34,22 @@ def check_targets(folder: Path | None, file: Path | None = None) -> None:
     ShipcosimError
         If they cannot.
     """
-    found = [] if folder is None else _complaints(folder)
-    problems = [Problem(str(folder), text, "Choose another folder (--out).") for text in found]
+    complaints = [] if folder is None else _complaints(folder)
+    problems = [Problem(str(folder), text, "Choose another folder (--out).") for text in complaints]
     if file is not None:
-        found = (
+        complaints = (
             ["This is a folder."] if file.is_dir() else _complaints(file.parent, must_exist=True)
         )
         problems += [
             Problem(str(file), text, "Choose another file for the state (--store).")
-            for text in found
+            for text in complaints
         ]
     raise_errors(problems)
 
 
 def _complaints(folder: Path, must_exist: bool = False) -> list[str]:
     above = (Path(folder), *Path(folder).absolute().parents)
-    there = next(one for one in above if one.exists() or one.is_symlink())
+    there = next(folder for folder in above if folder.exists() or folder.is_symlink())
     if not there.is_dir():
         return [f"{there} is a file, not a folder."]
     if must_exist and there != Path(folder):

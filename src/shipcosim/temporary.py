@@ -156,11 +156,11 @@ def numbered(path: Path) -> Path:
     suffix = path.suffix if path.is_file() else ""
     stem = path.name.removesuffix(suffix)
     others = (
-        re.fullmatch(rf"{re.escape(stem)}-(\d+){re.escape(suffix)}", one.name)
-        for one in path.parent.glob("*")
+        re.fullmatch(rf"{re.escape(stem)}-(\d+){re.escape(suffix)}", file.name)
+        for file in path.parent.glob("*")
     )
-    taken = [int(match[1]) for match in others if match]
-    return path.with_name(f"{stem}-{max(taken, default=0) + 1}{suffix}")
+    numbers = [int(match[1]) for match in others if match]
+    return path.with_name(f"{stem}-{max(numbers, default=0) + 1}{suffix}")
 
 
 def say_kept(aside: Path) -> None:
@@ -183,12 +183,12 @@ def clear_killed(parent: Path) -> None:
 
 def _finish(path: Path) -> None:
     # Two processes may find it; the name of this one takes it from the other.
-    taken = path.with_name(f"{_prefix('.unfinished')}{path.name.rpartition('-')[2]}")
+    claimed = path.with_name(f"{_prefix('.unfinished')}{path.name.rpartition('-')[2]}")
     with suppress(OSError, ValueError):
-        os.rename(path, taken)
-        if (taken / _MOVES).exists():
-            _move(taken, path.parent)
-        shutil.rmtree(taken, ignore_errors=True)
+        os.rename(path, claimed)
+        if (claimed / _MOVES).exists():
+            _move(claimed, path.parent)
+        shutil.rmtree(claimed, ignore_errors=True)
 
 
 def _prefix(kind: str) -> str:

@@ -79,9 +79,9 @@ class UnitError(ValueError):
         What would be right; empty where nothing can be said.
     """
 
-    def __init__(self, found: str, remedy: str = ""):
-        super().__init__(f"{found} {remedy}".rstrip())
-        self.found = found
+    def __init__(self, message: str, remedy: str = ""):
+        super().__init__(f"{message} {remedy}".rstrip())
+        self.found = message
         self.remedy = remedy
 
 
@@ -322,7 +322,7 @@ def told_apart(unit: Unit, other: Unit) -> tuple[str, str]:
     """
     names = [unit.name, other.name]
     if unit.name == other.name:
-        names = [f"{one.name} ({one.definition or 'not defined'})" for one in (unit, other)]
+        names = [f"{each.name} ({each.definition or 'not defined'})" for each in (unit, other)]
     return names[0], names[1]
 
 
@@ -442,14 +442,14 @@ def number_in(text: str, target: Unit | None, *, difference: bool = False) -> fl
     >>> number_in("2 kn", spelled_unit("km/h"))
     3.704
     """
-    found = amount(text)
+    parsed = amount(text)
     name = target.name if target else "1"
-    if found is None:
+    if parsed is None:
         raise UnitError(
             f"{text!r} is no number with a unit.",
             f"Write a number in {name}, or such as '2.5 {name}'.",
         )
-    number, spelling = found
+    number, spelling = parsed
     source = spelled_unit(spelling) or _pint_unit(spelling)
     if source is None:
         raise UnitError(
@@ -600,7 +600,7 @@ def _pint_unit(spelling: str) -> Unit | None:
     try:
         registry = _registry()
         unit = registry(_pint_spelling(spelling)).units
-        offset, one = (
+        offset, scaled = (
             float(registry.Quantity(value, unit).to_base_units().magnitude) for value in (0.0, 1.0)
         )
         in_base = registry.Quantity(1.0, unit).to_base_units()
@@ -611,7 +611,7 @@ def _pint_unit(spelling: str) -> Unit | None:
         return None
     return _unit(
         spelling,
-        one - offset,
+        scaled - offset,
         offset,
         **{_IN_PINT[name]: int(power) for name, power in powers.items()},
     )
@@ -623,13 +623,13 @@ def _pint_conversion(source: str, target: str) -> tuple[float, float]:
     try:
         registry = _registry()
         units = [registry(_pint_spelling(spelling)).units for spelling in (source, target)]
-        offset, one = (
+        offset, scaled = (
             float(registry.Quantity(value, units[0]).to(units[1]).magnitude) for value in (0.0, 1.0)
         )
     except pint.UndefinedUnitError as error:
         why = str(error).replace("is not defined in the unit registry", "is not known")
-        found = f"cannot convert '{source}' into '{target}': {why}."
-        raise UnitError(found, "Units are written like N.m, kn or deg.") from error
+        message = f"cannot convert '{source}' into '{target}': {why}."
+        raise UnitError(message, "Units are written like N.m, kn or deg.") from error
     except pint.DimensionalityError as error:
         raise UnitError(
             f"cannot convert '{source}' into '{target}': they measure different things."
@@ -639,7 +639,7 @@ def _pint_conversion(source: str, target: str) -> tuple[float, float]:
     except Exception as error:  # pint raises anything, AssertionError too
         # Such as degC/min: a scale with a zero of its own has no place in a product.
         raise UnitError(f"cannot convert '{source}' into '{target}'.") from error
-    return one - offset, offset
+    return scaled - offset, offset
 
 
 @cache

@@ -88,7 +88,7 @@ def listed(given: Any, what: str = "") -> list[AnyPath]:
         return []
     if isinstance(given, (str, os.PathLike)) or not isinstance(given, Iterable):
         given = [given]
-    return [path_or_name(what, one) for one in given]
+    return [path_or_name(what, item) for item in given]
 
 
 def mapping(argument: str, given: Any) -> dict[str, Any]:
@@ -106,39 +106,39 @@ def without_none(values: Mapping[str, Any]) -> dict[str, Any]:
 
 def in_seconds(arguments: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
     """Arguments with times as numbers, where they were amounts such as ``"10 min"``. [s]"""
-    found = dict(arguments)
+    converted = dict(arguments)
     problems = []
     for name in names:
-        if isinstance(found.get(name), str):
+        if isinstance(converted.get(name), str):
             try:
-                found[name] = seconds(found[name])
+                converted[name] = seconds(converted[name])
             except UnitError as error:
                 problems.append(Problem(name, error.found, error.remedy))
                 continue
         # NaN compares with nothing, so no later check would see it; and no run ends that has no end.
-        value = found.get(name)
+        value = converted.get(name)
         if value is None:
             continue
         if isinstance(value, Real) and not isinstance(value, bool) and is_finite(value):
-            found[name] = float(value)
+            converted[name] = float(value)
         else:
             wrong = f"{name} = {value!r:.60} is no time."
             problems.append(Problem(named(name), wrong, "Give a number of seconds."))
     raise_errors(problems)
-    return found
+    return converted
 
 
 def fmus_of(components: Components) -> dict[str, Path]:
     """FMUs in place of components' own, by path or name."""
-    found = {}
+    paths = {}
     problems = []
     for name, fmu in mapping("components", components).items():
         try:
-            found[name] = find("fmu", fmu, "component").resolve()
+            paths[name] = find("fmu", fmu, "component").resolve()
         except ShipcosimError as error:
             problems += error.problems
     raise_errors(problems)
-    return found
+    return paths
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -176,8 +176,10 @@ class Reading:
         parameters = listed(self.parameters, "parameters")
         if isinstance(given, System):
             if swapped:
-                found = "A system that is read keeps its FMUs."
-                raise error_at("components", found, "Give its path, its name or a SystemStructure.")
+                message = "A system that is read keeps its FMUs."
+                raise error_at(
+                    "components", message, "Give its path, its name or a SystemStructure."
+                )
             return given
         if isinstance(given, SystemStructure):
             return given.checked(parameters, swapped)
@@ -192,10 +194,10 @@ class Reading:
         raise_errors(check_files(scenario))
         return system_of(
             scenario,
-            parameters=[Path(one) for one in listed(self.parameters)],
+            parameters=[Path(parameter) for parameter in listed(self.parameters)],
             components=fmus_of(self.components),
             strict=self.strict,
-            fmus=[Path(one) for one in listed(self.fmus, "fmus")],
+            fmus=[Path(path) for path in listed(self.fmus, "fmus")],
         )
 
 
@@ -324,10 +326,10 @@ def scenario_of(
                 ]
             )
     else:
-        own = given.model_dump(exclude_defaults=True)
-        entries = own | dict(keys)
-        entries["set"] = own.get("set", {}) | keys.get("set", {})
-        entries["events"] = [*own.get("events", ()), *keys.get("events", ())]
+        base = given.model_dump(exclude_defaults=True)
+        entries = base | dict(keys)
+        entries["set"] = base.get("set", {}) | keys.get("set", {})
+        entries["events"] = [*base.get("events", ()), *keys.get("events", ())]
     try:
         scenario = Scenario.model_validate(entries)
     except ValidationError as error:
@@ -403,11 +405,11 @@ def source_of(
 
 def sources_of(logs: Any, channels: AnyPath | None) -> tuple[list[Any], AnyPath | None]:
     """Several logs as the rooms below take them, with their common channel file."""
-    found = []
+    sources = []
     for log in logs:
         source, channels = source_of(log, channels)
-        found.append(source)
-    return found, channels
+        sources.append(source)
+    return sources, channels
 
 
 def check_inputs(
@@ -420,8 +422,8 @@ def check_inputs(
         is_path = isinstance(log, (str, os.PathLike))
         if is_path and not Path(log).is_file() and not Path(log).is_dir():
             names = library.names("example")
-            known = suggestion(str(log), names) if names else remedy
-            problems.append(Problem(str(log), "There is no such file of measured data.", known))
+            hint = suggestion(str(log), names) if names else remedy
+            problems.append(Problem(str(log), "There is no such file of measured data.", hint))
     if isinstance(channels, (str, os.PathLike)) and not Path(channels).is_file():
         problems.append(Problem(str(channels), "There is no such channel file.", remedy))
     if causes is not None and not Path(causes).is_dir():

@@ -61,32 +61,34 @@ def with_known_keywords(function: Function) -> Function:
     """
     signature = inspect.signature(function)
     parameters = signature.parameters.values()
-    known = {
-        one.name: one.annotation
-        for one in parameters
-        if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)
+    accepted = {
+        parameter.name: parameter.annotation
+        for parameter in parameters
+        if parameter.kind in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY)
     }
-    if any(one.kind is one.VAR_KEYWORD for one in parameters):
-        known |= {name: kind.__forward_arg__ for name, kind in RunKeywords.__annotations__.items()}
+    if any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters):
+        accepted |= {
+            name: kind.__forward_arg__ for name, kind in RunKeywords.__annotations__.items()
+        }
 
     @wraps(function)
     def call(*arguments, **keywords):
         where = f"{function.__name__}()"
         unknown = [
-            Problem(where, f"There is no keyword '{k}'.", suggestion(k, known))
+            Problem(where, f"There is no keyword '{k}'.", suggestion(k, accepted))
             for k in keywords
-            if k not in known
+            if k not in accepted
         ]
         raise_errors(unknown)
         keywords = {name: value for name, value in keywords.items() if value is not None}
         try:
             given = signature.bind(*arguments, **keywords).arguments
         except TypeError as error:
-            remedy = f"Its form is {function.__name__}({', '.join(known)})."
+            remedy = f"Its form is {function.__name__}({', '.join(accepted)})."
             raise error_at(where, f"{capitalised(str(error))}.", remedy) from None
         wrong = []
         for name, value in {**given, **keywords}.items():
-            if wanted := _other_kind(str(known.get(name)), value):
+            if wanted := _other_kind(str(accepted.get(name)), value):
                 wrong.append(Problem(where, f"{name} = {value!r:.60}.", f"Give {wanted}."))
         raise_errors(wrong)
         return function(*arguments, **keywords)
@@ -102,7 +104,7 @@ def _other_kind(annotation: str, value: Any) -> str:
     if value is None or not set(kinds) <= set(KINDS) or set(kinds) >= TIME:
         return ""
     # Classes are known by their names: importing xarray takes longer than most calls.
-    names = {one.__name__ for one in type(value).__mro__}
+    names = {base.__name__ for base in type(value).__mro__}
     for kind in kinds:
         fits = kind in names or isinstance(value, KINDS[kind][0])
         # True is a number to Python; counts are not negative.

@@ -29,16 +29,16 @@ def check_learning(
         remedy = f"It needs {named('learn')}; the length of a ship with a system is in that system."
         raise error_at(named("length"), "nothing is learned.", remedy)
     if length is None:
-        found = "a log does not tell how long the craft is."
-        raise error_at(named("learn"), found, f'Give {named("length")}, such as "1.2 m".')
+        message = "a log does not tell how long the craft is."
+        raise error_at(named("learn"), message, f'Give {named("length")}, such as "1.2 m".')
     if system is not None or reference is not None:
         other = named("reference" if system is None else "system")
-        found = f"with {other}, her numbers are known already."
-        raise error_at(named("learn"), found, "Give one of the two.")
+        message = f"with {other}, her numbers are known already."
+        raise error_at(named("learn"), message, "Give one of the two.")
     if causes is not None:
-        found = f"with {named('causes')}: causes are sought in a craft that is known already."
+        message = f"with {named('causes')}: causes are sought in a craft that is known already."
         raise error_at(
-            named("learn"), found, "Learn her first, then give the system that it leaves."
+            named("learn"), message, "Learn her first, then give the system that it leaves."
         )
     if several:
         remedy = "`shipcosim calibrate` with --learn learns from several logs."

@@ -238,9 +238,9 @@ def _learned(
 
     folder = temporary_folder()
     ship = _assumed_system([source], channels, length, Path(folder.name), stage)
-    found = diagnose(source, ship, channels, None, progress, out=stage, is_assumed=True)
+    diagnosis = diagnose(source, ship, channels, None, progress, out=stage, is_assumed=True)
     # The folder of her system stays as long as what was found.
-    return replace(DiagnosisOfLog(**parts_of(found)), folder=(folder, found.folder))
+    return replace(DiagnosisOfLog(**parts_of(diagnosis)), folder=(folder, diagnosis.folder))
 
 
 def _assumed_system(
@@ -317,10 +317,10 @@ def replay(
         SYSTEM_OF_LOGS if system is None else system, before, parameters
     )
     times = in_seconds({"horizon": horizon}, ["horizon"])
-    found = replay_log(source, systems, channels, horizon=times["horizon"], progress=progress)
-    parts = parts_of(found)
-    parts["remarks"] = (*map(str, remarks), *found.remarks)
-    names = tuple(one.name for one in systems.values())
+    replayed = replay_log(source, systems, channels, horizon=times["horizon"], progress=progress)
+    parts = parts_of(replayed)
+    parts["remarks"] = (*map(str, remarks), *replayed.remarks)
+    names = tuple(each.name for each in systems.values())
     result = Replay(**parts, name=name_of_log(source), systems=names)
     if out is not None:
         result.save(out, force=force)
@@ -353,12 +353,12 @@ def _replayed_systems(
 
 def _extended_from(system: System, given: str) -> str:
     """The system that was extended: it lies beside the extended one, or has a name in the project."""
-    beside = Path(given).with_name(f"{system.name}.ssp")
-    if beside.exists():
-        return str(beside)
+    neighbour = Path(given).with_name(f"{system.name}.ssp")
+    if neighbour.exists():
+        return str(neighbour)
     if library.named("system", system.name) is None:
-        found = f"it extends a system '{system.name}', which has no name here."
-        raise error_at(given, found, f"Say which one it was: {named('before')}.")
+        message = f"it extends a system '{system.name}', which has no name here."
+        raise error_at(given, message, f"Say which one it was: {named('before')}.")
     return system.name
 
 
@@ -416,10 +416,10 @@ def calibrate(
                 if learn
                 else ship_of(system)
             )
-            found = calibrate(
+            calibration = calibrate(
                 sources, ship, channels, causes, progress, out=stage, is_assumed=learn
             )
-        return Calibration(**parts_of(found))
+        return Calibration(**parts_of(calibration))
 
     return _written(result_in, out, force, progress, CALIBRATED)
 
@@ -469,12 +469,12 @@ def sea_trials(
     ship = given if isinstance(given, System) else given.checked()
 
     def result_in(stage: Path | None) -> SeaTrials:
-        found = study(source, ship, channels, causes, progress, orders=orders)
-        if stage is not None and found.findings:
+        trials = study(source, ship, channels, causes, progress, orders=orders)
+        if stage is not None and trials.findings:
             structure = given if isinstance(given, SystemStructure) else read(ship.file)
-            extend(structure, found.findings, stage, catalogue=read_catalogue(causes))
+            extend(structure, trials.findings, stage, catalogue=read_catalogue(causes))
         return SeaTrials(
-            **parts_of(found), name=name_of_log(source), system=ship.name, orders=orders
+            **parts_of(trials), name=name_of_log(source), system=ship.name, orders=orders
         )
 
     return _written(result_in, out, force, progress)

@@ -143,10 +143,10 @@ class PreparedRun:
             As `shipcosim.cosim.simulate` gives it.
         """
         # What a run was is kept in its table, and so in result.nc and on every page that is made of it.
-        said = [str(remark) for remark in self.remarks]
+        texts = [str(remark) for remark in self.remarks]
         during = json.loads(table.attrs.get("remarks", "[]"))
         table = table.assign_attrs(
-            remarks=json.dumps([*said, *during]), changed=json.dumps(list(self.changed))
+            remarks=json.dumps([*texts, *during]), changed=json.dumps(list(self.changed))
         )
         # A whole run needs no words on what part of it is judged.
         first, last = table["time"].values[[0, -1]]
@@ -213,11 +213,11 @@ def with_record(
         If the system has no such signal.
     """
     signals: list[str] = []
-    for one in [os.fspath(one) for one in listed(record, "record")]:
-        if not one.lower().endswith(".xml"):
-            signals.append(one)
+    for entry in [os.fspath(path) for path in listed(record, "record")]:
+        if not entry.lower().endswith(".xml"):
+            signals.append(entry)
             continue
-        config = read_log_config(one)
+        config = read_log_config(entry)
         signals += config.signals
         if not has_interval:
             interval = config.steps * scenario.step_size
@@ -365,7 +365,7 @@ def prepare_run(
     how = options_of(options)
     texts = [
         *changed,
-        *(f"records {Path(one).name}" for one in listed(record)),
+        *(f"records {Path(path).name}" for path in listed(record)),
         *changes(start_values, parameters, components, fmus, how),
         *times_changed(times, happening),
         *(f"event at {event.time:g} s" for event in happening.events[len(given.events) :]),
@@ -517,7 +517,7 @@ def prepare_simulation(
     happening = scenario_of(scenario, ship, keys, since)
     happening, remarks = with_osp_events(happening, osp_events, how.start_time)
     happening = with_record(happening, ship, record, output_interval is not None)
-    texts += [f"records {Path(one).name}" for one in listed(record)]
+    texts += [f"records {Path(path).name}" for path in listed(record)]
     if scenario is None and step_size is None:
         remarks += step_remarks(ship, since, happening.stop_time)
     if scenario is not None:
@@ -531,8 +531,8 @@ def _clock_start(options: RunOptions, is_given: bool) -> float:
     """Time from which the steps of a run count; one that continues takes no other one. [s]"""
     since = clock_start(options)
     if is_given and since != options.start_time:
-        found = f"it continues a run that started at {since:g} s."
-        raise error_at(named("start_time"), found, "Leave it out.")
+        message = f"it continues a run that started at {since:g} s."
+        raise error_at(named("start_time"), message, "Leave it out.")
     return since
 
 
@@ -564,10 +564,10 @@ def fed_by(
     """The table that feeds a system's inputs, with what its columns do between their rows; arguments of `simulate`."""
     if table is None:
         if interpolate or max_gap is not None:
-            found = "There is no table to which this could apply."
+            message = "There is no table to which this could apply."
             raise error_at(
                 f"{named('interpolate')}, {named('max_gap')}",
-                found,
+                message,
                 f"Give one as {named('inputs')}.",
             )
         return None
@@ -603,9 +603,9 @@ def changes(
 ) -> list[str]:
     """Changes of a run against its files, each as a text; files by their names, so that the folder does not matter."""
     texts = [f"{name} = {_text(value)}" for name, value in start_values.items()]
-    texts += [f"parameter set {Path(one).name}" for one in listed(parameters)]
+    texts += [f"parameter set {Path(parameter).name}" for parameter in listed(parameters)]
     texts += [f"{name} runs {Path(fmu).name}" for name, fmu in (components or {}).items()]
-    texts += [f"FMUs of folder {Path(one).name}" for one in listed(fmus)]
+    texts += [f"FMUs of folder {Path(path).name}" for path in listed(fmus)]
     if options.engine != RunOptions.engine:
         texts.append(f"engine {options.engine}")
     if options.order != RunOptions.order:
@@ -641,10 +641,10 @@ def _prepared(
     happening = with_values(system, scenario.set, str(scenario.path or "scenario"))
     since = clock_start(options)
     problems = check_scenario(scenario, happening, since)
-    found = [*remarks, *happening.deviations]
+    notable = [*remarks, *happening.deviations]
     if errors := [problem for problem in problems if problem.is_error]:
-        raise ShipcosimError([*found, *errors])  # a remark on what was left out may say why
+        raise ShipcosimError([*notable, *errors])  # a remark on what was left out may say why
     # A run that is shorter than planned leaves events and expectations out on purpose.
     of_times = check_times(scenario, since) if scenario.stop_time < planned else ()
-    found += [problem for problem in problems if problem not in of_times]
-    return PreparedRun(system, scenario, options, tuple(changed), tuple(found), planned)
+    notable += [problem for problem in problems if problem not in of_times]
+    return PreparedRun(system, scenario, options, tuple(changed), tuple(notable), planned)

@@ -72,8 +72,8 @@ def read(path: AnyPath, *, fmus: Iterable[AnyPath] | None = None) -> SystemStruc
     >>> sorted(shipcosim.read("otter_open").components)
     ['environment', 'left', 'right', 'vessel']
     """
-    found = find("system", path)
-    return read_structure(found, fmus=library.fmus(found) if fmus is None else fmus)
+    file = find("system", path)
+    return read_structure(file, fmus=library.fmus(file) if fmus is None else fmus)
 
 
 @with_known_keywords
@@ -120,21 +120,21 @@ def check(
         check_host(tool)
     table = None if channels is None else Path(channels)
     paths = {}
-    found: dict[str, list[Problem]] = {}
+    by_file: dict[str, list[Problem]] = {}
     for file in listed(files, "files"):
         name = os.fspath(file)
         try:
             paths[name] = library.find_any(name)
         except ShipcosimError as error:
-            found[name] = error.problems
+            by_file[name] = error.problems
         else:
-            found[name] = check_any(paths[name], table, tools)
+            by_file[name] = check_any(paths[name], table, tools)
     if not paths:
-        missing = [problem for problems in found.values() for problem in problems]
+        missing = [problem for problems in by_file.values() for problem in problems]
         raise ShipcosimError(missing or Problem("files", "There is none.", "Name one to check."))
     held = {
         name: tuple(held_strictly(problems) if strict else problems)
-        for name, problems in found.items()
+        for name, problems in by_file.items()
     }
     variables = {name: tuple(rows) for name, path in paths.items() if (rows := variables_in(path))}
     estimates = {name: tuple(rows) for name, path in paths.items() if (rows := estimates_in(path))}
@@ -201,11 +201,11 @@ def compare(
     keys = without_none(times) | {"set": mapping("set", set)}
     system, scenario, remarks = system_and_scenario(what, reading, keys, events)
     with _as_read(what, system, scenario, parameters) if as_read else nullcontext({}) as tools:
-        found = compare(
+        comparison = compare(
             system, scenario, RunOptions(progress=progress), tolerance=tolerance, **tools
         )
     name = scenario.name or system.name
-    return EngineComparison(**parts_of(found), name=name, flaws=(*system.deviations, *remarks))
+    return EngineComparison(**parts_of(comparison), name=name, flaws=(*system.deviations, *remarks))
 
 
 @contextmanager
@@ -246,11 +246,13 @@ def _as_read(
     if parameters:
         raise error_at(named("parameters"), "A tool that reads the file itself does not know them.")
     if system.swapped:
-        found = f"A tool that reads the file itself runs the FMU that it names for {', '.join(system.swapped)}."
-        raise error_at(name, found, f"Compare FMUs in place of others without {named('as_read')}.")
+        message = f"A tool that reads the file itself runs the FMU that it names for {', '.join(system.swapped)}."
+        raise error_at(
+            name, message, f"Compare FMUs in place of others without {named('as_read')}."
+        )
     if system.experiment.start_time:
-        found = f"The system starts at {system.experiment.start_time:g} s, but a comparison starts at 0."
-        raise error_at(name, found, "Let it start at 0.")
+        message = f"The system starts at {system.experiment.start_time:g} s, but a comparison starts at 0."
+        raise error_at(name, message, "Let it start at 0.")
     with temporary_folder() as folder:
         if structure := osp_file(path):
             yield {"readers": readers(structure.resolve(), scenario)}
@@ -318,8 +320,8 @@ def capability(
 
     if out is not None:
         check_targets(Path(out))
-    groups = [tuple(map(str, listed(one or [one], "failures"))) for one in failures]
-    sets = [Path(one) for one in listed(parameters, "parameters")]
+    groups = [tuple(map(str, listed(failure or [failure], "failures"))) for failure in failures]
+    sets = [Path(parameter) for parameter in listed(parameters, "parameters")]
     vessel = vessel_of(os.fspath(path_or_name("system", system)), sets, ship)
     result = CapabilityOfShip(**parts_of(capability_of(vessel, groups)))
     if out is not None:

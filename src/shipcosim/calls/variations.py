@@ -100,8 +100,8 @@ def simulate_many(
     ({'variation': 2, 'time': 21}, True)
     """
     if engine not in ("native", "fmpy"):
-        found = f"engine = {engine!r}."
-        raise error_at("simulate_many()", found, "Variations are run by 'native' or 'fmpy'.")
+        message = f"engine = {engine!r}."
+        raise error_at("simulate_many()", message, "Variations are run by 'native' or 'fmpy'.")
     if scenario is not None:
         scenario = read_scenario(scenario)
     ship = system_for(system, scenario, components=components)
@@ -113,7 +113,7 @@ def simulate_many(
         scenario, ship, times | {"set": mapping("set", set), "events": list(events)}
     )
     varied = [_variation(ship, happening, dict(entries)) for entries in _records(variations)]
-    wanted = [os.fspath(one) for one in listed(record, "record")]
+    wanted = [os.fspath(name) for name in listed(record, "record")]
     return run_variations(
         with_values(ship, happening.set, str(happening.path or "scenario")),
         happening,
@@ -138,9 +138,11 @@ def _records(variations: Any) -> list[Mapping[str, Any]]:
 def _variation(system: System, scenario: Scenario, given: dict[str, Any]) -> Variation:
     """A variation as the engine takes it: parameter sets as values, its own events and end in its scenario."""
     fitting, _ = values_of_sets(given.pop("parameters", ()), system)
-    own = without_none({"stop_time": given.pop("stop_time", None)}) | {
+    changes = without_none({"stop_time": given.pop("stop_time", None)}) | {
         "events": list(given.pop("events", ()))
     }
     values = {name: as_python(value) for name, value in given.items()}
-    is_plain = not own["events"] and "stop_time" not in own
-    return Variation(fitting | values, scenario if is_plain else scenario_of(scenario, system, own))
+    is_plain = not changes["events"] and "stop_time" not in changes
+    return Variation(
+        fitting | values, scenario if is_plain else scenario_of(scenario, system, changes)
+    )

@@ -64,14 +64,16 @@ def ship_folder(ship: str | None, system: str, sets: Sequence[Path]) -> Path:
     # Without a name: the parameter sets usually carry the ship's name. The last one set wins.
     else:
         bound = [] if osp_file(system) is not None else read(system).parameter_sets
-        names = [Path(one).stem for one in reversed([*bound, *map(str, sets)])]
+        names = [Path(path).stem for path in reversed([*bound, *map(str, sets)])]
     given = [Path(ship)] if ship else []
     for folder in (*given, *(place / name for name in names for place in ships)):
         if (folder / "ship.toml").is_file():
             return folder
-    known = [file.parent.name for place in ships for file in sorted(place.glob("*/ship.toml"))]
-    found = f"There is no ship '{ship}'." if ship else "Nothing says which ship this is."
-    raise error_at("--ship", found, f"Give her folder. {suggestion(ship or '', known)}".strip())
+    ship_names = [file.parent.name for place in ships for file in sorted(place.glob("*/ship.toml"))]
+    message = f"There is no ship '{ship}'." if ship else "Nothing says which ship this is."
+    raise error_at(
+        "--ship", message, f"Give her folder. {suggestion(ship or '', ship_names)}".strip()
+    )
 
 
 def _ships(system: Path) -> list[Path]:

@@ -36,18 +36,18 @@ def cases_of(vessel: Vessel, groups: Iterable[Sequence[str]] = ()) -> tuple[Case
     ShipcosimError
         There is no thruster of some name.
     """
-    known = [thruster.name for thruster in vessel.thrusters]
+    names = [thruster.name for thruster in vessel.thrusters]
     given = [tuple(dict.fromkeys(group)) for group in groups]
-    unknown = dict.fromkeys(name for group in given for name in group if name not in known)
+    unknown = dict.fromkeys(name for group in given for name in group if name not in names)
     if unknown:
         raise ShipcosimError(
-            [Problem("--failure", f"'{n}' is no thruster.", suggestion(n, known)) for n in unknown]
+            [Problem("--failure", f"'{n}' is no thruster.", suggestion(n, names)) for n in unknown]
         )
     # A set of thrusters occurs once, however it is lost. Each single thruster counts, as the
     # notation asks for the worst single failure.
     lost = {
         frozenset(group): f"without {' and '.join(group)}"
-        for group in [*((name,) for name in known), *given]
+        for group in [*((name,) for name in names), *given]
     }
     # A bus with one thruster is the loss of this thruster; it is listed already.
     for bus, fed in vessel.buses.items():
@@ -56,7 +56,7 @@ def cases_of(vessel: Vessel, groups: Iterable[Sequence[str]] = ()) -> tuple[Case
     # Names in the order of the system, so that the tables are the same each time.
     return (
         Case("intact", ()),
-        *(Case(name, tuple(n for n in known if n in group)) for group, name in lost.items()),
+        *(Case(name, tuple(n for n in names if n in group)) for group, name in lost.items()),
     )
 
 
@@ -85,7 +85,7 @@ def capability_of(vessel: Vessel, groups: Iterable[Sequence[str]] = ()) -> Capab
     # Used thrust is 1 / share. A share of 0 (nothing can be balanced) becomes infinite.
     with np.errstate(divide="ignore"):
         return Capability(
-            vessel, cases, {method: 1.0 / np.array(found) for method, found in shares.items()}
+            vessel, cases, {method: 1.0 / np.array(share) for method, share in shares.items()}
         )
 
 
@@ -120,8 +120,8 @@ def level_1_share(
 def simulated_share(ship: Simulated, working: Sequence[Thruster], condition: Condition) -> NDArray:
     """Share of thrust by the simulator's loads; the thrusters give up to their limits."""
     # The simulator's thrusters lose nothing by neighbours here: no sectors, and all of the thrust.
-    asked = [replace(t, **vars(ship.limits[t.name])) for t in working]
-    actuators = [_actuator(t, np.ones(len(DIRECTIONS)), ()) for t in asked]
+    limited = [replace(t, **vars(ship.limits[t.name])) for t in working]
+    actuators = [_actuator(t, np.ones(len(DIRECTIONS)), ()) for t in limited]
     return largest_share(actuators, _load(simulated_parts(ship, condition, DIRECTIONS)))
 
 

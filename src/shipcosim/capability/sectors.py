@@ -63,9 +63,9 @@ def sectors(
     ValueError
         Two thrusters are in the same place.
     """
-    found = [_flushing(thruster, other, is_live=True) for other in working]
-    found += [_flushing(thruster, other, is_live=False) for other in failed]
-    return [sector for sector in found if sector is not None]
+    possible = [_flushing(thruster, other, is_live=True) for other in working]
+    possible += [_flushing(thruster, other, is_live=False) for other in failed]
+    return [sector for sector in possible if sector is not None]
 
 
 def _flushing(thruster: Thruster, other: Thruster, is_live: bool) -> Sector | None:
@@ -128,14 +128,14 @@ def _of_azimuth(thrust: float, narrowed: Sequence[Sector]) -> list[NDArray]:
         edge % _TURN for s in narrowed for edge in (s.middle - s.half, s.middle, s.middle + s.half)
     }
     ordered = sorted(cuts)
-    found = []
+    corners = []
     for start, end in zip(ordered, [*ordered[1:], ordered[0] + _TURN], strict=True):
         # The middle of the arc decides: a sector covers an arc fully or not at all.
         angle = 0.5 * (start + end)
         forbidden = any(s.share == 0.0 and abs(_apart(angle, s.middle)) < s.half for s in narrowed)
         if not forbidden:
-            found += [_corners(thrust, a, b, narrowed) for a, b in _halves(start, end)]
-    return found
+            corners += [_corners(thrust, a, b, narrowed) for a, b in _halves(start, end)]
+    return corners
 
 
 def _halves(start: float, end: float) -> list[tuple[float, float]]:
@@ -175,8 +175,8 @@ def _share_of(angle: float, sector: Sector) -> float:
     return float(sector.share * sine / (np.sin(sector.half - away) + sector.share * np.sin(away)))
 
 
-def _apart(one: float, other: float) -> float:
-    return wrap_series(one - other, _TURN)
+def _apart(angle: float, other: float) -> float:
+    return wrap_series(angle - other, _TURN)
 
 
 def _directions(angles: NDArray) -> NDArray:

@@ -126,4 +126,4 @@ def ventilation(
     sigma = 0.25 * (heave * place * condition.wave_height * min(period, 1.0) + max(load - 1.0, 0.0))
     # Phi(depth - 1.5 sigma), with depth = 4 xi / D. The normal distribution is written with erfc.
     depth = 4.0 * thruster.submergence / thruster.diameter
-    return np.array([0.5 * erfc((1.5 * one - depth) / sqrt(2.0)) for one in sigma])
+    return np.array([0.5 * erfc((1.5 * spread - depth) / sqrt(2.0)) for spread in sigma])

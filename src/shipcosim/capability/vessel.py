@@ -101,7 +101,7 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
     # Components are found by their parameters and connections, not by their names.
     body = _vessel_of(system)
     units = _thrusters_of(system, body.name)
-    asked = {HULL_FILE: (HullParticulars,)} | {
+    wanted = {HULL_FILE: (HullParticulars,)} | {
         _file(name): (ThrusterParticulars,) for name in units
     }
     # All values must be given: the default of a required parameter means that it was not set.
@@ -112,25 +112,25 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
             system.file, f"nothing says {', '.join(left_out)}.", "Give a set with --parameters."
         )
     # All files of the ship are read before anything is checked, so that all errors come together.
-    said = ship.parameter_set(asked)
+    stated = ship.parameter_set(wanted)
     values = {
-        file: {name: q.value for name, q in entries.items()} for file, entries in said.items()
+        file: {name: q.value for name, q in entries.items()} for file, entries in stated.items()
     }
     problems = [
         p for name in units for p in _problems(ship, name, units[name], values[_file(name)])
     ]
     raise_errors(problems)
-    known = {name: _real(body, name) for name in ("length", "breadth", "draught")}
+    dimensions = {name: _real(body, name) for name in ("length", "breadth", "draught")}
     # Shape and areas come from the ship's file, main dimensions from the system's parameter set.
-    hull = Hull(**values[HULL_FILE], **known)
+    hull = Hull(**values[HULL_FILE], **dimensions)
     # Nominal thrust follows from diameter, power and kind of each thruster.
-    own = {name: ThrusterParticulars(**values[_file(name)]) for name in units}
-    made = [_thruster(unit, own[name], hull) for name, unit in units.items()]
+    particulars = {name: ThrusterParticulars(**values[_file(name)]) for name in units}
+    made = [_thruster(unit, particulars[name], hull) for name, unit in units.items()]
     # The second method needs the simulator's own models and limits.
     limits = {
         n: Limits(_real(u, "thrust_max"), -_real(u, "thrust_min"))
         if "thrust_max" in u.variables
-        else Limits(own[n].thrust_ahead, own[n].thrust_astern)
+        else Limits(particulars[n].thrust_ahead, particulars[n].thrust_astern)
         for n, u in units.items()
     }
     simulated = Simulated(
@@ -141,7 +141,7 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
     )
     buses = _buses(system, list(units))
     return Vessel(
-        ship.name, ship.description, system.name, hull, tuple(made), simulated, said, buses
+        ship.name, ship.description, system.name, hull, tuple(made), simulated, stated, buses
     )
 
 
@@ -154,18 +154,18 @@ def _vessel_of(system: System) -> Component:
     # The vessel is the component that receives thruster forces and has the tables of wind and
     # drift.
     driven = {target for _, target in _forces(system)}
-    found = [
+    vessels = [
         c for n, c in system.components.items() if n in driven and c.variables.keys() >= _VESSEL
     ]
-    if len(found) != 1:
+    if len(vessels) != 1:
         what = (
             "no vessel"
-            if not found
-            else f"{len(found)} vessels, {', '.join(c.name for c in found)},"
+            if not vessels
+            else f"{len(vessels)} vessels, {', '.join(c.name for c in vessels)},"
         )
         remedy = "It needs one whose FMU has the parameters of fmus/vessel, with the forces of thrusters connected to it."
         raise error_at(system.file, f"{what} found.", remedy)
-    return found[0]
+    return vessels[0]
 
 
 def _thrusters_of(system: System, vessel: str) -> dict[str, Component]:
@@ -173,15 +173,15 @@ def _thrusters_of(system: System, vessel: str) -> dict[str, Component]:
     parts = {
         source: system.components[source] for source, target in _forces(system) if target == vessel
     }
-    found = {
+    thrusters = {
         name: part
         for name, part in parts.items()
         if part.variables.keys() >= _THRUSTER or part.variables.keys() >= _PLAIN
     }
-    if not found:
+    if not thrusters:
         remedy = "It needs components with the parameters of azimuth_thruster, tunnel_thruster or fixed_thruster."
         raise error_at(system.file, f"no thruster is connected to {vessel}.", remedy)
-    return found
+    return thrusters
 
 
 def _forces(system: System) -> list[tuple[str, str]]:
@@ -201,8 +201,10 @@ def _buses(system: System, thrusters: list[str]) -> dict[str, tuple[str, ...]]:
         names = {thruster: f"{thruster.rpartition('.')[2]}_bus" for thruster in thrusters}
         if part.variables.keys() >= set(names.values()):
             number = {thruster: int(_real(part, name)) for thruster, name in names.items()}
-            known = sorted(set(number.values()))
-            return {chr(ord("A") + k): tuple(t for t in thrusters if number[t] == k) for k in known}
+            numbers = sorted(set(number.values()))
+            return {
+                chr(ord("A") + k): tuple(t for t in thrusters if number[t] == k) for k in numbers
+            }
     return {}
 
 
@@ -224,11 +226,11 @@ def _problems(
     needed["thrust_max"] = ("thrust_ahead", "N")
     for parameter, (key, of) in needed.items():
         if not values[key] and parameter not in unit.variables:
-            found = f"nothing says {key} [{of}]."
-            yield Problem(where, found, f"The parameter set has none of {name}.")
+            message = f"nothing says {key} [{of}]."
+            yield Problem(where, message, f"The parameter set has none of {name}.")
 
 
-def _thruster(unit: Component, own: ThrusterParticulars, hull: Hull) -> Thruster:
+def _thruster(unit: Component, particulars: ThrusterParticulars, hull: Hull) -> Thruster:
     """A thruster with its nominal thrust."""
     # The kind follows from the FMU: no azimuth is a tunnel, a rate of azimuth turns, else it is
     # fixed.
@@ -242,20 +244,21 @@ def _thruster(unit: Component, own: ThrusterParticulars, hull: Hull) -> Thruster
         if unit.start_value("azimuth_rate")
         else "fixed"
     )
-    diameter = own.diameter or _real(unit, "diameter")
-    power = own.power or _real(unit, "power_max")
-    ducted = own.propeller == "ducted" and kind != "tunnel"
+    diameter = particulars.diameter or _real(unit, "diameter")
+    power = particulars.power or _real(unit, "power_max")
+    ducted = particulars.propeller == "ducted" and kind != "tunnel"
     # Factors of Level 1: by propeller (eta 1), by inlet or running astern (eta 2), by transmission
     # (eta M).
-    eta_1 = ETA_1["tunnel" if kind == "tunnel" else own.propeller]
+    eta_1 = ETA_1["tunnel" if kind == "tunnel" else particulars.propeller]
     eta_2 = (
-        (ETA_2_INLET[own.inlet],) * 2
+        (ETA_2_INLET[particulars.inlet],) * 2
         if kind == "tunnel"
-        else (1.0, ETA_2_ASTERN[own.pitch, ducted])
+        else (1.0, ETA_2_ASTERN[particulars.pitch, ducted])
     )
     # A tunnel's thrust is the same both ways; others lose thrust astern.
     ahead, astern = (
-        nominal_thrust(diameter, power, eta_1, eta, ETA_M[own.transmission]) for eta in eta_2
+        nominal_thrust(diameter, power, eta_1, eta, ETA_M[particulars.transmission])
+        for eta in eta_2
     )
     # A fixed thruster points along its direction, or where its azimuth input starts.
     angles = {"tunnel": 0.5 * math.pi, "azimuth": 0.0}
@@ -266,7 +269,7 @@ def _thruster(unit: Component, own: ThrusterParticulars, hull: Hull) -> Thruster
         x=_real(unit, "x"),
         y=_real(unit, "y") if "y" in has else 0.0,
         diameter=diameter,
-        submergence=hull.draught - own.shaft_height,
+        submergence=hull.draught - particulars.shaft_height,
         power=power,
         ducted=ducted,
         ahead=ahead,

@@ -35,13 +35,13 @@ def _refuse_unusable(arguments: list[str]) -> None:
     As a path an empty one would be the working folder. No page or table can hold a name that is no text.
     """
     for place, argument in enumerate(arguments, start=1):
-        found = ""
+        message = ""
         if re.fullmatch(r"(--[\w-]+=)?", argument):
-            found = "is empty. Give it a value; is a variable of the shell not set?"
+            message = "is empty. Give it a value; is a variable of the shell not set?"
         elif any("\ud800" <= sign <= "\udfff" for sign in argument):
-            found = "is no text in UTF-8. Rename the file."
-        if found:
-            sys.stderr.write(f"error: argument {place} of the command:\n{found}\n")
+            message = "is no text in UTF-8. Rename the file."
+        if message:
+            sys.stderr.write(f"error: argument {place} of the command:\n{message}\n")
             sys.exit(2)
 
 

@@ -49,11 +49,11 @@ def build_named(
     systems = {
         f.parent.name: f.parent for f in sorted((project / "ssp").glob("*/SystemStructure.ssd"))
     }
-    known = [*sources, *systems]
+    choices = [*sources, *systems]
     problems = [
-        Problem(n, "There is no such FMU or system.", suggestion(n, known))
+        Problem(n, "There is no such FMU or system.", suggestion(n, choices))
         for n in names
-        if n not in known
+        if n not in choices
     ]
     fmus = out / "fmus"
     jobs = [(build_fmu, path, fmus) for name, path in sources.items() if not names or name in names]
@@ -114,7 +114,7 @@ def build_native(
     jobs = {name: path for name, path in sources.items() if not names or name in names}
     examples = _parameters_in_systems(project) if jobs else {}
     # Recording takes one core, so each core has a process.
-    found = {}
+    results = {}
     with temporary_folder() as folder:
         pool = new_pool(folder)
         try:
@@ -123,7 +123,7 @@ def build_native(
                 for name, path in jobs.items()
             }
             for done, future in enumerate(as_completed(futures), start=1):
-                found[futures[future]] = future.result()
+                results[futures[future]] = future.result()
                 if progress:
                     progress(done, len(jobs))
         finally:
@@ -131,7 +131,7 @@ def build_native(
     built = []
     left = []
     for name in jobs:
-        path, reason, others = found[name]
+        path, reason, others = results[name]
         problems += others
         if path:
             built.append(path)
@@ -157,7 +157,7 @@ def _parameters_in_systems(project: Path) -> dict[str, list[dict[str, Any]]]:
 
     An FMU that is in no system has what all components of a system have together, by the names of parameters.
     """
-    found: dict[str, list[dict[str, Any]]] = {}
+    sets: dict[str, list[dict[str, Any]]] = {}
     together: list[dict[str, Any]] = []
     folders = library.fmus(project)
     for path in library.names("system", project).values():
@@ -173,9 +173,9 @@ def _parameters_in_systems(project: Path) -> dict[str, list[dict[str, Any]]]:
                 for name, value in component.start.items()
                 if kinds[name].causality == "parameter"
             }
-            found.setdefault(component.fmu.path.stem, []).append(given)
+            sets.setdefault(component.fmu.path.stem, []).append(given)
             together[-1] = given | together[-1]
-    return {name: found.get(name, together) for name in library.fmu_sources(project)}
+    return {name: sets.get(name, together) for name in library.fmu_sources(project)}
 
 
 def _pack(folder: Path, out: Path) -> Path:

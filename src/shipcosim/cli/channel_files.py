@@ -67,8 +67,10 @@ def proposed(
     ship = ship_model_of(Reading().system(system or SYSTEM_OF_LOGS, "system"))
     thrusters = {name: ship.drives(name) for name in ship.thrusters}
     proposal = propose(columns, thrusters, given)
-    if own := channels_of_run(list(columns.values), ship.vessel, ship.thrusters):
-        used = tuple(Guess(channel.column, role, channel, SURE) for role, channel in own.items())
+    if run_channels := channels_of_run(list(columns.values), ship.vessel, ship.thrusters):
+        used = tuple(
+            Guess(channel.column, role, channel, SURE) for role, channel in run_channels.items()
+        )
         rest = [name for name in columns.values if name not in {guess.column for guess in used}]
         unused = tuple(Guess(name, why="another signal of the run") for name in rest)
         proposal = replace(proposal, used=used, unused=unused)
@@ -76,9 +78,9 @@ def proposed(
     try:
         mapping = ChannelFile(proposal.channels(guessed=True), given)
         remarks += [
-            said
-            for said in read_log(log, mapping, thrusters).attrs["column_remarks"]
-            if said not in remarks
+            remark
+            for remark in read_log(log, mapping, thrusters).attrs["column_remarks"]
+            if remark not in remarks
         ]
     except ShipcosimError as error:
         remarks += [
@@ -96,15 +98,15 @@ def print_channels(proposed: ProposedFile) -> None:
     rows = []
     for guess in proposed.proposal.used:
         sure = Text("guess", style="yellow") if guess.is_guess else Text("used", style="green")
-        why = "; ".join(filter(None, (guess.why, *guess.said))) or "its name has one meaning"
+        why = "; ".join(filter(None, (guess.why, *guess.notes))) or "its name has one meaning"
         columns = " + ".join(guess.channel.columns)
         rows.append((columns, guess.role, sure, f"{guess.in_unit}{why}"))
     for guess in proposed.proposal.unused:
         rows.append((guess.column, "-", Text("not used", style="dim"), guess.why))
     console = make_console(soft_wrap=True)
     print_table(console, rows, ("column", "is", "", "because"))
-    for said in proposed.remarks:
-        console.print(Text(said, style="yellow"))
+    for remark in proposed.remarks:
+        console.print(Text(remark, style="yellow"))
 
 
 def print_isolability(log: Path, system: str | None, channels: Path | None) -> None:
@@ -122,8 +124,8 @@ def print_isolability(log: Path, system: str | None, channels: Path | None) -> N
 
     words = {True: Text("yes", style="green"), False: Text("no", style="yellow")}
     rows = [
-        (one.label, words[one.is_seen], ", ".join(one.alike) or "-")
-        for one in isolability(log, system, channels)
+        (cause.label, words[cause.is_seen], ", ".join(cause.alike) or "-")
+        for cause in isolability(log, system, channels)
     ]
     console = make_console(soft_wrap=True)
     if rows:

@@ -12,12 +12,12 @@ from shipcosim.results.studies import EngineComparison
 def not_compared() -> list[str]:
     """What a comparison will not do, known before anything runs: engines that are not installed."""
     missing = engines_missing()
-    said = [f"{name} is not compared: {problem}" for name, problem in missing.items()]
+    lines = [f"{name} is not compared: {problem}" for name, problem in missing.items()]
     if len(missing) == len(ENGINES) - len(OWN):
-        said.append(
+        lines.append(
             "No other engine is installed: what follows is the step-size error of ours alone."
         )
-    return said
+    return lines
 
 
 def print_comparison(comparison: EngineComparison) -> None:

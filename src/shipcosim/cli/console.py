@@ -108,7 +108,7 @@ def print_summary(result: Run, page: Path, *, to_stderr: bool = False) -> None:
         print_table(console, predicted, ("predicted", "position", "heading", ""))
     if "profile" in result.table.attrs:
         spent = rows_of(str(result.table.attrs["profile"]))
-        rows = [(name, *(f"{one:.3f}" for one in seconds)) for name, seconds in spent]
+        rows = [(name, *(f"{duration:.3f}" for duration in seconds)) for name, seconds in spent]
         print_table(console, rows, ("seconds", *PHASES))
     before = {str(remark) for remark in result.remarks}  # these were printed before the run
     for remark in remarks:
@@ -126,8 +126,8 @@ def print_overview(outcome: Outcome, rows: Iterable[tuple[str, Outcome]], page: 
     """How several scenarios went: one line each, then all together, and where the page is."""
     console = make_console(soft_wrap=True)
     listed = [
-        (Text(one.word, style=VERDICTS.get(one.kind, "bold")), name, one.sentence)
-        for name, one in rows
+        (Text(result.word, style=VERDICTS.get(result.kind, "bold")), name, result.sentence)
+        for name, result in rows
     ]
     print_table(console, listed, ("", "scenario", ""))
     say_outcome(console, outcome)
@@ -196,19 +196,19 @@ def print_report(checked: CheckedFiles) -> None:
     console = make_console(soft_wrap=True)
     for file, problems in checked.files.items():
         # What must be mended stands first, what is only to be known takes a line.
-        for problem in sorted(worth_showing(problems), key=lambda one: not one.is_error):
+        for problem in sorted(worth_showing(problems), key=lambda each: not each.is_error):
             block = _block(problem)
             console.print(block if problem.is_error else Text(" ").join(block.split("\n")))
         errors = sum(problem.is_error for problem in problems)
         remarks = len(problems) - errors
         if errors:
-            said = f"{errors} error{'s' * (errors > 1)}"
+            message = f"{errors} error{'s' * (errors > 1)}"
         elif remarks:
-            said = f"no error, {remarks} remark{'s' * (remarks > 1)}"
+            message = f"no error, {remarks} remark{'s' * (remarks > 1)}"
         else:
             is_fmu = file.lower().endswith(".fmu")
-            said = "nothing wrong" + is_fmu * " in its description; its binaries were not loaded"
-        console.print(Text(f"{file}: {said}"))
+            message = "nothing wrong" + is_fmu * " in its description; its binaries were not loaded"
+        console.print(Text(f"{file}: {message}"))
     for variables in checked.variables.values():
         print_variables(variables)
     for estimates in checked.estimates.values():

@@ -66,8 +66,8 @@ def answers_from(
         answers.description = _asked("What is she, in a line", name)
     answers.description = answers.description or name
     if ask and given["layout"] is None and not answers.thrusters:
-        for layout, said in LAYOUTS.items():
-            say(f"  {layout}: {said}")
+        for layout, description in LAYOUTS.items():
+            say(f"  {layout}: {description}")
         answers.layout = _asked("Propulsion", answers.layout)
         while answers.layout not in LAYOUTS:
             answers.layout = _asked("Propulsion", "azimuths")
@@ -96,8 +96,8 @@ def _answer(answers: Answers, key: str, question: str, ask: bool) -> None:
     except ValueError:
         return  # a wrong length is reported with the rest
     while ask:
-        said = _asked(question, str(proposed))
-        setattr(answers, key, proposed if said == proposed else said)
+        answer = _asked(question, str(proposed))
+        setattr(answers, key, proposed if answer == proposed else answer)
         try:
             usual(answers, "power")
             return
@@ -139,8 +139,8 @@ def make(name: str, origin: Path | None, answers: Answers | None, force: bool) -
         text = source.read_text(encoding="utf-8-sig") if origin and source.is_file() else ""
     text = text if answers is None else ship_text(answers)
     ship = describe(source, read_file(source) if answers is None else file_from(text, target))
-    found = check_described(ship)
-    raise_errors(found)
+    problems = check_described(ship)
+    raise_errors(problems)
     named = ship if ship.name == name else replace(ship, name=name)
     with temporary_folder() as folder:
         stage = Path(folder)
@@ -159,18 +159,18 @@ def make(name: str, origin: Path | None, answers: Answers | None, force: bool) -
             files[f"ships/{name}/ship.toml"] = stage / "ship.toml"
             files |= {f"ships/{name}/{table}": source.parent / table for table in _tables(ship)}
         written = _put(project, files, force or again)
-    remarks = [problem for problem in found if problem.severity == "remark"]
+    remarks = [problem for problem in problems if problem.severity == "remark"]
     _say(written, remarks, name, has_dp)
 
 
 def _tables(ship: Described) -> list[str]:
     """CSV files that the ship file names."""
-    said = [
+    tables = [
         ship.file.wind.table,
         ship.file.waves.table,
-        *(getattr(one, "table", None) for one in ship.file.thrusters),
+        *(getattr(thruster, "table", None) for thruster in ship.file.thrusters),
     ]
-    return [table for table in said if isinstance(table, str) and table != "none"]
+    return [table for table in tables if isinstance(table, str) and table != "none"]
 
 
 def _put(project: Path, files: Mapping[str, Path], over: bool) -> list[Path]:
@@ -189,8 +189,8 @@ def _put(project: Path, files: Mapping[str, Path], over: bool) -> list[Path]:
             else:
                 shutil.copyfile(made, path)
         except OSError as error:
-            found = f"cannot be written: {error.strerror or error}."
-            raise error_at(str(path), found) from None
+            message = f"cannot be written: {error.strerror or error}."
+            raise error_at(str(path), message) from None
         written.append(path)
     return written
 
@@ -218,14 +218,14 @@ def _half_ahead(ship: Described) -> list[tuple[str, float]]:
     """Inputs that make her sail ahead, if the limits of her thrusters are known."""
     from shipcosim.ships.file import number
 
-    found = []
-    for unit, one in zip(ship.units, ship.file.thrusters, strict=True):
-        value = unit.screw.rpm if unit.screw else number(getattr(one, "rpm", None), 100.0)
-        if getattr(one, "command", "") == "thrust":
-            found.append((f"{unit.name}_thrust", 0.5 * unit.most if unit.most else 1.0))
+    inputs = []
+    for unit, thruster in zip(ship.units, ship.file.thrusters, strict=True):
+        value = unit.screw.rpm if unit.screw else number(getattr(thruster, "rpm", None), 100.0)
+        if getattr(thruster, "command", "") == "thrust":
+            inputs.append((f"{unit.name}_thrust", 0.5 * unit.most if unit.most else 1.0))
         elif unit.kind in ("fixed", "rudder", "azimuth"):
-            found.append((f"{unit.name}_rpm", 0.5 * value))
-    return found
+            inputs.append((f"{unit.name}_rpm", 0.5 * value))
+    return inputs
 
 
 def _say(written: list[Path], remarks: list[Problem], name: str, has_dp: bool) -> None:

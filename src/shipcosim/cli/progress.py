@@ -60,8 +60,8 @@ class Course:
     def left(self) -> float:
         """Time until the end; 0 where it should have come already. [s]"""
         passed = self._at - self._start
-        known = CONFIDENCE * self._whole
-        pace = (passed + known) / (self.share * self._whole + known)
+        weight = CONFIDENCE * self._whole
+        pace = (passed + weight) / (self.share * self._whole + weight)
         return max((1.0 - self.share) * self._whole * pace - (self._clock() - self._at), 0.0)
 
 
@@ -128,7 +128,7 @@ def shown_progress(steps: Mapping[str, float]) -> Iterator[Callable[..., None]]:
     }
     console = make_console(stderr=True, highlight=True)
     course = Course(steps)
-    said = {next(iter(steps))}
+    announced = {next(iter(steps))}
     columns = [
         SpinnerColumn(),
         TextColumn("{task.description}", markup=False),
@@ -142,9 +142,9 @@ def shown_progress(steps: Mapping[str, float]) -> Iterator[Callable[..., None]]:
 
         def show(step, done=None, total=None):
             course.reached(step, done, total)
-            if not console.is_terminal and step not in said:
+            if not console.is_terminal and step not in announced:
                 console.print(numbers.get(step, step), highlight=False)
-            said.add(step)
+            announced.add(step)
             bar.update(task, description=numbers.get(step, step), completed=course.share)
 
         yield show

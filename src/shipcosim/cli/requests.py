@@ -48,19 +48,19 @@ def parsed_components(given: Iterable[str]) -> dict[str, str]:
     ShipcosimError
         If one is none of that.
     """
-    found: dict[str, str] = {}
+    components: dict[str, str] = {}
     problems = []
     for pair in given:
         name, sign, fmu = (part.strip() for part in pair.partition("="))
         if sign and name and fmu:
-            problems += _of_twice("--component", name, found)
-            found[name] = fmu
+            problems += _of_twice("--component", name, components)
+            components[name] = fmu
         else:
             problems.append(
                 Problem("--component", f"'{pair}' swaps nothing.", "Right would be component=FMU.")
             )
     raise_errors(problems)
-    return found
+    return components
 
 
 def _of_twice(option: str, name: str, given: Mapping[str, Any]) -> list[Problem]:

@@ -39,14 +39,14 @@ def concluded(prepared: PreparedRun, out: Path, force: bool = False) -> Conclusi
     return Conclusion(result.name, result, lambda: print_run(result, out), out)
 
 
-def prepare_folder(files: Mapping[str, Path], asked: Mapping[str, Any]) -> dict[str, PreparedRun]:
+def prepare_folder(files: Mapping[str, Path], options: Mapping[str, Any]) -> dict[str, PreparedRun]:
     """Read and check scenarios, all before the first one runs.
 
     Parameters
     ----------
     files : mapping of str to Path
         By the names of the scenarios in their folder.
-    asked : mapping of str to object
+    options : mapping of str to object
         Keywords of `shipcosim.calls.runs.prepare_run`.
 
     Raises
@@ -60,7 +60,7 @@ def prepare_folder(files: Mapping[str, Path], asked: Mapping[str, Any]) -> dict[
     problems = []
     for name, file in files.items():
         try:
-            prepared[name] = prepare_run(file, **asked)
+            prepared[name] = prepare_run(file, **options)
         except ShipcosimError as error:
             problems += error.problems
     raise_errors(problems)
@@ -91,11 +91,11 @@ def run_folder(
     for key, planned in prepared.items():
         runs[key] = run_with_progress(planned, out / key, force)
         print_run(runs[key], out / key)
-    found = ScenarioRuns(name, runs)
-    found.save(out)
-    rows = [(row.name, row.digest.outcome) for row in found.rows]
+    finished = ScenarioRuns(name, runs)
+    finished.save(out)
+    rows = [(row.name, row.digest.outcome) for row in finished.rows]
     return Conclusion(
-        name, found, lambda: print_overview(found.outcome, rows, out / "report.html"), out
+        name, finished, lambda: print_overview(finished.outcome, rows, out / "report.html"), out
     )
 
 

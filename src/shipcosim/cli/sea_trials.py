@@ -12,10 +12,10 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
 
 
-def print_study(found: SeaTrialStudy, folder: Path) -> None:
+def print_study(study: SeaTrialStudy, folder: Path) -> None:
     """Print the result of sea trials."""
     from shipcosim.report.sea_trials.words import blocks, outcome, trials
 
-    say(trials(found))
-    print_found(outcome(found), blocks(found), folder / "report.html")
+    say(trials(study))
+    print_found(outcome(study), blocks(study), folder / "report.html")
     say(f"Numbers: {shown_path(folder / 'sea_trials.json')}")

@@ -31,7 +31,7 @@ def make_console(*, stderr: bool = False, **options: Any) -> Console:
 
     class MakePrintable(RenderHook):
         def process_renderables(self, renderables):
-            return [Printable(one) for one in renderables]
+            return [Printable(renderable) for renderable in renderables]
 
     # Names of files and components may look like markup or emoji of rich: they stay text.
     plain = {"highlight": False, "markup": False, "emoji": False}
@@ -49,4 +49,4 @@ def say_json(content: object) -> None:
     """Print as JSON on stdout."""
     text = json.dumps(content, indent=2, ensure_ascii=False)
     # JSON has escapes of its own for characters that control a terminal.
-    typer.echo(CONTROLS.sub(lambda found: json.dumps(found[0])[1:-1], text))
+    typer.echo(CONTROLS.sub(lambda match: json.dumps(match[0])[1:-1], text))

@@ -57,8 +57,8 @@ class Signal:
     @property
     def worst(self) -> float:
         """Largest relative difference between engines; infinite where a value is NaN."""
-        found = [difference.relative for difference in self.engines.values()]
-        return max((np.inf if np.isnan(value) else value for value in found), default=0.0)
+        largest = [difference.relative for difference in self.engines.values()]
+        return max((np.inf if np.isnan(value) else value for value in largest), default=0.0)
 
 
 @dataclass(frozen=True)
@@ -147,12 +147,12 @@ def compare(
             # Only a run that started counts as failed; an engine that refuses the system does not.
             failed += [name] if isinstance(error, RunError) else []
     # Without another engine report all signals, else those that some engine returns.
-    known = [
+    compared = [
         name
         for name in ours.data_vars
         if not tables or any(name in table for table in tables.values())
     ]
-    signals = [_signal(name, ours, tables, half, tolerance) for name in known]
+    signals = [_signal(name, ours, tables, half, tolerance) for name in compared]
     # First from the tables alone: the simplest relation between ours and theirs.
     remarks = {
         name: explained(ours, table, scenario.step_size, tolerance)
@@ -163,10 +163,10 @@ def compare(
     for name in [name for name in tables if remarks[name]]:
         if taken is None:
             break
-        found, causes = _explained_by_reading(
+        reading_remarks, causes = _explained_by_reading(
             name, taken(name), ours, tables[name], scenario, tolerance
         )
-        remarks[name] = [remarks[name][0], *found] if found else remarks[name]
+        remarks[name] = [remarks[name][0], *reading_remarks] if reading_remarks else remarks[name]
         signals = [_with_cause(signal, name, causes) for signal in signals]
     # The worst signal first, then the one with the largest step-size error.
     signals.sort(
@@ -177,8 +177,8 @@ def compare(
 
 
 def _with_cause(signal, engine, causes):
-    found = causes.get(signal.name)
-    return signal if found is None else replace(signal, causes={**signal.causes, engine: found})
+    cause = causes.get(signal.name)
+    return signal if cause is None else replace(signal, causes={**signal.causes, engine: cause})
 
 
 def _explained_by_reading(host, taken, ours, theirs, scenario, tolerance):
@@ -215,8 +215,10 @@ def halved(system: System, scenario: Scenario) -> tuple[System, Scenario]:
     """System and scenario with half of all steps, those of components' own too, and a row at every whole step."""
     step = scenario.step_size
     components = {
-        name: replace(one, step_size=one.step_size / 2.0) if one.step_size else one
-        for name, one in system.components.items()
+        name: replace(component, step_size=component.step_size / 2.0)
+        if component.step_size
+        else component
+        for name, component in system.components.items()
     }
     return replace(system, components=components), scenario.model_copy(
         update={"step_size": step / 2.0, "output_interval": step}

@@ -54,11 +54,11 @@ def row_signals(plan: Plan, kind: str) -> list[str]:
 
 def start_values_of(plan: Plan) -> list[StartValue]:
     """All start values, in the order in which the FMUs get them."""
-    found = []
+    values = []
     for component in plan.system.components.values():
         for name, value in component.start.items():
             variable = component.fmu.variables[name]
             kind = "String" if isinstance(value, str) else plan.kind(variable) or ""
             signal = label((component.name, name))
-            found.append(StartValue(len(found), signal, value, variable.unit or "", kind))
-    return found
+            values.append(StartValue(len(values), signal, value, variable.unit or "", kind))
+    return values

@@ -58,7 +58,7 @@ def rows_of(profile: str) -> list[tuple[str, list[float]]]:
     profile : str
         The attribute of a table.
     """
-    found: dict[str, list[float]] = {}
+    by_component: dict[str, list[float]] = {}
     for component, phase, seconds in json.loads(profile):
-        found.setdefault(component, [0.0] * len(PHASES))[PHASES.index(phase)] += seconds
-    return sorted(found.items(), key=lambda row: -sum(row[1]))
+        by_component.setdefault(component, [0.0] * len(PHASES))[PHASES.index(phase)] += seconds
+    return sorted(by_component.items(), key=lambda row: -sum(row[1]))

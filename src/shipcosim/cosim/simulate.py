@@ -72,8 +72,8 @@ def simulate(
     odd = [str(remark) for remark in odd_values(scenario, system)]
     # Other engines would ignore these options, so refuse them.
     if options.engine not in OWN and (unknown := options.changed(OWN_OPTIONS)):
-        found = f"It does not know {', '.join(unknown)}."
-        raise error_at(f"engine '{options.engine}'", found, "The engines 'fmpy' and 'native' do.")
+        message = f"It does not know {', '.join(unknown)}."
+        raise error_at(f"engine '{options.engine}'", message, "The engines 'fmpy' and 'native' do.")
     table = ENGINES[options.engine](system, numbers, options)
     return table.assign_attrs(
         remarks=json.dumps([*odd, *json.loads(table.attrs.get("remarks", "[]"))])

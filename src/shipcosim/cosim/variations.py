@@ -127,14 +127,14 @@ def simulate_many(
             if options.progress is not None:
                 options.progress(n, len(variations))
     # Single failures are part of the result. If all fail, the input is probably wrong.
-    if variations and all(one.error for one in done):
+    if variations and all(run.error for run in done):
         raise ShipcosimError(f"All {len(done)} variations fail, the first with: {done[0].error}")
-    known = attributes_of(system, scenario) | {
+    attributes = attributes_of(system, scenario) | {
         "start_time": options.start_time,
         "engine": options.engine,
     }
-    remarks = dict.fromkeys(text for one in done for text in one.remarks)
-    return _dataset(variations, done, known | {"remarks": json.dumps(list(remarks))})
+    remarks = dict.fromkeys(text for run in done for text in run.remarks)
+    return _dataset(variations, done, attributes | {"remarks": json.dumps(list(remarks))})
 
 
 class _Runs:
@@ -164,8 +164,8 @@ class _Runs:
         """Raise ShipcosimError if names or times of a variation do not fit the system."""
         for name in variation.values:
             self._system.split(name, "variation")
-        found = check_scenario(variation.scenario, self._system, self._options.start_time)
-        raise_errors(found)
+        problems = check_scenario(variation.scenario, self._system, self._options.start_time)
+        raise_errors(problems)
         time_grid_of(variation.scenario, self._options.start_time)
 
     def run(self, variation: Variation, slaves: _Source) -> Done:
@@ -205,8 +205,8 @@ class _Runs:
                 for name, values, unit, text in columns
             }
         elif not error:
-            found = self._reduce(self._table(simulation.row_times, columns))
-            parts = found if isinstance(found, Mapping) else {"reduced": found}
+            reduced = self._reduce(self._table(simulation.row_times, columns))
+            parts = reduced if isinstance(reduced, Mapping) else {"reduced": reduced}
             arrays = {str(name): np.asarray(value) for name, value in parts.items()}
             done.kept = {
                 name: (tuple(f"{name}_{axis}" for axis in range(values.ndim)), values, {})
@@ -255,7 +255,7 @@ def _in_threads(
     for source in sources:
         free.put(source)
 
-    def one(number):
+    def run_number(number):
         source = free.get()
         try:
             return number, run(variations[number], source)
@@ -263,10 +263,10 @@ def _in_threads(
             free.put(source)
 
     numbers = range(len(variations))
-    yield from map(one, numbers[:1] if len(sources) > 1 else numbers)
+    yield from map(run_number, numbers[:1] if len(sources) > 1 else numbers)
     if len(sources) > 1:
         with ThreadPoolExecutor(len(sources)) as pool:
-            futures = [pool.submit(one, number) for number in numbers[1:]]
+            futures = [pool.submit(run_number, number) for number in numbers[1:]]
             try:
                 # In order of completion, so that progress moves on. After an error the waiting runs
                 # are dropped.
@@ -291,18 +291,18 @@ def _dataset(variations, done, attributes) -> xarray.Dataset:
     import xarray
 
     # Failed runs have fewer rows; the longest run gives the time axis.
-    times = max((one.times for one in done), key=len, default=np.empty(0))
-    names = dict.fromkeys(name for one in done for name in one.kept)
+    times = max((run.times for run in done), key=len, default=np.empty(0))
+    names = dict.fromkeys(name for run in done for name in run.kept)
     data = {}
     for name in names:
-        dimensions, _, about = next(one.kept[name] for one in done if name in one.kept)
+        dimensions, _, about = next(run.kept[name] for run in done if name in run.kept)
         data[name] = (
             ("variation", *dimensions),
-            _stacked([one.kept.pop(name, None) for one in done]),
+            _stacked([run.kept.pop(name, None) for run in done]),
             about,
         )
     coordinates: dict[str, Any] = {
-        "error": ("variation", np.array([one.error for one in done], dtype=str))
+        "error": ("variation", np.array([run.error for run in done], dtype=str))
     }
     if any(dimensions[1:2] == ("time",) for dimensions, *_ in data.values()):
         coordinates["time"] = ("time", times, {"units": "s", "long_name": "time"})
@@ -318,11 +318,11 @@ def _dataset(variations, done, attributes) -> xarray.Dataset:
 def _stacked(parts) -> np.ndarray:
     """(variations, ...) array; NaN where a run has no value, for example after a failure."""
     arrays = [None if part is None else part[1] for part in parts]
-    known = [array for array in arrays if array is not None]
-    shape = max((array.shape for array in known), default=())
+    present = [array for array in arrays if array is not None]
+    shape = max((array.shape for array in present), default=())
     # The usual case: all runs complete. Otherwise fill up with NaN.
-    if len(known) == len(arrays) and all(array.shape == shape for array in known):
-        return np.stack(known)
+    if len(present) == len(arrays) and all(array.shape == shape for array in present):
+        return np.stack(present)
     stacked = np.full((len(arrays), *shape), np.nan)
     for row, array in zip(stacked, arrays, strict=True):
         if array is not None:

@@ -101,7 +101,11 @@ class CalibratedShip:
     def untold(self) -> tuple[KnownNumber, ...]:
         """Numbers on which the logs have almost no information."""
         scale = self.reference.tolerance_scale
-        return tuple(one for one in self.reference.numbers if one.std > 0.8 * scale * one.tolerance)
+        return tuple(
+            number
+            for number in self.reference.numbers
+            if number.std > 0.8 * scale * number.tolerance
+        )
 
 
 def steps_of(logs: Sequence[LogSource]) -> dict[str, float]:
@@ -158,14 +162,18 @@ def calibrate(
     with threadpool_limits(1):
         problems = problems_of(logs, given, channels, causes, say)
         # Faults of the logs first; logs that may be misread make no reference. A guessed ship shows none by her response.
-        found = problems if is_assumed else {n: corrected(one) for n, one in problems.items()}
-        _check_usable(found)
+        identified = (
+            problems if is_assumed else {n: corrected(problem) for n, problem in problems.items()}
+        )
+        _check_usable(identified)
         # A craft far from the file's is learned by regression instead.
-        if is_assumed or any(one.comparison.started_craft for one in found.values()):
+        if is_assumed or any(problem.comparison.started_craft for problem in identified.values()):
             say("fitting the ship's numbers")
-            return _calibrated_craft(found, given, out, is_assumed)
+            return _calibrated_craft(identified, given, out, is_assumed)
         # Fit all logs together: common numbers of the ship, weather by log.
-        several = SeveralLogs({name: one.problem for name, one in found.items()}, is_well=True)
+        several = SeveralLogs(
+            {name: problem.problem for name, problem in identified.items()}, is_well=True
+        )
         say("fitting the ship's numbers")
         fitted = calibrated_to(several)
         # Look for causes that the fit may have absorbed: beside it, and in each log by itself.
@@ -174,17 +182,21 @@ def calibrate(
         named = {name: _named_in(problem) for name, problem in problems.items()}
         say("what does the calibrated ship get wrong?")
         errors = remaining_errors(fitted)
-    ship = next(iter(found.values())).ship
+    ship = next(iter(identified.values())).ship
     # Unmodelled errors that such logs have anyway: later logs must exceed them.
     ordinary = {
-        kind: max(one[kind] for one in fitted.unmodelled.values()) for kind in _KINDS_OF_THE_LOG
+        kind: max(gains[kind] for gains in fitted.unmodelled.values()) for kind in _KINDS_OF_THE_LOG
     }
-    reference = reference_of(fitted, ship, ordinary, _reference_logs(found), given.name)
+    reference = reference_of(fitted, ship, ordinary, _reference_logs(identified), given.name)
     each = tuple(
         CalibratedLog(
-            name, one.faults, _weather(fitted.fit, name), errors[name], fitted.unmodelled[name]
+            name,
+            identification.faults,
+            _weather(fitted.fit, name),
+            errors[name],
+            fitted.unmodelled[name],
         )
-        for name, one in found.items()
+        for name, identification in identified.items()
     )
     # A reference is only written if nothing speaks against it.
     refusals, remarks = _judged(reference, fitted, suspects)
@@ -193,7 +205,7 @@ def calibrate(
 
 
 def _calibrated_craft(
-    found: Mapping[str, Identification], given: System, out: AnyPath | None, is_assumed: bool
+    identified: Mapping[str, Identification], given: System, out: AnyPath | None, is_assumed: bool
 ) -> CalibratedShip:
     """A craft that is not the file's by far, as the logs teach her; refused where she predicts no better.
 
@@ -202,9 +214,12 @@ def _calibrated_craft(
     ShipcosimError
         Where she predicts logs, or parts of a single one, that were held out no better than the system for sure.
     """
-    first = next(iter(found.values()))
+    first = next(iter(identified.values()))
     ship = first.comparison.given(first.ship)
-    compared = [(one.repaired, one.comparison) for one in found.values()]
+    compared = [
+        (identification.repaired, identification.comparison)
+        for identification in identified.values()
+    ]
     if is_assumed:
         craft, what = surely_taught(compared, ship)
         right = ""
@@ -213,35 +228,35 @@ def _calibrated_craft(
         what = "Numbers learned from the others do not clearly predict a log, or a part of it, better than the system."
         right = "Give more logs, with turns and with thrust ahead and astern."
     if craft is None:
-        raise error_at(", ".join(found), what, right)
-    reference = learned_reference(craft, ship, _reference_logs(found), given.name)
+        raise error_at(", ".join(identified), what, right)
+    reference = learned_reference(craft, ship, _reference_logs(identified), given.name)
     # With several logs each is predicted by what the others taught (cross-validation).
     each = craft.each_without or (craft,)
     logs = []
-    for others, (name, one) in zip(each, found.items(), strict=True):
-        model = one.comparison.given(one.problem.model)
-        names = [other for other in found if other != name]
+    for others, (name, problem) in zip(each, identified.items(), strict=True):
+        model = problem.comparison.given(problem.problem.model)
+        names = [other for other in identified if other != name]
         # Predictions by the system, by the craft without this log, and by the craft with all logs.
         models = {"before": model, "after": others.on(model), "floor": craft.on(model)}
-        errors = errors_by_models(one.problem.record, models, names)
-        logs.append(CalibratedLog(name, one.faults, {}, errors, {}))
+        errors = errors_by_models(problem.problem.record, models, names)
+        logs.append(CalibratedLog(name, problem.faults, {}, errors, {}))
     refusals = tuple(_reasons_not_to_trust(logs, {}))
     remark = _ALL_LEARNED if is_assumed else _ANOTHER_CRAFT
     result = CalibratedShip(reference, tuple(logs), refusals, (remark,))
     return _written(result, given, out, is_assumed)
 
 
-def _check_usable(found: dict[str, Identification]) -> None:
+def _check_usable(identified: dict[str, Identification]) -> None:
     """Raise ShipcosimError where a log cannot show a ship that is well, or a system is wrong by far."""
     problems = []
-    for name, one in found.items():
-        for fault in (fault for fault in one.faults if fault.alternatives):
+    for name, identification in identified.items():
+        for fault in (fault for fault in identification.faults if fault.alternatives):
             problems.append(
                 Problem(
                     name, f"{fault.sentence}.", "Correct the channel file, and calibrate again."
                 )
             )
-        comparison = one.comparison
+        comparison = identification.comparison
         problems += [Problem(name, why) for why in comparison.obstacles]
     if problems:
         raise ShipcosimError(problems)
@@ -273,28 +288,30 @@ def problems_of(
     reference: Reference | None = None,
 ) -> dict[str, Identification]:
     """Several logs by their names, each as an identification problem; all that cannot be used is reported at once."""
-    found = {}
+    identified = {}
     problems = []
     names = log_names(logs)
     for done, (name, log) in enumerate(zip(names, logs, strict=True)):
         if progress:
             progress(READING, done, len(names))
         try:
-            found[name] = problem_of(read_measurements(log, system, channels, causes, reference))
+            identified[name] = problem_of(
+                read_measurements(log, system, channels, causes, reference)
+            )
         except ShipcosimError as error:
             problems += [problem for problem in error.problems if problem not in problems]
     if problems:
         raise ShipcosimError(problems)
-    return found
+    return identified
 
 
-def _reference_logs(found: Mapping[str, Identification]) -> list[ReferenceLog]:
+def _reference_logs(identified: Mapping[str, Identification]) -> list[ReferenceLog]:
     """Entry of a reference on the logs that it was made from."""
     logs = []
-    for name, one in found.items():
-        time = one.log["time"].values
+    for name, identification in identified.items():
+        time = identification.log["time"].values
         span = (float(time[0]), float(time[-1]))
-        sha256 = one.log.encoding.get("sha256", "")
+        sha256 = identification.log.encoding.get("sha256", "")
         logs.append(ReferenceLog(name=name, sha256=sha256, rows=int(time.size), span_s=span))
     return logs
 
@@ -320,9 +337,11 @@ def _weather(fit: JointFit, name: str) -> dict[str, float]:
 
 def _named_in(problem: Identification) -> list[Finding]:
     """Causes in the ship, none of the day's weather, that a diagnosis names in a log."""
-    found = causes_in(problem, problem.ship, lambda *_: None)
-    of_day = {one.label for one in problem.problem.hypotheses if is_of_day(one)}
-    return [one for one in found.physics if one.label not in of_day]
+    diagnosis = causes_in(problem, problem.ship, lambda *_: None)
+    of_day = {
+        hypothesis.label for hypothesis in problem.problem.hypotheses if is_of_day(hypothesis)
+    }
+    return [finding for finding in diagnosis.physics if finding.label not in of_day]
 
 
 def _reasons_not_to_trust(
@@ -332,7 +351,7 @@ def _reasons_not_to_trust(
 
     A wide enough tolerance makes a number of the ship out of every cause, so the logs are diagnosed as any others.
     """
-    found = [
+    reasons = [
         f"{name}: a diagnosis of it names {finding.label.replace('_', ' ')} ({100.0 * finding.probability:.0f} %): "
         "the ship was not well. "
         "Diagnose the log, mend the ship or the system, and calibrate on logs without it."
@@ -342,23 +361,23 @@ def _reasons_not_to_trust(
     # Over all logs, each alike, on rows that the numbers were not fitted on.
     errors = [log.errors for log in logs if log.errors]
     if not errors:
-        return found
-    before = root_mean_square(np.array([one.position["before"][-1] for one in errors]))
-    after = root_mean_square(np.array([one.position["after"][-1] for one in errors]))
+        return reasons
+    before = root_mean_square(np.array([error.position["before"][-1] for error in errors]))
+    after = root_mean_square(np.array([error.position["after"][-1] for error in errors]))
     if after > before:
-        found.append(
+        reasons.append(
             f"On rows that it was not fitted on, the calibrated ship misses the log by {after:.2g} m. The ship as the "
             f"system has her misses it by {before:.2g} m. Log more, with larger moves, turns and thrust ahead and astern."
         )
-    return found
+    return reasons
 
 
-def _judged(reference, found, suspects):
+def _judged(reference, calibrated, suspects):
     """Reasons why these logs make no reference, and remarks on the reference that they make."""
     refusals = []
     remarks = []
     # Unbounded moves of the numbers, to compare with the bounded estimates.
-    names, _, by, _ = numbers_of(found.fit)
+    names, _, by, _ = numbers_of(calibrated.fit)
     moved = dict(zip(names, by, strict=True))
     # Causes that still gain beside the calibrated ship.
     for label, gain in suspects.items():
@@ -385,7 +404,7 @@ def _judged(reference, found, suspects):
             remarks.append(
                 f"{number.name} is {off:.1f} of its tolerances off: is its value right, and the tolerance?"
             )
-    for name, kinds in found.unmodelled.items():
+    for name, kinds in calibrated.unmodelled.items():
         for kind, gain in kinds.items():
             if gain > NOT_WELL:
                 refusals.append(
@@ -396,7 +415,7 @@ def _judged(reference, found, suspects):
             f"It takes {reference.tolerance_scale:g} times the stated tolerances to explain the logs. The ship is of "
             "another form than the model, or her numbers are less well known than the system says."
         )
-    if reference.form_scale > 0.0 and found.form_gain < FORM_COST:
+    if reference.form_scale > 0.0 and calibrated.form_gain < FORM_COST:
         remarks.append(
             "These logs do not tell whether her loads have the form of the model's. Drag along the hull, wind over the "
             "angle, damping and added mass stay as uncertain as is usual. A log with moves, turns and thrust both ways "

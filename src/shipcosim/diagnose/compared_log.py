@@ -14,7 +14,7 @@ from shipcosim.diagnose.comparison.errors import errors_of, errors_over_none
 from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio, common_ratio, gains_of
 from shipcosim.diagnose.comparison.label_hypotheses import LabelError
 from shipcosim.diagnose.comparison.labels import Labels, read_labels
-from shipcosim.diagnose.comparison.measured_force import felt_by
+from shipcosim.diagnose.comparison.measured_force import measured_force_of
 from shipcosim.diagnose.comparison.missing_loads import MissingLoad, missing_loads
 from shipcosim.diagnose.comparison.thresholds import FEWEST_USABLE, GROSS, PLAIN, RESOLVED
 from shipcosim.diagnose.craft.learn import learn
@@ -44,7 +44,7 @@ LEARNED = (
 
 @dataclass(frozen=True)
 class LogComparison:
-    """Simulated against measured, and commanded against felt.
+    """Simulated against measured, and commanded against measured force.
 
     Attributes
     ----------
@@ -90,8 +90,10 @@ class LogComparison:
         tolerances no error is.
         """
         if verdict == "consistent":
-            errors = [one.discrepancy for one in self.missing]
-            return tuple(one for one in self.discrepancies if one not in errors)
+            errors = [load.discrepancy for load in self.missing]
+            return tuple(
+                discrepancy for discrepancy in self.discrepancies if discrepancy not in errors
+            )
         if self.discrepancies or verdict != "unknown" or not self.missing:
             return self.discrepancies
         return (self.missing[0].discrepancy,)
@@ -106,9 +108,9 @@ class LogComparison:
         ratio = self.ratio
         if self.craft is None or ratio is None or not ratio.differs(PLAIN):
             return ()
-        known = self.craft.thrust
-        if known is not None:
-            return ratio_findings(known.value, known.std, causes)
+        thrust = self.craft.thrust
+        if thrust is not None:
+            return ratio_findings(thrust.value, thrust.std, causes)
         return ratio_findings(ratio.ratio, ratio.std, causes)
 
     def given(self, model: ShipModel) -> ShipModel:
@@ -134,12 +136,12 @@ def compared(log: CheckedLog, is_assumed: bool = False) -> ComparedLog:
     Sides and signs of thrusters that the motion contradicts are faults of the log; a common ratio of thrust to inertia
     that is far off is in the ship from here on. Where all numbers of the ship are guesses, she is learned instead.
     """
-    found = _compared(log)
+    log_compared = _compared(log)
     if is_assumed:
-        return _learned_alone(found)
+        return _learned_alone(log_compared)
     # A ratio far off would bend every later fit: the ship starts with it.
-    ratio = found.comparison.ratio
-    return _started_with_craft(found) if ratio and ratio.differs(GROSS) else found
+    ratio = log_compared.comparison.ratio
+    return _started_with_craft(log_compared) if ratio and ratio.differs(GROSS) else log_compared
 
 
 def _compared(log: CheckedLog) -> ComparedLog:
@@ -149,56 +151,58 @@ def _compared(log: CheckedLog) -> ComparedLog:
     log = replace(log, repaired=in_stretches(log.repaired, length))
     ship = as_logged(log.ship, log.repaired)
     record = record_of(log.repaired, ship)
-    felt = felt_by(record, length)
+    measured = measured_force_of(record, length)
     ship = with_surrogates(ship, record, first_motion(record))
-    errors = errors_of(record, felt, ship)
+    errors = errors_of(record, measured, ship)
     # What to say where rows are too far apart for the ship's answers.
     step = float(np.diff(log.repaired["time"].values[:2])[0])
     most = RESOLVED * froude_time(ship.length)
-    said = f"Rows {step:.3g} s apart do not show this ship's answers: no cause is named. {most:.2g} s would."
-    too_slow = (said,) if step > most else ()
+    message = f"Rows {step:.3g} s apart do not show this ship's answers: no cause is named. {most:.2g} s would."
+    too_slow = (message,) if step > most else ()
     unknown = _unknown_thrusters(log.repaired, ship)
     # Rows that are too few, or too far apart, show no forces.
-    if too_slow or felt.usable.sum() < FEWEST_USABLE:
+    if too_slow or measured.usable.sum() < FEWEST_USABLE:
         return _stage(log, LogComparison(errors, (), obstacles=too_slow + unknown))
     # Loads by the model, and regressions of measured force by axis.
-    commanded = commanded_by(record, felt, ship)
-    axes = axes_of(felt, commanded, ship)
-    over_none = errors_over_none(record, felt, errors)
+    commanded = commanded_by(record, measured, ship)
+    axes = axes_of(measured, commanded, ship)
+    over_none = errors_over_none(record, measured, errors)
     # Unlogged thrusters make every cause uncertain; only large missing forces are reported.
     if unknown:
-        missing = tuple(missing_loads(axes, commanded, felt, ship, over_none))
-        large = tuple(one.discrepancy for one in missing if one.is_large)
+        missing = tuple(missing_loads(axes, commanded, measured, ship, over_none))
+        large = tuple(load.discrepancy for load in missing if load.is_large)
         return _stage(log, LogComparison(errors, large, obstacles=unknown, missing=missing))
     # Labels first, as gains and ratio depend on them.
-    labels = read_labels(record, felt, axes, ship)
+    labels = read_labels(record, measured, axes, ship)
     gains = gains_of(axes, labels.used.commanded, labels.used.ahead)
     ratio = common_ratio(gains)
-    missing = missing_loads(axes, labels.used.commanded, felt, ship, over_none)
-    told = tuple(discrepancies_of(labels, gains, ratio, missing))
-    comparison = LogComparison(errors, told, tuple(gains), labels, ratio, missing=tuple(missing))
-    found = _stage(log, comparison)
+    missing = missing_loads(axes, labels.used.commanded, measured, ship, over_none)
+    discrepancies = tuple(discrepancies_of(labels, gains, ratio, missing))
+    comparison = LogComparison(
+        errors, discrepancies, tuple(gains), labels, ratio, missing=tuple(missing)
+    )
+    staged = _stage(log, comparison)
     if labels.is_sure and labels.best.changes:
         # The log with sides and signs of the thrusters corrected.
         sure = float(1.0 - np.exp(-min(labels.margin, 4.6)))
-        faults = [finding_of(_label(change, found.log), sure) for change in labels.best.changes]
-        faults = (*found.faults, *faults)
-        right = in_stretches(repaired(found.log, faults), found.ship.length)
-        found = replace(found, faults=faults, repaired=right)
-    return found
+        faults = [finding_of(_label(change, staged.log), sure) for change in labels.best.changes]
+        faults = (*staged.faults, *faults)
+        right = in_stretches(repaired(staged.log, faults), staged.ship.length)
+        staged = replace(staged, faults=faults, repaired=right)
+    return staged
 
 
 def _started_with_craft(log: ComparedLog) -> ComparedLog:
     """The ship as the log teaches her, or with the ratio of thrust to inertia alone."""
-    known = with_learned_craft(log.comparison, log.repaired, log.ship)
+    comparison = with_learned_craft(log.comparison, log.repaired, log.ship)
     ratio = log.comparison.ratio
-    craft = known.craft
+    craft = comparison.craft
     if craft is None and ratio is not None:
         craft = ratio_alone(log.ship, ratio.ratio, ratio.std)
     if craft is None:
         return log
-    known = replace(known, craft=craft, is_started_with=True)
-    return replace(log, comparison=known, ship=craft.on(log.ship))
+    comparison = replace(comparison, craft=craft, is_started_with=True)
+    return replace(log, comparison=comparison, ship=craft.on(log.ship))
 
 
 def _learned_alone(log: ComparedLog) -> ComparedLog:
@@ -208,7 +212,7 @@ def _learned_alone(log: ComparedLog) -> ComparedLog:
     if not obstacles:
         craft, why = surely_taught([(log.repaired, log.comparison)], log.ship)
         obstacles = (why,)
-    told = LogComparison(
+    learned_only = LogComparison(
         comparison.errors,
         labels=comparison.labels,
         craft=craft,
@@ -216,7 +220,7 @@ def _learned_alone(log: ComparedLog) -> ComparedLog:
         obstacles=obstacles,
         is_assumed=True,
     )
-    return replace(log, comparison=told, ship=craft.on(log.ship) if craft else log.ship)
+    return replace(log, comparison=learned_only, ship=craft.on(log.ship) if craft else log.ship)
 
 
 def surely_taught(
@@ -297,23 +301,23 @@ def _taught_by(
         record = record_of(log, logged)
         logged = with_surrogates(logged, record, first_motion(record))
         parts.append(craft_log(record, logged, horizons, part, whole=len(logs) > 1))
-    usable = [one for one in parts if one is not None]
+    usable = [part for part in parts if part is not None]
     return learn(usable) if len(usable) == len(logs) else None
 
 
 def _unknown_thrusters(repaired: xarray.Dataset, ship: ShipModel) -> tuple[str, ...]:
     """Remarks on thrusters that a log lacks."""
-    found = []
+    remarks = []
     for name in ship.thrusters:
         lacking = [
             f"{name}_{kind}" for kind in ship.drives(name) if f"{name}_{kind}" not in repaired
         ]
         if lacking:
-            found.append(
+            remarks.append(
                 f"No {' and '.join(lacking)} in the log: what '{name}' does to the ship is not known, and no cause is"
                 " named. Log it; if it stood still, give a column of zeros."
             )
-    return tuple(found)
+    return tuple(remarks)
 
 
 def _stage(log: CheckedLog, comparison: LogComparison) -> ComparedLog:
@@ -324,5 +328,5 @@ def _label(change: LabelError, log: xarray.Dataset):
     """What is wrong with the channels of a change."""
     if len(change.thrusters) == 1:
         return negative(drive_channels(change.thrusters[0], log)[0])
-    one, other = (drive_channels(name, log) for name in change.thrusters)
-    return exchanged(list(zip(one, other, strict=False)))
+    channels, other = (drive_channels(name, log) for name in change.thrusters)
+    return exchanged(list(zip(channels, other, strict=False)))

@@ -135,7 +135,9 @@ class Finding:
         if self.put_right:
             entry["put_right_in"] = list(self.put_right)
         if self.by_log:
-            entry["by_log"] = {name: estimates_as_json(own) for name, own in self.by_log.items()}
+            entry["by_log"] = {
+                name: estimates_as_json(estimates) for name, estimates in self.by_log.items()
+            }
         return entry
 
 
@@ -148,8 +150,8 @@ def log_fault(
     parameters: dict[str, ParameterEstimate] | None = None,
 ) -> Finding:
     """The finding that some channels of a log are wrong, in segments or throughout."""
-    found = Finding(cause, None, "data", probability, parameters or {}, segments, channels)
-    return replace(found, note=note)
+    finding = Finding(cause, None, "data", probability, parameters or {}, segments, channels)
+    return replace(finding, note=note)
 
 
 @dataclass(frozen=True)

@@ -115,31 +115,31 @@ def diagnose_jointly(
     """
     say = progress or (lambda *_: None)
     given, reference, out, folder = prepared_system(system, reference, out)
-    found = find_common_causes(logs, given.given, channels, causes, say, reference)
+    joint = find_common_causes(logs, given.given, channels, causes, say, reference)
     say("extending the system")
     # Causes of the ship go into the system, those of one log's weather do not.
-    of_ship = [one for one in found.findings if one.component not in found.logs]
-    about = {"source": ", ".join(found.logs), "sha256": ""}
-    extended = extended_by(given, of_ship, about, found.causes, out, found.craft)
+    of_ship = [finding for finding in joint.findings if finding.component not in joint.logs]
+    about = {"source": ", ".join(joint.logs), "sha256": ""}
+    extended = extended_by(given, of_ship, about, joint.causes, out, joint.craft)
     errors = {}
     # Each log is predicted with what the other logs say, so that it does not judge its own fit.
-    if found.together:
+    if joint.together:
         errors = errors_by_log(
-            found.together.verdict.fit,
-            found.together.verdict.logs,
+            joint.together.verdict.fit,
+            joint.together.verdict.logs,
             given,
-            lambda name: _findings_without(found, name),
-            found.crafts_without,
-            found.causes,
+            lambda name: _findings_without(joint, name),
+            joint.crafts_without,
+            joint.causes,
             lambda name, *done: say(f"{name} again, by co-simulation", *done),
         )
     remarks = (
-        *found.remarks,
+        *joint.remarks,
         *extended.remarks,
-        *(one.remark for one in errors.values() if one.remark),
+        *(error.remark for error in errors.values() if error.remark),
     )
     return replace(
-        found,
+        joint,
         errors=errors,
         baseline=joint_baseline(errors),
         gain=joint_gain(errors),
@@ -152,18 +152,18 @@ def diagnose_jointly(
     )
 
 
-def _findings_without(found: JointDiagnosis, name: str) -> tuple[list[Finding], list[Finding]]:
+def _findings_without(joint: JointDiagnosis, name: str) -> tuple[list[Finding], list[Finding]]:
     """Causes in the ship with their sizes by the other logs, and those of a log's own weather."""
-    basis = found.together
+    basis = joint.together
     if basis is None or len(basis.verdict.logs.problems) < 2:
         return [], []
     crude = []
     fit = basis.verdict.fit
     # Size of the common ratio without this log, if the ratio was named.
     if basis.has_ratio and (ratio := basis.ratios.without(name)):
-        crude = list(ratio_findings(ratio.ratio, ratio.std, found.causes))
-    said = {one.label for one in found.findings}
-    named = [one for one in fit.hypotheses if one.label in said]
+        crude = list(ratio_findings(ratio.ratio, ratio.std, joint.causes))
+    labels = {finding.label for finding in joint.findings}
+    named = [hypothesis for hypothesis in fit.hypotheses if hypothesis.label in labels]
     if not named:
         return crude, []
     # Causes of the ship sized by the other logs, those of the weather by the log itself.
@@ -215,67 +215,73 @@ def find_common_causes(
             say(f"{name} by itself")
             alone[name] = causes_in(problem, ship, lambda *_: None, reference)
     say("what the logs have in common")
-    known = {name: _identification(one) for name, one in alone.items()}
+    identified = {name: _identification(diagnosis) for name, diagnosis in alone.items()}
     # Logs that cannot tell causes, or whose channels may be misread, are left out.
-    left_out = {name: why for name, one in alone.items() if (why := _unusable(one))}
-    found = JointDiagnosis(
-        "ambiguous" if any(one.verdict == "ambiguous" for one in alone.values()) else "unknown",
-        tuple(common_faults({name: one.findings for name, one in alone.items()})),
+    left_out = {name: why for name, diagnosis in alone.items() if (why := _unusable(diagnosis))}
+    joint = JointDiagnosis(
+        "ambiguous"
+        if any(diagnosis.verdict == "ambiguous" for diagnosis in alone.values())
+        else "unknown",
+        tuple(common_faults({name: diagnosis.findings for name, diagnosis in alone.items()})),
         logs=alone,
         discrepancies=tuple(
-            common_discrepancies({name: one.discrepancies for name, one in alone.items()})
+            common_discrepancies(
+                {name: diagnosis.discrepancies for name, diagnosis in alone.items()}
+            )
         ),
         left_out=left_out,
-        causes=next(iter(known.values())).causes,
+        causes=next(iter(identified.values())).causes,
     )
-    usable = {name: one for name, one in known.items() if name not in left_out}
+    usable = {name: diagnosis for name, diagnosis in identified.items() if name not in left_out}
     if not usable:
-        return replace(found, remarks=tuple(remarks_on(found)))
+        return replace(joint, remarks=tuple(remarks_on(joint)))
     with threadpool_limits(1):
-        found = _together(found, usable, ship, say)
+        joint = _together(joint, usable, ship, say)
     if reference is None:
-        return found
+        return joint
     return replace(
-        found,
-        findings=with_sizes_at_reference(found.findings, ship, reference, found.causes),
+        joint,
+        findings=with_sizes_at_reference(joint.findings, ship, reference, joint.causes),
     )
 
 
-def _identification(one: Diagnosis) -> Identification:
-    if one.basis is None:
+def _identification(diagnosis: Diagnosis) -> Identification:
+    if diagnosis.basis is None:
         raise ValueError("a diagnosis that does not know its log")
-    return one.basis.explained.identification
+    return diagnosis.basis.explained.identification
 
 
-def _unusable(one: Diagnosis) -> str:
+def _unusable(diagnosis: Diagnosis) -> str:
     """Reason why a log gives no evidence on the ship; empty if it does."""
-    if any(finding.alternatives for finding in one.findings):
+    if any(finding.alternatives for finding in diagnosis.findings):
         return "Its channels may be misread, and it does not tell which."
-    return " ".join(_identification(one).comparison.obstacles)
+    return " ".join(_identification(diagnosis).comparison.obstacles)
 
 
 def _together(
-    found: JointDiagnosis, usable: dict[str, Identification], ship: ShipModel, say: Progress
+    joint: JointDiagnosis, usable: dict[str, Identification], ship: ShipModel, say: Progress
 ) -> JointDiagnosis:
     """Joint result of the usable logs."""
     # Labels that other logs show are corrected in logs that do not tell; these are compared anew.
-    relabelled = _relabelled(found.findings, usable)
+    relabelled = _relabelled(joint.findings, usable)
     read = {
         name: replace(_as_read(usable[name], ship), log=with_right_labels(usable[name].log, faults))
         for name, faults in relabelled.items()
     }
-    stages = {name: (one.repaired, one.comparison) for name, one in usable.items()}
-    for name, one in read.items():
-        again = compared(checked(one))
+    stages = {name: (log.repaired, log.comparison) for name, log in usable.items()}
+    for name, log in read.items():
+        again = compared(checked(log))
         stages[name] = again.repaired, again.comparison
     comparisons = {name: comparison for name, (_, comparison) in stages.items()}
     # One ratio of thrust to inertia, put into the ship where it is far off.
-    ratios = ratio_of_logs({name: one.ratio for name, one in comparisons.items() if one.ratio})
+    ratios = ratio_of_logs(
+        {name: comparison.ratio for name, comparison in comparisons.items() if comparison.ratio}
+    )
     start = ratios.common if ratios.common is not None and ratios.common.differs(GROSS) else None
-    about = {name: _about_common(one, read.get(name), ship, start) for name, one in usable.items()}
+    about = {name: _about_common(log, read.get(name), ship, start) for name, log in usable.items()}
     say("all logs together")
     # The problems of a ship whose form may differ by one scale: that of the log that says most of it.
-    problems = {name: one.problem for name, one in about.items()}
+    problems = {name: log.problem for name, log in about.items()}
     widest = max(problem.model.form_scale for problem in problems.values())
     of_one_form = {
         name: problem
@@ -294,80 +300,84 @@ def _together(
         craft = learned_from(list(stages.values()), ship)
     basis = JointBasis(verdict, ratios, has_ratio)
     faults = {name: tuple(faults) for name, faults in relabelled.items()}
-    return _stated(replace(found, together=basis, relabelled=faults, craft=craft), basis)
+    return _stated(replace(joint, together=basis, relabelled=faults, craft=craft), basis)
 
 
 def _relabelled(
     faults: Sequence[Finding], usable: Mapping[str, Identification]
 ) -> dict[str, list[Finding]]:
     """Faults of the thrusters' labels that other logs show, by the logs that are corrected after them."""
-    found: dict[str, list[Finding]] = {}
-    for fault in (one for one in faults if is_of_thrusters(one)):
+    by_log: dict[str, list[Finding]] = {}
+    for fault in (finding for finding in faults if is_of_thrusters(finding)):
         for name in (name for name in usable if name not in fault.logs):
             if leans_to(usable[name].comparison.labels, fault):
-                found.setdefault(name, []).append(fault)
-    return found
+                by_log.setdefault(name, []).append(fault)
+    return by_log
 
 
-def _as_read(one: Identification, ship: ShipModel) -> ReadLog:
+def _as_read(log: Identification, ship: ShipModel) -> ReadLog:
     """A log as it was read, to be diagnosed again."""
-    return ReadLog(one.log, ship, one.causes)
+    return ReadLog(log.log, ship, log.causes)
 
 
 def _about_common(
-    one: Identification, read: ReadLog | None, ship: ShipModel, ratio: CommonRatio | None
+    log: Identification, read: ReadLog | None, ship: ShipModel, ratio: CommonRatio | None
 ) -> Identification:
     """A log as an identification problem about what all logs have in common: labels, and thrust over inertia."""
     if read is None and ratio is None:
-        return one
-    read = read or _as_read(one, ship)
+        return log
+    read = read or _as_read(log, ship)
     if ratio is not None:
         read = replace(read, ship=with_thrust(ship, ratio.ratio, ratio.std))
     return with_learnt_form(corrected(problem_of(read)))
 
 
-def _stated(found: JointDiagnosis, basis: JointBasis) -> JointDiagnosis:
+def _stated(joint: JointDiagnosis, basis: JointBasis) -> JointDiagnosis:
     """The result for all logs together."""
     judgement = basis.verdict.judgement
     ratios = basis.ratios
     # Ratios that contradict each other, one of them far off, keep any common cause from being
     # named.
-    is_split = ratios.common is None and any(one.differs(GROSS) for one in ratios.each.values())
+    is_split = ratios.common is None and any(ratio.differs(GROSS) for ratio in ratios.each.values())
     common = ratios.common if basis.has_ratio else None
-    crude = ratio_findings(common.ratio, common.std, found.causes) if common else ()
+    crude = ratio_findings(common.ratio, common.std, joint.causes) if common else ()
     causes = () if is_split else judgement.findings
     logs = basis.verdict.logs
-    labels = {one.label: one for one in logs.hypotheses}
+    labels = {hypothesis.label: hypothesis for hypothesis in logs.hypotheses}
     sizes = _sizes(basis, crude, causes)
     design = None if is_split else _prescription(basis)
     # Findings of the data, the common ratio, and causes by all logs.
     findings = (
-        *(_with_relabelled(one, found.relabelled) for one in found.findings),
-        *(replace(one, logs=tuple(ratios.each)) for one in crude),
-        *(replace(one, logs=_telling(logs, labels[one.label])) for one in causes),
+        *(_with_relabelled(finding, joint.relabelled) for finding in joint.findings),
+        *(replace(finding, logs=tuple(ratios.each)) for finding in crude),
+        *(replace(cause, logs=_telling(logs, labels[cause.label])) for cause in causes),
     )
-    seen = {one.label for one in (*judgement.candidates, *causes)} | {one.cause for one in crude}
-    named = {one.label for one in findings}
+    seen = {finding.label for finding in (*judgement.candidates, *causes)} | {
+        finding.cause for finding in crude
+    }
+    named = {finding.label for finding in findings}
     excitation = joint_excitation(basis.verdict)
     verdict = "unknown" if is_split else judgement.verdict
-    of_data = found.findings or any(
-        one.kind == "data" for log in found.logs.values() for one in log.findings
+    of_data = joint.findings or any(
+        finding.kind == "data" for log in joint.logs.values() for finding in log.findings
     )
     return replace(
-        found,
+        joint,
         verdict="named" if (crude or of_data) and verdict == "consistent" else verdict,
-        findings=tuple(replace(one, by_log=sizes.get(one.label, {})) for one in findings),
+        findings=tuple(
+            replace(finding, by_log=sizes.get(finding.label, {})) for finding in findings
+        ),
         candidates=judgement.candidates,
         indistinguishable=() if is_split else judgement.indistinguishable,
         not_testable=tuple(name for name in not_testable(excitation) if name not in seen),
         smallest_visible=tuple(
-            one
-            for one in visible_sizes(excitation)
-            if label_of(one.cause, one.component) not in named
+            size
+            for size in visible_sizes(excitation)
+            if label_of(size.cause, size.component) not in named
         ),
         prescription=design,
         manoeuvre=manoeuvre_of(design, _longest(basis)[1]),
-        remarks=(*found.remarks, *remarks_on(found)),
+        remarks=(*joint.remarks, *remarks_on(joint)),
     )
 
 
@@ -376,23 +386,23 @@ def _sizes(basis: JointBasis, crude: Sequence[Finding], causes: Sequence[Finding
     # The ratio by each log, then the causes fitted to each log by itself.
     each = basis.ratios.each
     sizes = {
-        one.label: {
-            name: dict.fromkeys(one.parameters, ParameterEstimate(of.ratio, of.std, "1"))
+        cause.label: {
+            name: dict.fromkeys(cause.parameters, ParameterEstimate(of.ratio, of.std, "1"))
             for name, of in each.items()
         }
-        for one in crude
+        for cause in crude
     }
     if not causes:
         return sizes
     fit = basis.verdict.fit
-    said = {one.label for one in causes}
-    named = [one for one in fit.hypotheses if one.label in said]
+    labels = {cause.label for cause in causes}
+    named = [hypothesis for hypothesis in fit.hypotheses if hypothesis.label in labels]
     return sizes | sizes_by_log(basis.verdict.logs, named, fit.values)
 
 
-def _with_relabelled(one: Finding, relabelled: Mapping[str, Sequence[Finding]]) -> Finding:
+def _with_relabelled(finding: Finding, relabelled: Mapping[str, Sequence[Finding]]) -> Finding:
     return replace(
-        one, put_right=tuple(name for name, faults in relabelled.items() if one in faults)
+        finding, put_right=tuple(name for name, faults in relabelled.items() if finding in faults)
     )
 
 
@@ -417,14 +427,14 @@ def _prescription(basis: JointBasis) -> ExperimentDesign | None:
 def _longest(basis: JointBasis) -> tuple[str, IdentificationProblem]:
     """The log with most rows: its name and problem."""
     problems = basis.verdict.logs.problems
-    return max(problems.items(), key=lambda one: one[1].record.time.size)
+    return max(problems.items(), key=lambda entry: entry[1].record.time.size)
 
 
-def remarks_on(found: JointDiagnosis) -> list[str]:
+def remarks_on(joint: JointDiagnosis) -> list[str]:
     """Remarks on logs that differ from the others or are not usable."""
-    basis = found.together
-    remarks = [f"{name} says nothing of the ship. {why}" for name, why in found.left_out.items()]
-    for name, faults in found.relabelled.items():
+    basis = joint.together
+    remarks = [f"{name} says nothing of the ship. {why}" for name, why in joint.left_out.items()]
+    for name, faults in joint.relabelled.items():
         what = "; ".join(fault.sentence for fault in faults)
         remarks.append(
             f"{name} is read as the other logs show ({what}). This log alone does not show it."
@@ -434,9 +444,9 @@ def remarks_on(found: JointDiagnosis) -> list[str]:
     if basis.ratios.contradiction:
         remarks.append(basis.ratios.contradiction)
     for name in basis.ratios.apart if basis.has_ratio else ():
-        own = basis.ratios.each[name]
+        of_log = basis.ratios.each[name]
         remarks.append(
-            f"{name} by itself says {own.ratio:.2f} ± {own.std:.2f} of thrust over inertia, far from all others. "
+            f"{name} by itself says {of_log.ratio:.2f} ± {of_log.std:.2f} of thrust over inertia, far from all others. "
             "The common ratio is that much less certain."
         )
     return remarks

@@ -119,22 +119,22 @@ def diagnose(
     """
     say = progress or (lambda *_: None)
     given, reference, out, folder = prepared_system(system, reference, out)
-    found = find_causes(log, given.given, channels, causes, say, reference, is_assumed)
+    diagnosis = find_causes(log, given.given, channels, causes, say, reference, is_assumed)
     say("what does the simulation get wrong")
-    basis = found.basis
+    basis = diagnosis.basis
     if basis is None:
         raise ValueError("a diagnosis that does not know its log")
-    found, predicted = named_if_better(found, with_predictions(basis, found.is_named))
-    found = verified(found, predicted)
+    diagnosis, predicted = named_if_better(diagnosis, with_predictions(basis, diagnosis.is_named))
+    diagnosis = verified(diagnosis, predicted)
     say("extending the system")
     identification = basis.explained.identification
-    extended = with_findings(given, found.findings, identification, out)
-    found, extended = with_form(found, predicted, extended, out)
+    extended = with_findings(given, diagnosis.findings, identification, out)
+    diagnosis, extended = with_form(diagnosis, predicted, extended, out)
     say("the gain, by co-simulation")
     simulated = with_cosimulation(
         predicted, extended, lambda *done: say("the gain, by co-simulation", *done)
     )
-    return replace(completed(found, predicted, extended, simulated), folder=folder)
+    return replace(completed(diagnosis, predicted, extended, simulated), folder=folder)
 
 
 def prepared_system(
@@ -213,11 +213,12 @@ def causes_in(
     problem: Identification, ship: ShipModel, progress: Progress, reference: Reference | None = None
 ) -> Diagnosis:
     """Diagnose a log as an identification problem of a ship, as `find_causes` does."""
-    found = stated(verdict_on(problem, progress))
+    diagnosis = stated(verdict_on(problem, progress))
     if reference is None:
-        return found
+        return diagnosis
     return replace(
-        found, findings=with_sizes_at_reference(found.findings, ship, reference, problem.causes)
+        diagnosis,
+        findings=with_sizes_at_reference(diagnosis.findings, ship, reference, problem.causes),
     )
 
 

@@ -84,13 +84,13 @@ def replay_log(
         Data or systems that cannot be used.
     """
     first = next(iter(systems.values()))
-    known = checked(read_measurements(log, first, channels))
-    record = record_of(known.repaired, known.ship)
-    seconds = fitting_horizon(record, known.ship) if horizon is None else horizon
+    checked_log = checked(read_measurements(log, first, channels))
+    record = record_of(checked_log.repaired, checked_log.ship)
+    seconds = fitting_horizon(record, checked_log.ship) if horizon is None else horizon
     replayed = {name: Replayed(system, _signals(system)) for name, system in systems.items()}
-    tracks = tracks_by_systems(record, known.ship, replayed, seconds, progress)
-    remarks = (*_misfit(tracks), *record.remarks, *handled(known.log))
-    return LogReplay(tracks, known.faults, remarks, first)
+    tracks = tracks_by_systems(record, checked_log.ship, replayed, seconds, progress)
+    remarks = (*_misfit(tracks), *record.remarks, *handled(checked_log.log))
+    return LogReplay(tracks, checked_log.faults, remarks, first)
 
 
 def _misfit(tracks: Tracks) -> tuple[str, ...]:
@@ -98,14 +98,15 @@ def _misfit(tracks: Tracks) -> tuple[str, ...]:
     # A ship that lies still is at the end of a prediction where she was at its start.
     end = tracks.horizon
     start = {
-        name: one.isel(time=[0]).assign_coords(time=[end]) for name, one in tracks.predicted.items()
+        name: predicted.isel(time=[0]).assign_coords(time=[end])
+        for name, predicted in tracks.predicted.items()
     }
     off = errors_of(tracks, (1.0,))
     still = errors_of(Tracks(end, tracks.measured, start), (1.0,)).assign_coords(after=off["after"])
     turns = off["heading"] > np.maximum(_TURNED, _MORE_TURNED * still["heading"])
     is_other = (turns | (off["position"] > _DRIFTED * end)) & (off["position"] > still["position"])
-    (one, *_) = tracks.predicted.values()
-    if not is_other.all() or one.sizes["segment"] < _FEWEST:
+    (first, *_) = tracks.predicted.values()
+    if not is_other.all() or first.sizes["segment"] < _FEWEST:
         return ()
     shown = [
         f"{e['heading'][-1, 0]:.0f} deg and {e['position'][-1, 0]:.3g} m" for e in (off, still)
@@ -119,8 +120,12 @@ def _misfit(tracks: Tracks) -> tuple[str, ...]:
 def _signals(system: System) -> dict[str, str] | None:
     """By role, what the instruments show that a diagnosis inserted; None of a system without them."""
     needed = set(Instruments().errors)
-    own = next(
+    inserted = next(
         (name for name, part in system.components.items() if needed <= set(part.variables)),
         None,
     )
-    return None if own is None else {role: f"{own}.{name}_meas" for role, name in _SHOWN.items()}
+    return (
+        None
+        if inserted is None
+        else {role: f"{inserted}.{name}_meas" for role, name in _SHOWN.items()}
+    )

@@ -169,7 +169,7 @@ class Diagnosis:
             "candidates": [asdict(candidate) for candidate in self.candidates],
             "indistinguishable": [asdict(candidate) for candidate in self.indistinguishable],
             "not_testable": list(self.not_testable),
-            "smallest_visible": [asdict(one) for one in self.smallest_visible],
+            "smallest_visible": [asdict(size) for size in self.smallest_visible],
             "prescription": asdict(self.prescription) if self.prescription else None,
             "discrepancies": [discrepancy.as_json() for discrepancy in self.discrepancies],
             "form": asdict(self.form) if self.form else None,

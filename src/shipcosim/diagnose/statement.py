@@ -34,27 +34,29 @@ from shipcosim.ssp import AnyPath
 
 def stated(log: JudgedLog) -> Diagnosis:
     """The statement on a log: faults, causes since when they act, what it could not have shown, what to sail next."""
-    found = log.explained.identification
+    identification = log.explained.identification
     judgement = log.judgement
-    comparison = found.comparison
+    comparison = identification.comparison
     excitation = excitation_of(log)
-    if any(
-        fault.alternatives for fault in found.faults
-    ):  # of a log that may be misread, nothing is reported of the ship
+    # Of a log that may be misread nothing is reported of the ship.
+    if any(fault.alternatives for fault in identification.faults):
         return Diagnosis(
             "ambiguous",
-            found.faults,
+            identification.faults,
             not_testable=untestable_causes(log, excitation),
             baseline=comparison.errors,
             basis=log,
         )
     # Findings of the log and of connections come before causes of the ship.
-    of_log = (*found.faults, *found.misconnections, *comparison.findings(found.causes))
-    seen = {one.cause for one in (*of_log, *judgement.candidates, *judgement.findings)}
-    rivals = (
-        judgement.rivals if not found.ship.third_party else ()
-    )  # with those no manoeuvre can be prescribed
-    named = {one.label for one in (*of_log, *judgement.findings)}
+    of_log = (
+        *identification.faults,
+        *identification.misconnections,
+        *comparison.findings(identification.causes),
+    )
+    seen = {finding.cause for finding in (*of_log, *judgement.candidates, *judgement.findings)}
+    # With third-party FMUs no manoeuvre can be prescribed.
+    rivals = () if identification.ship.third_party else judgement.rivals
+    named = {finding.label for finding in (*of_log, *judgement.findings)}
     untestable = untestable_causes(log, excitation)
     sizes = () if comparison.obstacles else visible_sizes(excitation)
     # How far the form of the ship's loads differs from the model's, with what that hides.
@@ -70,10 +72,7 @@ def stated(log: JudgedLog) -> Diagnosis:
         verdict = "form"
     return Diagnosis(
         verdict,
-        (
-            *of_log,
-            *judgement.findings,
-        ),
+        (*of_log, *judgement.findings),
         judgement.candidates,
         judgement.indistinguishable,
         tuple(cause for cause in untestable if cause not in seen),
@@ -85,18 +84,20 @@ def stated(log: JudgedLog) -> Diagnosis:
         craft=comparison.craft,
         is_assumed=comparison.is_assumed,
         smallest_visible=tuple(
-            one for one in sizes if label_of(one.cause, one.component) not in named
+            size for size in sizes if label_of(size.cause, size.component) not in named
         ),
         basis=log,
     )
 
 
-def named_if_better(found: Diagnosis, predicted: PredictedLog) -> tuple[Diagnosis, PredictedLog]:
+def named_if_better(
+    diagnosis: Diagnosis, predicted: PredictedLog
+) -> tuple[Diagnosis, PredictedLog]:
     """A diagnosis without the causes that it names, where they predict rows kept from the fit worse than the plain ship.
 
     Parameters
     ----------
-    found : Diagnosis
+    diagnosis : Diagnosis
     predicted : PredictedLog
 
     Returns
@@ -105,36 +106,36 @@ def named_if_better(found: Diagnosis, predicted: PredictedLog) -> tuple[Diagnosi
         As given; or ``"unknown"`` with the causes among the candidates, and predictions by the plain ship alone.
     """
     comparison = predicted.comparison
-    if not found.is_named or comparison is None:
-        return found, predicted
+    if not diagnosis.is_named or comparison is None:
+        return diagnosis, predicted
     # On rows kept from the fit the causes must not predict worse than the plain ship.
     without, within = (rms(comparison.errors, "position", model) for model in ("plain", "extended"))
     if within <= WORSE * without:
-        return found, predicted
-    names = ", ".join(one.label for one in found.physics)
+        return diagnosis, predicted
+    names = ", ".join(finding.label for finding in diagnosis.physics)
     remark = (
         f"{names}: likeliest by its evidence, but not named. On rows that it was not fitted on the ship with it misses "
         f"the log by {within:.2g} m, without it by {without:.2g} m."
     )
     doubted = replace(
-        found,
+        diagnosis,
         verdict="unknown",
-        findings=tuple(one for one in found.findings if one.kind == "data"),
+        findings=tuple(finding for finding in diagnosis.findings if finding.kind == "data"),
         candidates=tuple(
-            replace(one, probability=min(one.probability, BESIDE_UNKNOWN))
-            for one in found.candidates
+            replace(candidate, probability=min(candidate.probability, BESIDE_UNKNOWN))
+            for candidate in diagnosis.candidates
         ),
-        remarks=(*found.remarks, remark),
+        remarks=(*diagnosis.remarks, remark),
     )
     return doubted, with_predictions(predicted.judged, False)
 
 
-def verified(found: Diagnosis, predicted: PredictedLog) -> Diagnosis:
+def verified(diagnosis: Diagnosis, predicted: PredictedLog) -> Diagnosis:
     """A diagnosis that is only consistent where its system predicts the log as well as a healthy ship's would.
 
     Parameters
     ----------
-    found : Diagnosis
+    diagnosis : Diagnosis
     predicted : PredictedLog
 
     Returns
@@ -142,12 +143,12 @@ def verified(found: Diagnosis, predicted: PredictedLog) -> Diagnosis:
     Diagnosis
         As given, with the errors of healthy ships; or ``"unknown"``, where the system's are larger than any of them.
     """
-    if found.verdict != "consistent" or predicted.comparison is None:
-        return found
+    if diagnosis.verdict != "consistent" or predicted.comparison is None:
+        return diagnosis
     # Errors that no healthy ship reaches contradict a consistent verdict.
     healthy = healthy_errors(predicted.comparison)
     if not healthy.beyond:
-        return replace(found, healthy=healthy)
+        return replace(diagnosis, healthy=healthy)
     sizes = [
         f"{healthy.measured[channel]:.2g} {CHANNELS[channel]} in {channel} (at most {healthy.largest[channel]:.2g})"
         for channel in healthy.beyond
@@ -156,17 +157,19 @@ def verified(found: Diagnosis, predicted: PredictedLog) -> Diagnosis:
         f"No cause stands out, but after {HORIZONS[-1]:g} s the system misses the log by {' and '.join(sizes)}. "
         "None of the healthy ships drawn within its tolerances does so."
     )
-    return replace(found, verdict="unknown", healthy=healthy, remarks=(*found.remarks, remark))
+    return replace(
+        diagnosis, verdict="unknown", healthy=healthy, remarks=(*diagnosis.remarks, remark)
+    )
 
 
 def with_form(
-    found: Diagnosis, predicted: PredictedLog, given: ExtendedSystem, folder: AnyPath
+    diagnosis: Diagnosis, predicted: PredictedLog, given: ExtendedSystem, folder: AnyPath
 ) -> tuple[Diagnosis, ExtendedSystem]:
     """A diagnosis with the verdict `form`, and the system with these numbers if it predicts the log better.
 
     Parameters
     ----------
-    found : Diagnosis
+    diagnosis : Diagnosis
     predicted : PredictedLog
     given : ExtendedSystem
         Not extended yet.
@@ -179,18 +182,18 @@ def with_form(
         As given unless the verdict is ``"form"``.
     """
     comparison = predicted.comparison
-    if found.verdict != "form" or found.form is None or comparison is None:
-        return found, given
+    if diagnosis.verdict != "form" or diagnosis.form is None or comparison is None:
+        return diagnosis, given
     # Judged by numbers that never saw the rows which they predict; written with those of the whole log.
     trained = form_numbers(comparison.fit, given.given)
     error = error_with(comparison, {path: of.estimate for path, of in trained.items()})
-    found = replace(found, form=replace(found.form, system_m=error))
+    diagnosis = replace(diagnosis, form=replace(diagnosis.form, system_m=error))
     if error >= rms(comparison.errors, "position", "plain"):
         remark = "No system was written: with the numbers of the form that it has, it predicts other rows no better."
-        return replace(found, remarks=(*found.remarks, remark)), given
+        return replace(diagnosis, remarks=(*diagnosis.remarks, remark)), given
     log = predicted.judged
     numbers = form_numbers(without_causes(log.fits), given.given)
-    return found, with_form_numbers(given, numbers, log.explained.identification, folder)
+    return diagnosis, with_form_numbers(given, numbers, log.explained.identification, folder)
 
 
 def _with_errors(form: LoadForm | None, errors: xarray.Dataset) -> LoadForm | None:
@@ -202,14 +205,14 @@ def _with_errors(form: LoadForm | None, errors: xarray.Dataset) -> LoadForm | No
 
 
 def completed(
-    found: Diagnosis, predicted: PredictedLog, extended: ExtendedSystem, simulated: SimulatedLog
+    diagnosis: Diagnosis, predicted: PredictedLog, extended: ExtendedSystem, simulated: SimulatedLog
 ) -> Diagnosis:
     """A diagnosis with errors, gain, the extended system, and all that the page shows."""
     log = predicted.judged
     errors = simulated.errors
     identification = log.explained.identification
     problem = log.problem
-    craft = found.craft
+    craft = diagnosis.craft
     summary = LogSummary(
         Path(identification.log.encoding.get("source", "log")).name,
         identification.log,
@@ -219,19 +222,19 @@ def completed(
         tuple(handled(identification.log)),
     )
     complete = replace(
-        found,
-        manoeuvre=manoeuvre_of(found.prescription, problem),
+        diagnosis,
+        manoeuvre=manoeuvre_of(diagnosis.prescription, problem),
         causes=identification.causes,
         facts=log_facts(problem),
         log=summary,
         evidence=evidence_of(log),
-        tracks=tracks_of(log, found.is_named),
+        tracks=tracks_of(log, diagnosis.is_named),
         force=predicted.force,
         extension=extended.extension,
         extended=extended.system,
         changes=extended.changes,
         system=extended.given,
-        remarks=(*found.remarks, *extended.remarks, *simulated.remarks),
+        remarks=(*diagnosis.remarks, *extended.remarks, *simulated.remarks),
         gain=craft.errors.as_gain() if craft and craft.errors else None,
     )
     if errors is None or predicted.comparison is None:
@@ -239,18 +242,18 @@ def completed(
     # The error of the simulation is taken over one set of predictions, those that the gain is measured on, where the
     # craft's own times are theirs.
     measured = baseline(errors)
-    told = found.baseline
-    same_times = told is not None and told["horizon_s"] == measured["horizon_s"]
+    earlier = diagnosis.baseline
+    same_times = earlier is not None and earlier["horizon_s"] == measured["horizon_s"]
     return replace(
         complete,
-        baseline=measured if same_times else told,
-        gain=gain(errors) if found.is_named else complete.gain,
-        form=_with_errors(found.form, predicted.comparison.errors),
+        baseline=measured if same_times else earlier,
+        gain=gain(errors) if diagnosis.is_named else complete.gain,
+        form=_with_errors(diagnosis.form, predicted.comparison.errors),
         predictions=prediction_errors(
             predicted.comparison,
             errors,
             simulated.held_out,
-            is_named=found.is_named,
+            is_named=diagnosis.is_named,
             is_simulated=simulated.is_simulated,
         ),
     )

@@ -47,21 +47,21 @@ class Access(dict):
 
     def __missing__(self, references: tuple[int, ...]) -> Found:
         # Each reference must exist, and have the type of the call.
-        found = []
+        variables = []
         for reference in references:
             if (
                 not 0 <= reference < len(self.variables)
                 or self.variables[reference].type != self.kind
             ):
                 raise FmuError(f"there is no {self.kind} variable with value reference {reference}")
-            found.append(self.variables[reference])
+            variables.append(self.variables[reference])
         # Fixed parameters cannot be set during the run: remember one for the message.
         fixed = [
             variable.name
-            for variable in found
+            for variable in variables
             if variable.causality == "parameter" and not variable.tunable
         ]
-        names = tuple(variable.name for variable in found)
+        names = tuple(variable.name for variable in variables)
         # Kept for the next call with the same references.
         self[references] = Found(names, fixed[0] if fixed else "", getter(names))
         return self[references]

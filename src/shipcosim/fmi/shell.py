@@ -46,9 +46,9 @@ def _guarded(method: Callable) -> Callable:
     return call
 
 
-def _differ(slave: Any, found: Found, values: Sequence) -> bool:
+def _differ(slave: Any, variables: Found, values: Sequence) -> bool:
     """True if values differ from the slave's: `start` depends only on the variables."""
-    return found.values(slave.__dict__) != tuple(values)
+    return variables.values(slave.__dict__) != tuple(values)
 
 
 class Fmi2Slave:
@@ -141,11 +141,11 @@ class Fmi2Slave:
 
     @_guarded
     def set_real(self, references: Sequence[int], values: Sequence[float]) -> None:
-        found = self._real[tuple(references)]
+        variables = self._real[tuple(references)]
         # One check of the sum is fast; the culprit is searched only if it fails.
         if not math.isfinite(sum(values)):
-            refuse_not_finite_inputs(self.variables, found.names, values)
-        self._set(found, values)
+            refuse_not_finite_inputs(self.variables, variables.names, values)
+        self._set(variables, values)
 
     @_guarded
     def set_integer(self, references: Sequence[int], values: Sequence[int]) -> None:
@@ -165,10 +165,10 @@ class Fmi2Slave:
 
     @_guarded
     def get_integer(self, references: Sequence[int]) -> list[int]:
-        found = self._integer[tuple(references)]
+        variables = self._integer[tuple(references)]
         return [
             whole_number(name, value)
-            for name, value in zip(found.names, self._get(found), strict=True)
+            for name, value in zip(variables.names, self._get(variables), strict=True)
         ]
 
     @_guarded
@@ -186,19 +186,19 @@ class Fmi2Slave:
         `prepared_getter`.
         """
         # Everything that does not change between calls is looked up once.
-        found = self._real[references]
+        variables = self._real[references]
         put = self.__dict__.update
-        names = found.names
-        fixed = found.fixed
+        names = variables.names
+        fixed = variables.fixed
         isfinite = math.isfinite
 
         def set_values(values: Sequence[float]) -> None:
             if not isfinite(sum(values)):
                 refuse_not_finite_inputs(self.variables, names, values)
             if fixed and self._initialised:
-                self._refuse(found)
+                self._refuse(variables)
             if self._initialising:
-                self._stale = self._stale or _differ(self, found, values)
+                self._stale = self._stale or _differ(self, variables, values)
             put(zip(names, values, strict=True))
 
         return set_values
@@ -206,10 +206,10 @@ class Fmi2Slave:
     def prepared_getter(self, kind: str, references: tuple[int, ...]) -> Callable[[], Sequence]:
         """`get_real`, `get_integer` or `get_boolean` for the same variables at every call."""
         # As in `real_setter`, look up once what does not change.
-        found = getattr(self, f"_{kind.lower()}")[references]
+        variables = getattr(self, f"_{kind.lower()}")[references]
         values = self.__dict__
-        take = found.values
-        names = found.names
+        take = variables.values
+        names = variables.names
 
         def get_values() -> tuple:
             if self._stale:
@@ -226,21 +226,21 @@ class Fmi2Slave:
 
         return {"Real": get_values, "Integer": get_integers, "Boolean": get_booleans}[kind]
 
-    def _set(self, found: Found, values: Sequence) -> None:
+    def _set(self, variables: Found, values: Sequence) -> None:
         # Fixed parameters may be set before the run only.
-        if found.fixed and self._initialised:
-            self._refuse(found)
+        if variables.fixed and self._initialised:
+            self._refuse(variables)
         # A changed value during initialisation makes the start outdated.
-        self._stale = self._initialising and (self._stale or _differ(self, found, values))
-        self.__dict__.update(zip(found.names, values, strict=True))
+        self._stale = self._initialising and (self._stale or _differ(self, variables, values))
+        self.__dict__.update(zip(variables.names, values, strict=True))
 
-    def _refuse(self, found: Found) -> None:
-        raise FmuError(f"parameter '{found.fixed}' is fixed, it can only be set before the run")
+    def _refuse(self, variables: Found) -> None:
+        raise FmuError(f"parameter '{variables.fixed}' is fixed, it can only be set before the run")
 
-    def _get(self, found: Found) -> tuple:
+    def _get(self, variables: Found) -> tuple:
         if self._stale:
             self._start()
-        return found.values(self.__dict__)
+        return variables.values(self.__dict__)
 
     # state
 

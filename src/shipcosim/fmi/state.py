@@ -48,9 +48,9 @@ class _Unpickler(pickle.Unpickler):
             return super().find_class(module, name)
         # Classes of the FMU, but nothing that these modules only import.
         if module.partition(".")[0] in self.packages:
-            found = super().find_class(module, name)
-            if isinstance(found, type) and found.__module__.partition(".")[0] in self.packages:
-                return found
+            loaded = super().find_class(module, name)
+            if isinstance(loaded, type) and loaded.__module__.partition(".")[0] in self.packages:
+                return loaded
         raise pickle.UnpicklingError(
             f"{module}.{name} is refused: a state holds plain data, NumPy arrays and generators, and the FMU's classes"
         )
@@ -92,9 +92,9 @@ def from_bytes(data: bytes, label: str, packages: Set[str]) -> Any:
         The bytes belong to other code, or ask for something that is not data.
     """
     # Another version of the FMU may have another state.
-    found, _, content = data.partition(b"\n")
-    if found != label.encode():
+    stored_label, _, content = data.partition(b"\n")
+    if stored_label != label.encode():
         raise pickle.UnpicklingError(
-            f"this is a state of {found[:100].decode(errors='replace')!r}, wanted is one of {label!r}"
+            f"this is a state of {stored_label[:100].decode(errors='replace')!r}, wanted is one of {label!r}"
         )
     return _Unpickler(content, packages).load()

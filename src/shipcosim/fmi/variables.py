@@ -212,8 +212,8 @@ class Parameters:
             for variable in self.variables
         )
         return all(
-            one is other or (type(one) is type(other) in PLAIN and one == other)
-            for one, other in pairs
+            stored is other or (type(stored) is type(other) in PLAIN and stored == other)
+            for stored, other in pairs
         )
 
     def _variable(self, field: dataclasses.Field) -> "Parameter":
@@ -265,17 +265,17 @@ def variables_of(cls: type) -> tuple[tuple[Variable, ...], tuple[Parameters, ...
     for base in reversed(cls.__mro__):
         declared |= _declared_on(base)
     groups = tuple(item for item in declared.values() if isinstance(item, Parameters))
-    found = [item for item in declared.values() if isinstance(item, Variable)]
-    found += [variable for group in groups for variable in group.variables]
+    variables = [item for item in declared.values() if isinstance(item, Variable)]
+    variables += [variable for group in groups for variable in group.variables]
     # A name may occur once, in groups too.
-    names = [variable.name for variable in found] + [group.name for group in groups]
+    names = [variable.name for variable in variables] + [group.name for group in groups]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise TypeError(
             f"{cls.__name__} declares {', '.join(twice)} twice; Parameters(..., prefix=...) keeps groups apart"
         )
     order = ("input", "output", "parameter")
-    return tuple(sorted(found, key=lambda variable: order.index(variable.causality))), groups
+    return tuple(sorted(variables, key=lambda variable: order.index(variable.causality))), groups
 
 
 def leave_start_values(cls: type) -> None:

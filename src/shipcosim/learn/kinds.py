@@ -55,7 +55,7 @@ DRIFT: Mapping[str, Kind] = {
 """Drift predictors by the name that `shipcosim train drift --kind NAME` takes; the first is the default."""
 
 DEAD_RECKONING: Mapping[str, Kind] = {
-    name: Kind(*one) for name, one in dead_reckoning.KINDS.items()
+    name: Kind(*entry) for name, entry in dead_reckoning.KINDS.items()
 }
 """Dead reckoning by the name that `shipcosim train dead-reckoning --kind NAME` takes; the first is the default."""
 
@@ -90,7 +90,7 @@ def train(component: str, name: str, folder: Path, progress: Progress) -> list[P
     folder : Path
         Where to; it exists.
     progress : callable
-        Is told how many steps are done, and of how many at most.
+        Called with how many steps are done, and of how many at most.
 
     Returns
     -------

@@ -56,17 +56,17 @@ def arrays_of(network: Recurrent, name: str) -> Arrays:
         gates in the order input, forget, cell, output; the same of the other layers; ``NAME.dense.weights`` and
         ``NAME.dense.bias``. [1]
     """
-    found: Arrays = {}
+    arrays: Arrays = {}
     for layer in range(network.lstm.num_layers):
         # PyTorch keeps separate weights and biases for input and memory; join them for evaluation.
         of = {key: getattr(network.lstm, f"{key}_l{layer}").detach().numpy() for key in KEYS}
         weights = np.concatenate([of["weight_ih"], of["weight_hh"]], axis=1)
-        found[f"{name}.lstm.{layer + 1}.weights"] = weights
+        arrays[f"{name}.lstm.{layer + 1}.weights"] = weights
         # Both biases enter only as their sum.
-        found[f"{name}.lstm.{layer + 1}.bias"] = of["bias_ih"] + of["bias_hh"]
-    found[f"{name}.dense.weights"] = network.dense.weight.detach().numpy().copy()
-    found[f"{name}.dense.bias"] = network.dense.bias.detach().numpy().copy()
-    return found
+        arrays[f"{name}.lstm.{layer + 1}.bias"] = of["bias_ih"] + of["bias_hh"]
+    arrays[f"{name}.dense.weights"] = network.dense.weight.detach().numpy().copy()
+    arrays[f"{name}.dense.bias"] = network.dense.bias.detach().numpy().copy()
+    return arrays
 
 
 KEYS = ("weight_ih", "weight_hh", "bias_ih", "bias_hh")

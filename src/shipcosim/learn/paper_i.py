@@ -135,14 +135,14 @@ def fitted(
     rng = np.random.default_rng(seed)
     scale = np.abs(inputs).max(axis=0)
     # The hidden layer is random and stays so (Huang et al.).
-    found = {
+    network = {
         "scale": scale,
         "hidden": rng.uniform(-1.0, 1.0, (neurons, inputs.shape[1])),
         "bias": rng.random(neurons),
     }
     # Output weights by least squares: H^+ T, with small singular values left out.
-    inverse = np.linalg.pinv(hidden_layer(found, inputs), rcond=cutoff)
-    return found | {"output": (inverse @ targets).T}
+    inverse = np.linalg.pinv(hidden_layer(network, inputs), rcond=cutoff)
+    return network | {"output": (inverse @ targets).T}
 
 
 def hidden_layer(network: dict, inputs: np.ndarray) -> np.ndarray:
@@ -173,7 +173,7 @@ def train(recipe: PaperITraining, progress: Progress) -> Trained:
     recipe : PaperITraining
         The variant.
     progress : callable
-        Is told how far it is.
+        Called with how far it is.
 
     Returns
     -------
@@ -190,13 +190,13 @@ def train(recipe: PaperITraining, progress: Progress) -> Trained:
         inputs, targets = samples(loads, commands, allocator, signals)
         # The paper reports the training time, so it is measured here.
         start = time.perf_counter()
-        found = fitted(inputs, targets, cutoff=recipe.cutoff)
+        network = fitted(inputs, targets, cutoff=recipe.cutoff)
         seconds = time.perf_counter() - start
-        arrays |= {f"{allocator}.{signals}.{name}": array for name, array in found.items()}
+        arrays |= {f"{allocator}.{signals}.{name}": array for name, array in network.items()}
         # Errors by output, and by number of neurons, as the paper's tables.
         named = f"allocator {allocator}, {signals} signals"
         settings[f"{named}: RMSE on the exercise by output"] = _rounded(
-            _rmse(found, inputs, targets)
+            _rmse(network, inputs, targets)
         )
         settings[f"{named}: RMSE held out, over the range, by neurons"] = _by_neurons(
             inputs, targets, recipe.cutoff
@@ -215,13 +215,13 @@ def _by_neurons(inputs, targets, cutoff):
     """Held-out error over the range of the commands, mean over outputs, by number of neurons."""
     # Hold out 10 % of the rows at random, as in the paper.
     held = np.random.default_rng(SEED).random(len(inputs)) < HELD_OUT
-    found = {}
+    errors = {}
     for neurons in (5, 10, 20, 40, 80):
         network = fitted(inputs[~held], targets[~held], neurons=neurons, cutoff=cutoff)
-        found[neurons] = float(
+        errors[neurons] = float(
             (_rmse(network, inputs[held], targets[held]) / np.ptp(targets, axis=0)).mean()
         )
-    return ", ".join(f"{neurons}: {error:.2g}" for neurons, error in found.items())
+    return ", ".join(f"{neurons}: {error:.2g}" for neurons, error in errors.items())
 
 
 def _rounded(values):

@@ -116,7 +116,7 @@ def train(recipe: PaperVTraining, progress: Progress) -> Trained:
     recipe : PaperVTraining
         The variant.
     progress : callable
-        Is told how far it is.
+        Called with how far it is.
 
     Returns
     -------
@@ -245,7 +245,7 @@ def losses(
         .sum((0, -1))
     )
     # L0 force, L1 decoder, L2 limits, L3 rates, L4 power, L5 sectors: eqs. 5 to 11 of the paper.
-    found = (
+    terms = (
         ((forces - given) ** 2).sum(-1),
         ((forces - network.decoder(code)) ** 2).sum(-1),
         torch.relu(size - _row(LIMITS)).sum(-1),
@@ -255,7 +255,7 @@ def losses(
     )
     # k4 is the weight that the variants change.
     k = (*K[:4], k4, K[5])
-    return {name: weight * one.mean() for name, weight, one in zip(NAMES, k, found, strict=True)}
+    return {name: weight * term.mean() for name, weight, term in zip(NAMES, k, terms, strict=True)}
 
 
 def _row(values: np.ndarray) -> torch.Tensor:

@@ -30,6 +30,6 @@ def conformal(scores: np.ndarray, level: float = SHARE, more: int = 0) -> float:
     float
         The score of rank ceil(level n), at most the largest. [the unit of scores]
     """
-    found = np.sort(scores[np.isfinite(scores)])
-    rank = ceil(level * (len(found) + more))
-    return float(found[min(len(found), rank) - 1])
+    ordered = np.sort(scores[np.isfinite(scores)])
+    rank = ceil(level * (len(ordered) + more))
+    return float(ordered[min(len(ordered), rank) - 1])

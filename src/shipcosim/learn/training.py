@@ -13,7 +13,7 @@ Epochs = list[dict[str, float]]
 
 
 Progress = Callable[[int, int], None]
-"""Is told how many steps are done, and of how many at most."""
+"""Called with how many steps are done, and of how many at most."""
 
 
 def part_of(progress: Progress, before: float, share: float) -> Progress:
@@ -142,7 +142,7 @@ class BestWeights:
 
     def __init__(self, weights: Iterable[torch.Tensor]):
         self.weights = list(weights)
-        self.kept = [one.detach().clone() for one in self.weights]
+        self.kept = [weight.detach().clone() for weight in self.weights]
         self.loss = np.inf
         self.since = 0
 
@@ -158,13 +158,13 @@ class BestWeights:
         if loss < self.loss:
             self.loss = loss
             self.since = 0
-            self.kept = [one.detach().clone() for one in self.weights]
+            self.kept = [weight.detach().clone() for weight in self.weights]
 
     def restore(self) -> None:
         """Go back to the best weights."""
         with torch.no_grad():
-            for one, kept in zip(self.weights, self.kept, strict=True):
-                one.copy_(kept)
+            for weight, kept in zip(self.weights, self.kept, strict=True):
+                weight.copy_(kept)
 
 
 def fit(
@@ -188,7 +188,7 @@ def fit(
     schedule : Schedule
         How to train.
     progress : callable
-        Is told after each mini-batch.
+        Called after each mini-batch.
 
     Returns
     -------
@@ -209,8 +209,11 @@ def fit(
             trained += descent.step(sum(losses(batches[index]).values()))
             progress(done, total)
         # Judge the epoch on held-out data; stop when none of the last `patience` epochs was the best.
-        found = _held_out(losses, held_out)
-        epochs.append({"training": trained / len(batches), "held out": sum(found.values())} | found)
+        held_out_losses = _held_out(losses, held_out)
+        epochs.append(
+            {"training": trained / len(batches), "held out": sum(held_out_losses.values())}
+            | held_out_losses
+        )
         best.judge(epochs[-1]["held out"])
         if best.since >= schedule.patience:
             break
@@ -221,5 +224,5 @@ def fit(
 def _held_out(losses, held_out):
     """Mean of each loss over held-out mini-batches."""
     with torch.no_grad():
-        found = [losses(held_out[index]) for index in range(len(held_out))]
-    return {name: float(np.mean([float(one[name]) for one in found])) for name in found[0]}
+        batches = [losses(held_out[index]) for index in range(len(held_out))]
+    return {name: float(np.mean([float(batch[name]) for batch in batches])) for name in batches[0]}

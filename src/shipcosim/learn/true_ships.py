@@ -126,7 +126,10 @@ def known_to(component: Component, *kinds: type) -> list[Any]:
     list
         One of each kind.
     """
-    return [kind(**{one.name: component.start[one.name] for one in fields(kind)}) for kind in kinds]
+    return [
+        kind(**{field.name: component.start[field.name] for field in fields(kind)})
+        for kind in kinds
+    ]
 
 
 def sailed(
@@ -146,7 +149,7 @@ def sailed(
     processes : int
         How many sail at a time. [1]
     progress : callable, optional
-        Is told how many are done, and of how many.
+        Called with how many are done, and of how many.
     """
     # Worker processes run the co-simulations; results keep the order of the draws.
     with ProcessPoolExecutor(processes) as pool:

@@ -38,8 +38,8 @@ def fmus(near: AnyPath | None = None, build: bool = True) -> list[Path]:
     ours = _shipped_fmus(build)
     if project == shipped():
         return [ours]
-    own = build_stale(project) if build else built_fmus(project)
-    return [own, ours]
+    of_project = build_stale(project) if build else built_fmus(project)
+    return [of_project, ours]
 
 
 def built_fmus(project: Path) -> Path:

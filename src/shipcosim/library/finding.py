@@ -52,8 +52,8 @@ def find(
     text = os.fspath(given)
     _check_kind(kind, text)
     path = Path(text.partition("#")[0])
-    known = names(kind, near)
-    is_plain = text in known and not _is_one(kind, path)
+    by_name = names(kind, near)
+    is_plain = text in by_name and not _is_one(kind, path)
     if (
         path.exists()
         and not is_plain
@@ -62,11 +62,11 @@ def find(
         if build and path.suffix == ".fmu":
             build_if_stale(path)
         return Path(text)
-    if text in known:
-        return built_fmu(known[text], build) if kind == "fmu" else known[text]
+    if text in by_name:
+        return built_fmu(by_name[text], build) if kind == "fmu" else by_name[text]
     where = f"{option} {text}" if option else text
     raise error_at(
-        where, f"There is no such {WHAT[kind]}.", suggestion(text.removesuffix(".toml"), known)
+        where, f"There is no such {WHAT[kind]}.", suggestion(text.removesuffix(".toml"), by_name)
     )
 
 
@@ -106,12 +106,12 @@ def scenarios(given: str) -> dict[str, Path]:
     folder = next((f for f in folders if f.is_dir()), None)
     if folder is None or given in names("scenario"):
         return {}
-    own = folder / "scenarios"
-    found = sorted(own.rglob("*.toml") if own.is_dir() else folder.glob("*.toml"))
-    if not found:
+    in_project = folder / "scenarios"
+    files = sorted(in_project.rglob("*.toml") if in_project.is_dir() else folder.glob("*.toml"))
+    if not files:
         raise error_at(given, "There is no scenario file in this folder.", "Name a .toml file.")
-    inside = own if own.is_dir() else folder
-    return {file.relative_to(inside).with_suffix("").as_posix(): file for file in found}
+    inside = in_project if in_project.is_dir() else folder
+    return {file.relative_to(inside).with_suffix("").as_posix(): file for file in files}
 
 
 def find_parameters(given: Path, system: AnyPath) -> Path:

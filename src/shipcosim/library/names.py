@@ -42,11 +42,11 @@ def names(kind: str, near: AnyPath | None = None) -> dict[str, Path]:
     near : path, optional
         In the project; the working folder without.
     """
-    found: dict[str, Path] = {}
+    paths: dict[str, Path] = {}
     for root in roots(near):
         for name, path in _in_root(kind, root):
-            found.setdefault(name, path)
-    return found
+            paths.setdefault(name, path)
+    return paths
 
 
 def named(kind: str, name: str, near: AnyPath | None = None) -> Path | None:

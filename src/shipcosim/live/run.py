@@ -235,19 +235,19 @@ class LiveRun:
     def _obey(self, page: Any, text: str) -> None:
         """Do what a page asks for; refuse requests that our page never sends."""
         try:
-            asked = json.loads(text)
-            if asked["do"] == "advance":
-                to = int(asked["to"])
-                done = [self._checked(*change) for change in asked["changes"]]
+            request = json.loads(text)
+            if request["do"] == "advance":
+                to = int(request["to"])
+                done = [self._checked(*change) for change in request["changes"]]
                 if not self._failure:
                     self._done += done
                     self._goal = min(to, self._grid.last)
                     if done:
                         self._pages.send(json.dumps({"acted": done}))
-            elif asked["do"] == "back":
-                self._go_back(int(asked["to"]))
+            elif request["do"] == "back":
+                self._go_back(int(request["to"]))
             else:
-                values = dict(asked["values"])
+                values = dict(request["values"])
                 if not all(isfinite(value) for value in values.values()):
                     raise ValueError(values)
                 with_values(self._first_system, values, "the page")
@@ -305,7 +305,7 @@ class LiveRun:
         """The state between two steps. Raises SlaveError."""
         self._master.give_back()
         simulation = self._simulation
-        fmus = {name: one.slave.state() for name, one in simulation.components.items()}
+        fmus = {name: component.slave.state() for name, component in simulation.components.items()}
         exchanges = simulation.exchanges.values()
         arrays = [[values.copy() for values in arrays_of(exchange)] for exchange in exchanges]
         return _State(fmus, arrays, [[m.active for m in modifiers_in(e)] for e in exchanges])
@@ -315,7 +315,7 @@ class LiveRun:
         if self._no_way_back or not self._states:
             raise ValueError("there is no state")
         # The latest state at or before the step: FMUs first, then the values that are exchanged.
-        step = max((one for one in self._states if one <= to), default=min(self._states))
+        step = max((number for number in self._states if number <= to), default=min(self._states))
         state = self._states[step]
         simulation = self._simulation
         try:
@@ -340,7 +340,7 @@ class LiveRun:
         self._master.take_back()
         # From here on the run knows nothing of what came later.
         self._done = [change for change in self._done if change[0] < to]
-        self._states = {one: kept for one, kept in self._states.items() if one <= step}
+        self._states = {number: kept for number, kept in self._states.items() if number <= step}
         self._now, self._goal, self._failure = step, max(to, step), ""
         simulation.recorders.n_rows = -(-step // self._grid.steps_per_row)
         self._greets = True

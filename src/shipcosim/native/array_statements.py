@@ -80,9 +80,9 @@ def write_in_runs(
     run: list[Statement] = []
     numbers: list[int] = []
     missing = {symbol.number for symbol in symbols}
-    alike: dict[tuple, deque[Symbol]] = defaultdict(deque)
+    similar: dict[tuple, deque[Symbol]] = defaultdict(deque)
     for symbol in symbols:
-        alike[symbol.op, symbol.kind].append(symbol)
+        similar[symbol.op, symbol.kind].append(symbol)
 
     def add(symbol, statement):
         run.append(statement)
@@ -110,7 +110,7 @@ def write_in_runs(
             due.popleft()
         # A sum of products: all products first, then the sum.
         if not due or any(
-            isinstance(one, Symbol) and one.number in missing for one in due[0].operands
+            isinstance(operand, Symbol) and operand.number in missing for operand in due[0].operands
         ):
             return False
         new = statement_of(due[0])
@@ -122,7 +122,7 @@ def write_in_runs(
     for symbol in symbols:
         if symbol.number in missing:
             add_next(symbol)
-            while add_ahead(alike[symbol.op, symbol.kind]):
+            while add_ahead(similar[symbol.op, symbol.kind]):
                 pass
     write(run, numbers)
 

@@ -167,7 +167,7 @@ class BlockTree:
         Recorded loops over rows.
     relied_on : list of Symbol
         Values that must be what they are in the example.
-    said : dict of int to Symbol
+    named : dict of int to Symbol
         Values that were put into texts, by their numbers.
     """
 
@@ -188,7 +188,7 @@ class BlockTree:
         self._new_number = itertools.count().__next__
         self.relied_on: list[Symbol] = []
         self.count = 0
-        self.said: dict[int, Symbol] = {}
+        self.named: dict[int, Symbol] = {}
         self._table_numbers: dict = {}
         self._call_numbers: dict = {}
         self._asked: Counter[str] = Counter()
@@ -296,15 +296,15 @@ class BlockTree:
 
     def is_choice(self, condition: Symbol) -> bool:
         """True if a condition depends only on whole numbers that are part of the code."""
-        for one in condition.sources():
-            if one.op == "load":
-                if one.operands[0] not in self._choices:
+        for source in condition.sources():
+            if source.op == "load":
+                if source.operands[0] not in self._choices:
                     return False
             # A kept result follows from the arguments of its call.
-            elif one.op == "kept":
-                if not all(map(self.is_choice, self._arguments[one.operands[0]])):
+            elif source.op == "kept":
+                if not all(map(self.is_choice, self._arguments[source.operands[0]])):
                     return False
-            elif one.op not in EXAMPLES:
+            elif source.op not in EXAMPLES:
                 return False
         return True
 
@@ -336,23 +336,33 @@ class BlockTree:
         """The result of a function that is called again only when its arguments change."""
         given = Flat(arguments)
         # Equal calls in a step share one place for their result.
-        key = function, *(id(one) if isinstance(one, Symbol) else one for one in given.numbers)
+        key = (
+            function,
+            *(
+                id(argument) if isinstance(argument, Symbol) else argument
+                for argument in given.numbers
+            ),
+        )
         if key not in self._call_numbers:
             # Call it once with the example: the result tells its shape.
             numbers = (
-                typed(self.example(one), leaf.kind)
-                for one, leaf in zip(given.numbers, given.leaves, strict=True)
+                typed(self.example(argument), leaf.kind)
+                for argument, leaf in zip(given.numbers, given.leaves, strict=True)
             )
             example = made_like(arguments, numbers)
             self._call_numbers[key] = len(self.calls)
-            changing = [place for place, one in enumerate(given.numbers) if isinstance(one, Symbol)]
+            changing = [
+                place
+                for place, argument in enumerate(given.numbers)
+                if isinstance(argument, Symbol)
+            ]
             # It may do what a step must not: it runs in Python, not in C.
             with anything(), np.errstate(all="ignore"):
                 self.calls.append(Call(function, example, changing, function(*example)))
         number = self._call_numbers[key]
         # The call is a value, so C makes it before its results are used.
         result = self.calls[number].result
-        symbols = tuple(one for one in given.numbers if isinstance(one, Symbol))
+        symbols = tuple(argument for argument in given.numbers if isinstance(argument, Symbol))
         self._arguments[number] = symbols
         self.value("call", "d", number, *symbols)
         flat = Flat(result)
@@ -371,13 +381,13 @@ class BlockTree:
     def guarded(self, symbol: Symbol) -> int:
         """The value in the example, as a constant of the code; C gives up where it differs."""
         # A loop changes its values at each turn; no single number can be guarded.
-        if any(one.op in OF_LOOPS for one in symbol.sources()):
+        if any(source.op in OF_LOOPS for source in symbol.sources()):
             raise Untraceable("it asks for a whole number that follows from a loop or a choice")
-        found = int(self.example(symbol))
+        expected = int(self.example(symbol))
         # C tests the guard at run time, and the record notes on which numbers it relies.
-        self.value("guard", "d", symbol, found)
+        self.value("guard", "d", symbol, expected)
         self.relied_on.append(symbol)
-        return found
+        return expected
 
     def table(self, numbers: np.ndarray) -> int:
         """Number of a constant table; equal tables share one number."""
@@ -436,7 +446,7 @@ class BlockTree:
             return float(np.interp(self.example(x), self.tables[first], self.tables[second]))
         if op not in EXAMPLES:
             raise Untraceable(f"it asks for a whole number that follows from '{op}'")
-        return EXAMPLES[op](*(self.example(one) for one in operands))
+        return EXAMPLES[op](*(self.example(operand) for operand in operands))
 
 
 OF_LOOPS = ("carried", "after", "joined", "index", "mapped")

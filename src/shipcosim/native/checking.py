@@ -117,7 +117,7 @@ def _compare(compiled, shape, number):
         place = int(np.argmax(off))
         # Report the first number that differs, by the name of its variable.
         name = text_of(shape.flat.leaves[place].path)
-        found = compiled.memory[place]
+        result = compiled.memory[place]
         raise Untraceable(
-            f"in step {number} compiled code gives {name} = {found:.9g}, Python {expected[place]:.9g}"
+            f"in step {number} compiled code gives {name} = {result:.9g}, Python {expected[place]:.9g}"
         )

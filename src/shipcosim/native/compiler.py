@@ -37,8 +37,8 @@ def check_installed() -> None:
         With what to install.
     """
     if not is_installed():
-        found = "It compiles the models, and there is no compiler."
-        raise error_at("engine 'native'", found, "Install it: pip install 'shipcosim[native]'.")
+        message = "It compiles the models, and there is no compiler."
+        raise error_at("engine 'native'", message, "Install it: pip install 'shipcosim[native]'.")
 
 
 def libraries(sources: Iterable[str]) -> list[ctypes.CDLL]:
@@ -76,10 +76,10 @@ _LOADED: dict[str, ctypes.CDLL] = {}
 def keep_digest(made: Path, path: Path) -> None:
     """Write the digest of a file that will lie at a path beside it."""
     digest = hashlib.sha256(made.read_bytes()).hexdigest()
-    beside = path.with_name(f"{path.name}.sha256")
+    digest_file = path.with_name(f"{path.name}.sha256")
     part = made.with_name(f"{made.name}.sha256")
     part.write_text(digest)
-    os.replace(part, beside)
+    os.replace(part, digest_file)
 
 
 def is_intact(path: Path) -> bool:

@@ -136,9 +136,9 @@ class CompiledStep:
             for place, changing in enumerate(call.changing):
                 numbers[changing] = typed(arguments[place], leaves[changing].kind)
             result = call.function(*made_like(call.arguments, iter(numbers)))
-            found = result.ravel() if isinstance(result, np.ndarray) else Flat(result).numbers
+            values = result.ravel() if isinstance(result, np.ndarray) else Flat(result).numbers
             # Results go in place: C reads them behind the arguments.
-            np.ctypeslib.as_array(kept, (call.size,))[:] = found
+            np.ctypeslib.as_array(kept, (call.size,))[:] = values
         except Exception:
             # No exception can pass through C. The status makes the code give up; Python repeats the
             # step.
@@ -166,11 +166,15 @@ def compiled_steps(
     with _ONE_AT_A_TIME:
         # First record all components, then compile all sources at once: the compiler runs in
         # parallel.
-        found = [_recorded(fmu, time, step_size) for fmu in fmus]
-        made = iter(libraries(one.record.source for one in found if isinstance(one, _Recorded)))
+        recorded = [_recorded(fmu, time, step_size) for fmu in fmus]
+        made = iter(
+            libraries(record.record.source for record in recorded if isinstance(record, _Recorded))
+        )
         return [
-            _checked(one, next(made), time, step_size) if isinstance(one, _Recorded) else one
-            for one in found
+            _checked(record, next(made), time, step_size)
+            if isinstance(record, _Recorded)
+            else record
+            for record in recorded
         ]
 
 

@@ -15,17 +15,17 @@ if TYPE_CHECKING:
 _VALUE = re.compile(f"{SAID}([0-9]+):([^{SAID}]*){SAID}")
 
 
-def said(error: Exception, recording: Recording) -> list[Symbol]:
+def values_in_text(error: Exception, recording: Recording) -> list[Symbol]:
     """Symbols whose values stand in the text of an error."""
-    return [recording.said[int(number)] for number, _ in _VALUE.findall(str(error))]
+    return [recording.named[int(number)] for number, _ in _VALUE.findall(str(error))]
 
 
 def parts(text: str) -> list[tuple[str, str]]:
     """Split a text into pairs: (words, "") and (number of a symbol, its Python format)."""
     # The pattern has two groups, so the split gives words, number, format, words, and so on.
-    found = _VALUE.split(text)
-    pairs = [(found[0], "")]
-    for number, how, words in zip(found[1::3], found[2::3], found[3::3], strict=True):
+    pieces = _VALUE.split(text)
+    pairs = [(pieces[0], "")]
+    for number, how, words in zip(pieces[1::3], pieces[2::3], pieces[3::3], strict=True):
         pairs += [(number, how or "r"), (words, "")]
     return [pair for pair in pairs if pair[0]]
 

@@ -86,14 +86,12 @@ class Flat:
 
     def difference(self, other: Flat) -> str:
         """The first place where two structures differ, as text."""
-        for (path, one), (other_path, another) in zip(
+        for (path, value), (other_path, another) in zip(
             self.structure, other.structure, strict=False
         ):
             # The first different entry explains the rest, which is shifted.
-            if path != other_path or one != another:
-                return (
-                    f"{text_of(path)} was {str(one)[:40]}, then {text_of(other_path)} was {another}"
-                )
+            if path != other_path or value != another:
+                return f"{text_of(path)} was {str(value)[:40]}, then {text_of(other_path)} was {another}"
         # Equal structures: then some numbers exist in one of them only.
         ours, theirs = ({leaf.path for leaf in flat.leaves} for flat in (self, other))
         return (
@@ -155,8 +153,8 @@ def numbers_of(
 def _take_once(value, numbers, rest):
     """Take a value apart that never changes, once: frozen parameters or tuples of floats."""
     # The cache goes by identity. It keeps the object too, so that its id cannot be used again.
-    known = _TAKEN.get(id(value))
-    if known is None or known[0] is not value:
+    taken_apart = _TAKEN.get(id(value))
+    if taken_apart is None or taken_apart[0] is not value:
         taken = []
         others = []
         # A tuple is a table of numbers; other unchanging values are parameters, with fixed flags.
@@ -168,9 +166,9 @@ def _take_once(value, numbers, rest):
         # Simple limit of the memory: forget everything, then fill the cache again.
         if len(_TAKEN) >= MOST_TAKEN:
             _TAKEN.clear()
-        known = _TAKEN[id(value)] = value, taken, tuple(others)
-    numbers += known[1]
-    rest.append(known[2])
+        taken_apart = _TAKEN[id(value)] = value, taken, tuple(others)
+    numbers += taken_apart[1]
+    rest.append(taken_apart[2])
 
 
 _TAKEN: dict[int, tuple[Any, list, tuple]] = {}
@@ -221,7 +219,7 @@ def _take(value, fixed, numbers, rest):
         # Rare types take the slow and general way, so that both ways agree.
         flat = Flat({"": value}, unchanging={""} if fixed else set())
         numbers += flat.numbers
-        rest += (tuple(flat.leaves), *((path, type(one), one) for path, one in flat.structure))
+        rest += (tuple(flat.leaves), *((path, type(leaf), leaf) for path, leaf in flat.structure))
 
 
 def made_like(value: Any, numbers: Iterator[Any]) -> Any:
@@ -239,13 +237,13 @@ def made_like(value: Any, numbers: Iterator[Any]) -> Any:
     if isinstance(value, STRUCTURE):
         return value
     if isinstance(value, np.ndarray):
-        found = [next(numbers) for _ in range(value.size)]
+        numbers_of_array = [next(numbers) for _ in range(value.size)]
         # Arrays with symbols have the type object; other arrays get their element type back.
-        if any(isinstance(one, Symbol) for one in found):
-            return np.array(found, dtype=object).reshape(value.shape).view(SymbolArray)
-        return np.array(found, dtype=float if value.dtype == object else value.dtype).reshape(
-            value.shape
-        )
+        if any(isinstance(element, Symbol) for element in numbers_of_array):
+            return np.array(numbers_of_array, dtype=object).reshape(value.shape).view(SymbolArray)
+        return np.array(
+            numbers_of_array, dtype=float if value.dtype == object else value.dtype
+        ).reshape(value.shape)
     # A named tuple takes its fields as arguments, other sequences take a list.
     if isinstance(value, (tuple, list)):
         made = [made_like(part, numbers) for part in value]
@@ -282,11 +280,14 @@ def _keeping_flags(value, numbers):
     """Like `made_like`, but flags keep their values."""
     # Flags of unchanging parameters are structure: `Flat` gave no number for them.
     flat = Flat(value)
-    keeps = [kind_of(one) == "b" and not isinstance(one, Symbol) for one in flat.numbers]
+    keeps = [kind_of(number) == "b" and not isinstance(number, Symbol) for number in flat.numbers]
     return made_like(
         value,
         iter(
-            [one if keep else next(numbers) for keep, one in zip(keeps, flat.numbers, strict=True)]
+            [
+                number if keep else next(numbers)
+                for keep, number in zip(keeps, flat.numbers, strict=True)
+            ]
         ),
     )
 

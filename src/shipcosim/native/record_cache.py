@@ -42,8 +42,8 @@ class KeptCall(NamedTuple):
     @property
     def function(self) -> Callable:
         """The function itself, without its cache."""
-        found = getattr(sys.modules[self.module], self.name)
-        return getattr(found, "__wrapped__", found)
+        function = getattr(sys.modules[self.module], self.name)
+        return getattr(function, "__wrapped__", function)
 
 
 @dataclass(frozen=True)

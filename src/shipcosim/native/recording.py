@@ -93,16 +93,22 @@ class Recording(BlockTree):
 
     def _joined(self, number: int, place: int) -> Any:
         """A number behind a branch: the same on all ways, or one that each way has set."""
-        found = [one for side in self.branches[number].sides for one in results_of(side, place)]
-        first = found[0]
+        results = [
+            result for side in self.branches[number].sides for result in results_of(side, place)
+        ]
+        first = results[0]
         if isinstance(first, Symbol):
-            is_common = first.block in self.block.lineage and all(one is first for one in found)
+            is_common = first.block in self.block.lineage and all(
+                result is first for result in results
+            )
         else:
             # As texts: 0.0 and -0.0 are equal numbers.
-            is_common = {(type(one), repr(one)) for one in found} == {(type(first), repr(first))}
+            is_common = {(type(result), repr(result)) for result in results} == {
+                (type(first), repr(first))
+            }
         if is_common:
             return first
-        return self.fresh("joined", _common_kind(found), number, place)
+        return self.fresh("joined", _common_kind(results), number, place)
 
     def mapped(self, function: Callable, columns: Sequence[Any]) -> list[Any]:
         """Record a function of one number of each column; return its results for all rows."""
@@ -115,7 +121,9 @@ class Recording(BlockTree):
             self._stored(Flat(column).numbers)
         number = self._new_number()
         index = self.fresh("index", "i", number)
-        body, made = self._part(lambda: function(*(self.row_of(one, index) for one in columns)))
+        body, made = self._part(
+            lambda: function(*(self.row_of(column, index) for column in columns))
+        )
         value, flat = _of_one_shape(made)
         self.maps[number] = RecordedMap(len(columns[0]), body)
         # The loop itself is a value, so that it is computed in its place among the others.
@@ -142,8 +150,8 @@ class Recording(BlockTree):
         """The row of a table, or element of a sequence, at a symbolic index."""
         if isinstance(table, np.ndarray):
             shape = table.shape[1:]
-            found = self._read(table.ravel(), index, math.prod(shape))
-            return np.array(found, dtype=object).reshape(shape) if shape else found[0]
+            elements = self._read(table.ravel(), index, math.prod(shape))
+            return np.array(elements, dtype=object).reshape(shape) if shape else elements[0]
         row, flat = _of_one_shape([(row, Flat(row)) for row in table])
         # Negative indices count from the end of a sequence, as in Python.
         index = Maths.where(index < 0, index + len(table), index)
@@ -164,15 +172,15 @@ class Recording(BlockTree):
     def _stored(self, numbers: Sequence[Any] | np.ndarray) -> tuple[str, Any]:
         """Where numbers lie in sequence: the operation that reads one by an index, and its operand."""
         is_constant = isinstance(numbers, np.ndarray) and numbers.dtype != object
-        if is_constant or not any(isinstance(one, Symbol) for one in numbers):
+        if is_constant or not any(isinstance(number, Symbol) for number in numbers):
             return "row", self.table(np.asarray(numbers, dtype=float))
         first = numbers[0]
         if isinstance(first, Symbol) and first.op in ("load", "kept"):
             *before, place = first.operands
             in_sequence = (
-                isinstance(one, Symbol)
-                and (one.op, one.operands) == (first.op, (*before, place + k))
-                for k, one in enumerate(numbers)
+                isinstance(number, Symbol)
+                and (number.op, number.operands) == (first.op, (*before, place + k))
+                for k, number in enumerate(numbers)
             )
             if all(in_sequence):
                 return f"{first.op}_row", first.operands
@@ -193,5 +201,5 @@ def _of_one_shape(made: Sequence[tuple[Any, Flat]]) -> tuple[Any, Flat]:
 
 def _common_kind(numbers: Iterable[Any]) -> str:
     """Kind of a variable that may have any of some numbers."""
-    kinds = {kind_of(one) for one in numbers}
+    kinds = {kind_of(number) for number in numbers}
     return kinds.pop() if len(kinds) == 1 else "d"

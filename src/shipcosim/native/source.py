@@ -17,7 +17,7 @@ from shipcosim.native.array_statements import (
     write_in_runs,
 )
 from shipcosim.native.blocks import Block, RecordedLoop, ends, results_of
-from shipcosim.native.error_texts import said
+from shipcosim.native.error_texts import values_in_text
 from shipcosim.native.number_rows import Flat
 from shipcosim.native.recording import Recording
 from shipcosim.native.symbols import Symbol, kind_of
@@ -182,7 +182,7 @@ class Writer:
         """Write what follows where Python raises an error."""
         return f"return {GIVEN_UP};"
 
-    def _other(self, symbol: Symbol, found: Any) -> str:
+    def _other(self, symbol: Symbol, expected: Any) -> str:
         """Write what follows where a guarded whole number differs."""
         return f"return {GIVEN_UP};"
 
@@ -256,10 +256,10 @@ class Writer:
         op = symbol.op
         operands = symbol.operands
         if op == "guard":
-            given, found = operands
+            given, expected = operands
             self._put(
                 depth,
-                f"if ({self.operand(given)} != {self.operand(found)}) {self._other(given, found)}",
+                f"if ({self.operand(given)} != {self.operand(expected)}) {self._other(given, expected)}",
             )
         elif op == "call":
             self._call(operands, depth)
@@ -309,8 +309,8 @@ class Writer:
         """C text of a value with a pair of braces for each operand, and the operands."""
         op = symbol.op
         operands = symbol.operands
-        if (found := self._in_memory(symbol)) is not None:
-            return f"{found.base}[{{}}]", [Term("", found.index)]
+        if (element := self._in_memory(symbol)) is not None:
+            return f"{element.base}[{{}}]", [Term("", element.index)]
         # A row of a table: its elements lie row by row.
         if op == "row":
             index, table, width, column = operands
@@ -462,13 +462,15 @@ def _stored(step: Step) -> set[int]:
     moved: set[int] = set()
     for block in _all_blocks(step.root, step.recording):
         if isinstance(block.result, list):
-            moved.update(one.number for _, one in block.result if isinstance(one, Symbol))
+            moved.update(moving.number for _, moving in block.result if isinstance(moving, Symbol))
     for loop in step.recording.loops.values():
         for end in ends(loop.body):
             if isinstance(end.result, Flat):
                 pairs = zip(end.result.numbers, loop.carried, strict=True)
                 moved.update(
-                    one.number for one, old in pairs if isinstance(one, Symbol) and one is not old
+                    result.number
+                    for result, old in pairs
+                    if isinstance(result, Symbol) and result is not old
                 )
     return moved
 
@@ -483,7 +485,7 @@ def _roots(block: Block, recording: Recording, with_results: bool) -> Iterator[A
         return
     result = block.result
     if isinstance(result, Exception):
-        yield from said(result, recording)
+        yield from values_in_text(result, recording)
     elif not with_results:
         return
     elif isinstance(result, list):
@@ -559,7 +561,7 @@ def _all_blocks(root: Block, recording: Recording):
         roots += [loop.going, loop.body]
     for branch in recording.branches.values():
         roots += branch.sides
-    roots += [one.body for one in recording.maps.values()]
+    roots += [mapping.body for mapping in recording.maps.values()]
     while roots:
         block = roots.pop()
         yield block

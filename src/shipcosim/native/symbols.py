@@ -167,7 +167,7 @@ class Symbol:
 
     # The value is unknown now: leave a mark in the text that C later replaces.
     def __format__(self, how: str) -> str:
-        self.recording.said[self.number] = self
+        self.recording.named[self.number] = self
         return f"{SAID}{self.number}:{how}{SAID}"
 
     def __str__(self):
@@ -232,8 +232,8 @@ def first_symbol(*values: Any) -> Symbol | None:
             if hasattr(value, "maths")
             else inside
         )
-        if (found := first_symbol(*inside)) is not None:
-            return found
+        if (symbol := first_symbol(*inside)) is not None:
+            return symbol
     return None
 
 
@@ -382,11 +382,11 @@ class Maths:
         if first_symbol(xs, ys) is not None:
             # Linear interpolation in a short table of values in memory.
             # Start left of the table, then take the last interval whose start is not beyond x.
-            found = ys[0]
+            result = ys[0]
             for k in range(len(xs) - 1):
                 between = ys[k] + (ys[k + 1] - ys[k]) * (x - xs[k]) / (xs[k + 1] - xs[k])
-                found = Maths.where(x >= xs[k], between, found)
-            return Maths.where(x >= xs[len(xs) - 1], ys[len(xs) - 1], found)
+                result = Maths.where(x >= xs[k], between, result)
+            return Maths.where(x >= xs[len(xs) - 1], ys[len(xs) - 1], result)
         # Constant points become tables of the C text, and the search runs there.
         recording = x.recording
         first = recording.table(np.asarray(xs))
@@ -426,9 +426,9 @@ def primitive(
     made = recording.value("primitive", "d", name, size, *arguments)
     parts = [recording.value("part", "d", made, place) for place in range(size)]
     # Fill an array made before: NumPy would try to read the symbols as sequences.
-    found = np.empty(size, dtype=object)
-    found[:] = parts
-    return found.reshape(shape).view(SymbolArray)
+    result = np.empty(size, dtype=object)
+    result[:] = parts
+    return result.reshape(shape).view(SymbolArray)
 
 
 class SymbolArray(np.ndarray):
@@ -441,7 +441,10 @@ class SymbolArray(np.ndarray):
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **named: Any) -> Any:
         # Plain arrays avoid that NumPy calls this method again.
-        given = [one.view(np.ndarray) if isinstance(one, SymbolArray) else one for one in inputs]
+        given = [
+            operand.view(np.ndarray) if isinstance(operand, SymbolArray) else operand
+            for operand in inputs
+        ]
         named.pop("out", None)
         # Without this, NumPy would ask each comparison for its truth and so fork the recording.
         if method == "__call__" and ufunc.__name__ in COMPARISONS:
@@ -449,7 +452,11 @@ class SymbolArray(np.ndarray):
         elif method == "__call__" and ufunc.__name__ in FUNCTIONS:
             return as_symbols(FUNCTIONS[ufunc.__name__](*given))
         # Large products become one C primitive. Written out they would be thousands of values.
-        elif ufunc is np.matmul and min(one.ndim for one in given) > 1 and given[0].shape[-1] > 3:
+        elif (
+            ufunc is np.matmul
+            and min(operand.ndim for operand in given) > 1
+            and given[0].shape[-1] > 3
+        ):
             symbol = first_symbol(*given)
             if symbol is not None and symbol.recording.stands_alone:
                 return _products(symbol, *given)
@@ -457,9 +464,11 @@ class SymbolArray(np.ndarray):
         elif ufunc in _EXTREMES:
             ufunc = _EXTREMES[ufunc]
             named = {key: value for key, value in named.items() if key == "axis"}
-        found = getattr(ufunc, method)(*given, **named)
+        result = getattr(ufunc, method)(*given, **named)
         return (
-            found.item() if isinstance(found, np.ndarray) and found.ndim == 0 else as_symbols(found)
+            result.item()
+            if isinstance(result, np.ndarray) and result.ndim == 0
+            else as_symbols(result)
         )
 
 
@@ -467,9 +476,9 @@ def _products(symbol, a, b):
     """Product of matrices over the last two axes."""
     stack = np.broadcast_shapes(a.shape[:-2], b.shape[:-2])
     if stack:
-        a, b = (np.broadcast_to(one, (*stack, *one.shape[-2:])) for one in (a, b))
+        a, b = (np.broadcast_to(matrix, (*stack, *matrix.shape[-2:])) for matrix in (a, b))
         return np.stack(
-            [_products(symbol, one, other) for one, other in zip(a, b, strict=True)]
+            [_products(symbol, first, other) for first, other in zip(a, b, strict=True)]
         ).view(SymbolArray)
     sizes = [*a.shape, b.shape[1]]
     return primitive(

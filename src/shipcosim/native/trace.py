@@ -83,8 +83,8 @@ def shape_of(fmu: Any) -> Shape:
     numbers, rest = numbers_of(vars(fmu), constant, unchanging)
     # by name, which is that of a content: each run has a class of its own
     key = type(fmu).__module__, type(fmu).__qualname__, whole, constant, unchanging, rest
-    known = _SHAPES.get(key)
-    if known is None:
+    shape = _SHAPES.get(key)
+    if shape is None:
         flat = Flat(vars(fmu), constant, unchanging)
         # Whole numbers of the parameters may decide in the code; all other numbers may change.
         choices = (
@@ -92,11 +92,11 @@ def shape_of(fmu: Any) -> Shape:
             for n, leaf in enumerate(flat.leaves)
             if leaf.kind == "i" and leaf.path[0] in whole | unchanging
         )
-        known = Shape(flat, numbers, constant, unchanging, frozenset(choices))
+        shape = Shape(flat, numbers, constant, unchanging, frozenset(choices))
         if len(_SHAPES) >= MOST_SHAPES:
             _SHAPES.clear()
-        _SHAPES[key] = known
-    return replace(known, numbers=numbers)
+        _SHAPES[key] = shape
+    return replace(shape, numbers=numbers)
 
 
 _SHAPES: dict[tuple, Shape] = {}

@@ -40,7 +40,7 @@ class CheckedFiles(Result):
     @property
     def problems(self) -> tuple[Problem, ...]:
         """Of all files."""
-        return tuple(problem for found in self.files.values() for problem in found)
+        return tuple(problem for problems in self.files.values() for problem in problems)
 
     @property
     def failures(self) -> tuple[Problem, ...]:
@@ -58,10 +58,10 @@ class CheckedFiles(Result):
         return tuple(
             Check(
                 file,
-                passed_or_failed(not any(problem.is_error for problem in found)),
-                "\n".join(map(str, worth_showing(found))),
+                passed_or_failed(not any(problem.is_error for problem in problems)),
+                "\n".join(map(str, worth_showing(problems))),
             )
-            for file, found in self.files.items()
+            for file, problems in self.files.items()
         )
 
     def as_json(self) -> list[dict[str, Any]]:
@@ -84,9 +84,9 @@ class CheckedFiles(Result):
         import pandas
 
         rows = [
-            (file, one.severity, one.where, one.found, one.remedy)
-            for file, found in self.files.items()
-            for one in found
+            (file, problem.severity, problem.where, problem.found, problem.remedy)
+            for file, problems in self.files.items()
+            for problem in problems
         ]
         return pandas.DataFrame(rows, columns=["file", "severity", "where", "found", "remedy"])
 
@@ -96,7 +96,7 @@ class CheckedFiles(Result):
 
         errors = sum(problem.is_error for problem in self.problems)
         remarks = len(self.problems) - errors
-        said = (
+        message = (
             f"{errors or 'No'} error{'s' * (errors != 1)}"
             + f", {remarks} remark{'s' * (remarks > 1)}" * (remarks > 0)
         )
@@ -104,13 +104,13 @@ class CheckedFiles(Result):
         return Card(
             title=f"Check of {', '.join(self.files)}",
             facts=(),
-            outcome=Outcome("failed", "FAIL", f"{said}.")
+            outcome=Outcome("failed", "FAIL", f"{message}.")
             if errors
-            else Outcome("passed", "PASS", f"{said}."),
+            else Outcome("passed", "PASS", f"{message}."),
             blocks=(
                 *(
-                    Block(name, lines=tuple(map(str, worth_showing(found))))
-                    for name, found in self.files.items()
+                    Block(name, lines=tuple(map(str, worth_showing(problems))))
+                    for name, problems in self.files.items()
                 ),
                 *(
                     Block(f"Variables of {name}", Table(rows, head), folded=True)

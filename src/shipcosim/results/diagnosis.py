@@ -28,10 +28,13 @@ class _ShownDiagnosis(SavedResult, Diagnosis):
     @property
     def checks(self) -> tuple[Check, ...]:
         """That simulation and log agree, and each finding."""
-        from shipcosim.report.diagnosis.words import told
+        from shipcosim.report.diagnosis.words import finding_text
 
         findings = () if self.passed else self.findings
-        each = (Check(f"no {one.label}", "failed", told(one, self.causes)) for one in findings)
+        each = (
+            Check(f"no {finding.label}", "failed", finding_text(finding, self.causes))
+            for finding in findings
+        )
         return (*super().checks, *each)
 
     def _card(self) -> Card:
@@ -59,8 +62,8 @@ class DiagnosisOfLog(_ShownDiagnosis):
         from shipcosim.report.notebook.diagnosis_card import tracks_svg
 
         if self.tracks is None:
-            found = "There are no predictions of this log to draw."
-            raise error_at(self.name, found, "`shipcosim.read_log(...).track()` draws the log.")
+            message = "There are no predictions of this log to draw."
+            raise error_at(self.name, message, "`shipcosim.read_log(...).track()` draws the log.")
         return Picture(f"track of {self.name}", tracks_svg(self.tracks, f"track of {self.name}"))
 
 

@@ -219,8 +219,8 @@ class Run(LikeTable, Result):
         shown = display_table(self.table, roles.signal(roles.ship, "psi"))
         drawn = [name for name in names if name in shown]
         if not drawn:
-            found = f"{', '.join(names)}: no signal among these is a number over time."
-            raise error_at(self.name, found, "Only those can be drawn.")
+            message = f"{', '.join(names)}: no signal among these is a number over time."
+            raise error_at(self.name, message, "Only those can be drawn.")
         title = f"{', '.join(signals) or 'signals'} of {self.name}"
         events = sorted({event.time for event in self.scenario.events})
         return Picture(title, panels_svg(shown, drawn, title, events))

@@ -252,6 +252,6 @@ def finite(value: Any) -> Any:
     return str(value) if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def parts_of(found: Any) -> dict[str, Any]:
+def parts_of(record: Any) -> dict[str, Any]:
     """Fields of a record by name, to make a result of it."""
-    return {one.name: getattr(found, one.name) for one in fields(found)}
+    return {field.name: getattr(record, field.name) for field in fields(record)}

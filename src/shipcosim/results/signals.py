@@ -29,32 +29,36 @@ def chosen(names: Iterable[str], wanted: Sequence[str]) -> list[str]:
     >>> chosen(["vessel.x", "port.thrust", "port.rpm", "tunnel.thrust"], ["port", "*.thrust"])
     ['port.thrust', 'port.rpm', 'tunnel.thrust']
     """
-    known = list(names)
-    found = {}
+    available = list(names)
+    matched = {}
     problems = []
-    for one in wanted:
-        matching = _matching(known, one)
-        found |= dict.fromkeys(matching)
+    for pattern in wanted:
+        matching = _matching(available, pattern)
+        matched |= dict.fromkeys(matching)
         if not matching:
             problems.append(
-                Problem(str(one), "There is no such signal or component.", _remedy(known, str(one)))
+                Problem(
+                    str(pattern),
+                    "There is no such signal or component.",
+                    _remedy(available, str(pattern)),
+                )
             )
     raise_errors(problems)
-    return list(found)
+    return list(matched)
 
 
-def _matching(known: Sequence[str], wanted: str) -> list[str]:
+def _matching(available: Sequence[str], wanted: str) -> list[str]:
     """Signals that a name means; the nearest meaning comes first."""
-    if wanted in known:
+    if wanted in available:
         return [wanted]
-    of_component = [name for name in known if name.startswith(f"{wanted}.")]
-    of_connector = [name for name in known if name.rpartition(".")[2] == wanted]
-    return of_component or of_connector or [name for name in known if fnmatchcase(name, wanted)]
+    of_component = [name for name in available if name.startswith(f"{wanted}.")]
+    of_connector = [name for name in available if name.rpartition(".")[2] == wanted]
+    return of_component or of_connector or [name for name in available if fnmatchcase(name, wanted)]
 
 
-def _remedy(known: Sequence[str], wanted: str) -> str:
+def _remedy(available: Sequence[str], wanted: str) -> str:
     """Remedy: signals of the component if it exists, else the components, else all signals."""
     component = wanted.rpartition(".")[0]
-    of_component = [name for name in known if component and name.startswith(f"{component}.")]
-    components = {name.rpartition(".")[0] for name in known} - {""}
-    return suggestion(wanted, of_component or components or known)
+    of_component = [name for name in available if component and name.startswith(f"{component}.")]
+    components = {name.rpartition(".")[0] for name in available} - {""}
+    return suggestion(wanted, of_component or components or available)

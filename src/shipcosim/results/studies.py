@@ -57,19 +57,19 @@ class EngineComparison(Result, Comparison):
 
     def _check_of(self, signal: Signal) -> Check:
         """That the engines agree on a signal."""
-        worst = max(signal.engines.items(), key=lambda one: one[1].relative, default=None)
+        worst = max(signal.engines.items(), key=lambda entry: entry[1].relative, default=None)
         message = "only our own engine has it"
         if worst is not None:
-            engine, found = worst
+            engine, difference = worst
             message = (
-                f"{engine} differs from ours by {found.largest:.3g} {signal.unit} at {found.time:g} s, "
-                f"{found.relative:.1e} of its range; limit {self.tolerance:g}"
+                f"{engine} differs from ours by {difference.largest:.3g} {signal.unit} at {difference.time:g} s, "
+                f"{difference.relative:.1e} of its range; limit {self.tolerance:g}"
             )
         return Check(signal.name, passed_or_failed(signal.worst <= self.tolerance), message)
 
     def as_json(self) -> dict[str, Any]:
         """The comparison, as `shipcosim compare --json` prints it; numbers that JSON does not know are texts."""
-        values = {one.name: getattr(self, one.name) for one in fields(Comparison)}
+        values = {field.name: getattr(self, field.name) for field in fields(Comparison)}
         return finite(asdict(Comparison(**values)) | {"agree": self.agree})
 
     def to_pandas(self) -> pandas.DataFrame:
@@ -77,16 +77,16 @@ class EngineComparison(Result, Comparison):
         import pandas
 
         rows = [
-            {"unit": one.unit, "range": one.range}
-            | {engine: difference.largest for engine, difference in one.engines.items()}
+            {"unit": signal.unit, "range": signal.range}
+            | {engine: difference.largest for engine, difference in signal.engines.items()}
             | {
-                "of range": one.worst,
-                "half the step": one.step.largest if one.step else "not tried",
+                "of range": signal.worst,
+                "half the step": signal.step.largest if signal.step else "not tried",
             }
-            for one in self.signals
+            for signal in self.signals
         ]
         return pandas.DataFrame(
-            rows, index=pandas.Index([one.name for one in self.signals], name="signal")
+            rows, index=pandas.Index([signal.name for signal in self.signals], name="signal")
         )
 
     def _card(self) -> Card:
@@ -234,6 +234,6 @@ def series_of(tracks: Tracks) -> xarray.Dataset:
         tracks.measured.rename({name: f"measured_{name}" for name in tracks.measured.data_vars})
     ]
     for name, predicted in tracks.predicted.items():
-        own = {variable: f"{name}_{variable}" for variable in predicted.data_vars}
-        parts.append(predicted.rename(own | {"time": "since_start"}))
+        renamed = {variable: f"{name}_{variable}" for variable in predicted.data_vars}
+        parts.append(predicted.rename(renamed | {"time": "since_start"}))
     return xarray.merge(parts, compat="no_conflicts", join="outer")

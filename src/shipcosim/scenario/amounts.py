@@ -38,7 +38,7 @@ def with_numbers(scenario: Scenario, unit_of: UnitOf) -> Scenario:
     """
     # Texts with units become numbers; everything else stays.
     events = [_event(event, unit_of) for event in scenario.events]
-    expect = [expectation_in_numbers(one, unit_of) for one in scenario.expect]
+    expect = [expectation_in_numbers(expectation, unit_of) for expectation in scenario.expect]
     return scenario.model_copy(update={"events": events, "expect": expect})
 
 
@@ -101,15 +101,15 @@ def amount_complaints(expect: Expectation, unit_of: UnitOf) -> Iterator[tuple[st
     first = expect.signal[0]
     for other in expect.signal[1:]:
         if _differ(first, other, unit_of):
-            found = f"{_in(first, unit_of)} and {_in(other, unit_of)}: no distance spans the two."
-            yield "signal", found, "Write an expectation for each."
+            message = f"{_in(first, unit_of)} and {_in(other, unit_of)}: no distance spans the two."
+            yield "signal", message, "Write an expectation for each."
     # A target signal must measure the same as its signal.
     for key, signal, value in _amounts(expect):
         if key == "near" and value in expect.signals and _differ(signal, value, unit_of):
-            found = (
+            message = (
                 f"{_in(signal, unit_of)} and {_in(value, unit_of)}: they measure different things."
             )
-            yield key, found, f"Compare {signal} with a signal of its unit."
+            yield key, message, f"Compare {signal} with a signal of its unit."
         # Amounts must be convertible to the unit of their signal.
         try:
             numbers[key] = in_unit_of(value, signal, unit_of, key == "within")
@@ -117,13 +117,13 @@ def amount_complaints(expect: Expectation, unit_of: UnitOf) -> Iterator[tuple[st
             yield key, f"{key} of {signal}: {error.found}", error.remedy
     # Limits may have units of their own: as numbers they show which one is higher.
     if numbers.get("at_least", -inf) > numbers.get("at_most", inf):
-        found = f"at_least = {expect.at_least} lies above at_most = {expect.at_most}."
-        yield "at_least", found, "No value is between them. Exchange the two."
+        message = f"at_least = {expect.at_least} lies above at_most = {expect.at_most}."
+        yield "at_least", message, "No value is between them. Exchange the two."
 
 
-def _differ(one: str, other: str, unit_of: UnitOf) -> bool:
+def _differ(first: str, other: str, unit_of: UnitOf) -> bool:
     """True if two signals cannot be compared; without a unit they can, as nothing is known."""
-    units = unit_of(one), unit_of(other)
+    units = unit_of(first), unit_of(other)
     return (
         units[0] is not None
         and units[1] is not None

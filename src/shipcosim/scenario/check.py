@@ -41,23 +41,25 @@ def check_files(scenario: Scenario) -> list[Problem]:
     system = scenario.system_path
     problems = []
     if not system.exists() and "#" not in scenario.system:
-        known = _systems(scenario)
-        found = f"there is no system '{scenario.system}', by this name or beside the scenario."
-        return [problem_at(scenario, ("system",), found, suggestion(scenario.system, known))]
+        available = _systems(scenario)
+        message = f"there is no system '{scenario.system}', by this name or beside the scenario."
+        return [problem_at(scenario, ("system",), message, suggestion(scenario.system, available))]
     # Parameter sets in the system's resources or next to the scenario.
     for name, path in zip(scenario.parameters, scenario.parameter_paths, strict=True):
         if not path.exists():
-            known = [file.stem for file in (system / "resources").glob("*.ssv")]
-            found = f"there is no parameter set '{name}', in {system / 'resources'} or beside the scenario."
-            problems.append(problem_at(scenario, ("parameters",), found, suggestion(name, known)))
+            available = [file.stem for file in (system / "resources").glob("*.ssv")]
+            message = f"there is no parameter set '{name}', in {system / 'resources'} or beside the scenario."
+            problems.append(
+                problem_at(scenario, ("parameters",), message, suggestion(name, available))
+            )
     # FMUs are looked for, not built.
     for name, fmu in scenario.components.items():
         try:
             scenario.model_copy(update={"components": {name: fmu}}).component_paths(build=False)
         except ShipcosimError as error:
-            found = f"there is no FMU '{fmu}', by this name or beside the scenario."
+            message = f"there is no FMU '{fmu}', by this name or beside the scenario."
             problems.append(
-                problem_at(scenario, ("components", name), found, error.problems[0].remedy)
+                problem_at(scenario, ("components", name), message, error.problems[0].remedy)
             )
     return problems
 
@@ -118,12 +120,12 @@ def time_complaints(
     stop = scenario.stop_time
     # Too many steps would fill the memory before anything runs.
     if (stop - start_time) / step > MOST_STEPS:
-        found = (
+        message = (
             f"stop_time = {stop:g} s takes {(stop - start_time) / step:.3g} steps of {step:g} s."
         )
         yield (
             ("stop_time",),
-            found,
+            message,
             f"At most {MOST_STEPS:,.0f} are done: take larger steps or stop earlier.",
             "error",
         )
@@ -147,10 +149,10 @@ def time_complaints(
         count = whole_steps(time - since, step)
         # No step at all is wrong for lengths of time, but an event may be at 0.
         if count is None or (count == 0 and keys[0] != "events"):
-            found = f"{keys[-1]} = {time:g} s is no multiple of the step size {step:g} s."
+            message = f"{keys[-1]} = {time:g} s is no multiple of the step size {step:g} s."
             nearest = since + max(1, round(steps_in(time - since, step))) * step
-            found = found.replace(" s.", f" s after {since:g} s.") if since else found
-            yield keys, found, f"The nearest would be {nearest:g} s.", "error"
+            message = message.replace(" s.", f" s after {since:g} s.") if since else message
+            yield keys, message, f"The nearest would be {nearest:g} s.", "error"
         elif keys[0] == "events" and time >= stop:
             # An event at or after the end has no effect: worth a remark.
             yield (
@@ -176,18 +178,18 @@ def _window_complaints(
         first, last = (steps_in(time - start_time, interval) for time in window)
         # A window before the start is never judged, in no run.
         if window[0] < start_time:
-            found = f"during = {window} begins before the run, at {start_time:g} s."
-            yield keys, found, "Let it begin there or later.", "error"
+            message = f"during = {window} begins before the run, at {start_time:g} s."
+            yield keys, message, "Let it begin there or later.", "error"
         # One beyond the end is judged only as far as the run goes.
         elif window[1] > stop:
-            found = f"during = {window} reaches beyond the end of the run at {stop:g} s."
-            yield keys, found, "", "remark"
+            message = f"during = {window} reaches beyond the end of the run at {stop:g} s."
+            yield keys, message, "", "remark"
         # One between two rows has nothing to judge.
         elif floor(last + ROUNDING) < ceil(first - ROUNDING):
-            found = (
+            message = (
                 f"during = {window} lies between two rows: the run has one every {interval:g} s."
             )
-            yield keys, found, "Let it include one.", "error"
+            yield keys, message, "Let it include one.", "error"
 
 
 ROUNDING = 1e-6
@@ -206,10 +208,10 @@ def check_parameters(scenario: Scenario, system: System) -> Iterator[Problem]:
         ]:
             units = {name: component.variables[name].unit for name in missing}
             names = ", ".join(f"{name} [{unit}]" if unit else name for name, unit in units.items())
-            found = f"parameters left out, which have no value of their own: {names}."
+            message = f"parameters left out, which have no value of their own: {names}."
             yield Problem(
                 f"{system.file}: {component.name}",
-                found,
+                message,
                 "Give them, as a ship's parameter set does.",
             )
 
@@ -276,9 +278,9 @@ def _replaced_changes(scenario: Scenario) -> Iterator[Problem]:
             before = earlier.get(signal)
             if before is not None and before[0] == event.time:
                 time, keys = before
-                found = f"the {keys[2]} of {signal} at {time:g} s has no effect."
+                message = f"the {keys[2]} of {signal} at {time:g} s has no effect."
                 remedy = f"A later {verb} at the same time takes its place. Keep one of them."
-                yield problem_at(scenario, keys, found, remedy, "remark")
+                yield problem_at(scenario, keys, message, remedy, "remark")
             earlier[signal] = event.time, ("events", number, verb, signal)
 
 
@@ -324,8 +326,8 @@ def _event_complaint(
         return _unit_complaint(system, verb, signal, value, (component, name))
     if verb != "reset" and not _fits(value, kind, items, verb):
         listed = f" Its items are {', '.join(items)}." if items else ""
-        found = f"{verb} of '{signal}' with {value!r}: the signal is {kind or None}."
-        return found, f"{_WANTED.get(kind, 'It cannot be changed.')}{listed}"
+        message = f"{verb} of '{signal}' with {value!r}: the signal is {kind or None}."
+        return message, f"{_WANTED.get(kind, 'It cannot be changed.')}{listed}"
     return None
 
 

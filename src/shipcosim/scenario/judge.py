@@ -41,12 +41,12 @@ class Verdict:
 
     def __str__(self) -> str:
         measure = "distance" if self.expect.near is not None else "value"
-        found = (
+        message = (
             f"worst {measure} {self.worst:.4g} at {self.time:g} s"
             if np.isfinite(self.time)
             else "no row to judge"
         )
-        return f"{'holds' if self.passed else 'FAILS'}: {self.expect} ({found})"
+        return f"{'holds' if self.passed else 'FAILS'}: {self.expect} ({message})"
 
 
 def within_run(
@@ -68,15 +68,15 @@ def within_run(
     # The whole run contains every expectation.
     first, last = table["time"].values[[0, -1]]
     is_whole = first == 0.0 and last >= max(planned, scenario.stop_time) - 1e-9
-    found: tuple[list[Expectation], list[Expectation]] = [], []
+    split: tuple[list[Expectation], list[Expectation]] = [], []
     for expect in scenario.expect:
         # A window counts where all of it ran, also where a study or the scenario itself ends before it does.
         if expect.during:
             lies_within = first <= expect.during[0] and expect.during[1] <= last + 1e-9
         else:
             lies_within = is_whole or (last > first and not expect.statistic)
-        found[0 if lies_within else 1].append(expect)
-    return found
+        split[0 if lies_within else 1].append(expect)
+    return split
 
 
 def judge(table: xarray.Dataset, scenario: Scenario) -> list[Verdict]:

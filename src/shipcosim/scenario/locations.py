@@ -25,7 +25,7 @@ _NAME = re.compile(r"""[\w-]+|"[^"]*"|'[^']*'""")
 def problem_at(
     scenario: Scenario,
     keys: AnyKeys,
-    found: str,
+    message: str,
     remedy: str = "",
     severity: str = "error",
 ) -> Problem:
@@ -37,12 +37,12 @@ def problem_at(
         With the key.
     keys : sequence of str and int
         Keys and positions in lists from the outside in, as ``("events", 0, "time")``.
-    found, remedy, severity : str
+    message, remedy, severity : str
         As of the problem.
     """
     path = scenario.path
     text = _text_of(path, path.stat().st_mtime_ns) if path and path.is_file() else ""
-    return Problem(location_of(path or "scenario", text, keys), found, remedy, severity)
+    return Problem(location_of(path or "scenario", text, keys), message, remedy, severity)
 
 
 def location_of(path: str | Path, text: str, keys: AnyKeys) -> str:
@@ -70,15 +70,15 @@ def _lines_of_keys(text: str) -> dict[Keys, int]:
     """First line of each table and key of a TOML text, found once for all problems of a file."""
     section: Keys = ()
     counts: dict[tuple, int] = {}
-    found: dict[Keys, int] = {}
+    lines: dict[Keys, int] = {}
     for number, line in enumerate(text.splitlines(), 1):
         # A header opens a table; a key belongs to the table that is open.
         if header := _HEADER.match(line):
             section = _section(_names(header[2]), header[1] == "[[", counts)
-            found.setdefault(section, number)
+            lines.setdefault(section, number)
         elif key := _KEY.match(line):
-            found.setdefault((*section, *_names(key[1])), number)
-    return found
+            lines.setdefault((*section, *_names(key[1])), number)
+    return lines
 
 
 @lru_cache(maxsize=4)

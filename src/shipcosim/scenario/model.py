@@ -95,9 +95,9 @@ def problems_in(error: ValidationError, where: str) -> list[Problem]:
                 )
             )
         else:
-            found = f"{name} = {finding['input']!r:.60}." if name else ""
+            message = f"{name} = {finding['input']!r:.60}." if name else ""
             text = finding["msg"].removeprefix("Value error, ").removesuffix(".")
-            problems.append(Problem(where, found or f"{text}.", f"{text}." if found else ""))
+            problems.append(Problem(where, message or f"{text}.", f"{text}." if message else ""))
     return problems
 
 
@@ -315,8 +315,8 @@ class Scenario(Part):
     def system_path(self) -> Path:
         """Path of the system: next to the scenario or in the project, else found by name."""
         candidates = [self.folder / self.system, self.project / self.system]
-        if found := next((c for c in candidates if self.system and c.exists()), None):
-            return found
+        if path := next((c for c in candidates if self.system and c.exists()), None):
+            return path
         return (
             library.named("system", self.system, self.project) or self.project / "ssp" / self.system
         )
@@ -340,10 +340,10 @@ class Scenario(Part):
         ShipcosimError
             If there is no such FMU.
         """
-        found = {}
+        paths = {}
         for name, fmu in self.components.items():
             path = self.folder / fmu
-            found[name] = (
+            paths[name] = (
                 path if path.is_file() else library.find("fmu", fmu, near=self.project, build=build)
             )
-        return found
+        return paths

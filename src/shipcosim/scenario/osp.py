@@ -176,8 +176,8 @@ def _content(path: Path) -> Any:
         return yaml.load(text, Loader=_Loader)
     except (ValueError, RecursionError, yaml.YAMLError) as error:
         kind = "JSON" if path.suffix.lower() == ".json" else "YAML"
-        found = f"It cannot be read as {kind}: {' '.join(str(error).split())}."
-        raise error_at(str(path), found, "Correct it there.") from None
+        message = f"It cannot be read as {kind}: {' '.join(str(error).split())}."
+        raise error_at(str(path), message, "Correct it there.") from None
 
 
 def _once(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
@@ -201,11 +201,11 @@ class _Loader(FAST):
         )
 
 
-def _unknown(place: str, given: Iterable[str], known: Iterable[str]) -> Iterator[Problem]:
+def _unknown(place: str, given: Iterable[str], allowed: Iterable[str]) -> Iterator[Problem]:
     for name in given:
-        if name not in known:
-            found = f"'{name}' is not used."
-            yield Problem(place, found, f"Known: {', '.join(known)}.", "remark")
+        if name not in allowed:
+            message = f"'{name}' is not used."
+            yield Problem(place, message, f"Known: {', '.join(allowed)}.", "remark")
 
 
 def _change(given: dict[str, Any], defaults: dict[str, Any], step_size: float) -> Change:
@@ -276,16 +276,16 @@ def _doubts(
     seen = set()
     for count, _, signal, _ in due:
         if (count, signal) in seen:
-            found = f"{signal} is changed twice in the step at {count * step_size:g} s; the later one in the file acts."
+            message = f"{signal} is changed twice in the step at {count * step_size:g} s; the later one in the file acts."
             yield Problem(
-                str(path), found, "libcosim takes them in any order: keep one of them.", "remark"
+                str(path), message, "libcosim takes them in any order: keep one of them.", "remark"
             )
         seen.add((count, signal))
     # Without an end libcosim takes everything back after the last event.
     if due and end is None:
         last = (max(count for count, *_ in due) + 1) * step_size
-        found = f"It has no end: as in libcosim everything is taken back in the next step, at {last:g} s."
-        yield Problem(str(path), found, 'Give "end", in seconds.', "remark")
+        message = f"It has no end: as in libcosim everything is taken back in the next step, at {last:g} s."
+        yield Problem(str(path), message, 'Give "end", in seconds.', "remark")
 
 
 def _taken_back(

@@ -84,17 +84,19 @@ def odd_values(scenario: Scenario, system: System) -> Iterator[Problem]:
         for name, value in component.start.items():
             signal = f"{component.name}.{name}"
             written = scenario.set.get(signal, value)
-            if not isinstance(written, str) and (said := _odd(system, component.name, name, value)):
-                yield Problem(signal, *said, "remark")
+            if not isinstance(written, str) and (
+                oddity := _odd(system, component.name, name, value)
+            ):
+                yield Problem(signal, *oddity, "remark")
     # Values that events set; a bias may be anything.
     for number, event in enumerate(scenario.events):
         for verb, signal, value in event.changes:
-            if verb == "override" and (said := _odd(system, *system.split(signal), value)):
-                found, remedy = said
+            if verb == "override" and (oddity := _odd(system, *system.split(signal), value)):
+                message, remedy = oddity
                 yield problem_at(
                     scenario,
                     ("events", number, verb, signal),
-                    f"{signal}: {found}",
+                    f"{signal}: {message}",
                     remedy,
                     "remark",
                 )
@@ -119,20 +121,20 @@ def _odd(
         )
     # Some ranges hold for ships only.
     variables = system.components[component].variables if component is not None else {}
-    is_ship = all(one in variables for one in SHIP)
+    is_ship = all(name_of_ship in variables for name_of_ship in SHIP)
     # Compare in the unit of the range.
-    for known in RANGES:
-        bounds = spelled_unit(known.unit)
+    for usual in RANGES:
+        bounds = spelled_unit(usual.unit)
         if (
             bounds is None
             or relation(unit, bounds) not in ("same", "convertible")
-            or (known.of_ship and not is_ship)
+            or (usual.of_ship and not is_ship)
         ):
             continue
         size = value * unit.factor / bounds.factor
-        if re.fullmatch(known.name, name) and not known.low <= size <= known.high:
+        if re.fullmatch(usual.name, name) and not usual.low <= size <= usual.high:
             if size < 0.0:
                 return f"{value:g} {unit.name} is negative.", "Check its sign."
-            few = "little" if size < known.low else "much"
-            return f"{value:g} {unit.name} is very {few}: {known.reason}.", "Check number and unit."
+            few = "little" if size < usual.low else "much"
+            return f"{value:g} {unit.name} is very {few}: {usual.reason}.", "Check number and unit."
     return None

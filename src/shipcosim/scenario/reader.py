@@ -91,7 +91,7 @@ def toml_of(text: str) -> dict[str, Any]:
         thousands of parts.
     """
     # Keys, brackets and numbers of thousands of parts would take the parser far too long.
-    if any(found[0].count(".") > MOST_PARTS for found in _DOTTED.finditer(text)):
+    if any(match[0].count(".") > MOST_PARTS for match in _DOTTED.finditer(text)):
         raise ValueError(f"a key has more than {MOST_PARTS} parts")
     try:
         content = tomllib.loads(text)
@@ -128,19 +128,19 @@ def _text(path: Path) -> str:
     except UnicodeDecodeError as error:
         # Line of the first byte that is no UTF-8.
         line = error.object[: error.start].count(b"\n") + 1
-        found = (
+        message = (
             f"is not UTF-8 text: byte 0x{error.object[error.start]:02x} is none of its characters."
         )
-        raise error_at(f"{path}, line {line}", found, "Save the file in UTF-8.") from error
+        raise error_at(f"{path}, line {line}", message, "Save the file in UTF-8.") from error
 
 
 def _no_toml(path: Path, message: str, kind: str) -> Problem:
     """Message of the TOML parser, with its line where our messages have theirs."""
     line = re.search(r" \(at line (\d+), column \d+\)", message)
     where = f"{path}, line {line[1]}" if line else str(path)
-    found = f"is no TOML: {message.replace(line[0], '') if line else message}."
+    complaint = f"is no TOML: {message.replace(line[0], '') if line else message}."
     return Problem(
-        where, found, f"{kind} are text files in TOML: keys, =, values, texts in quotes."
+        where, complaint, f"{kind} are text files in TOML: keys, =, values, texts in quotes."
     )
 
 

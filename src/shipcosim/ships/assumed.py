@@ -79,37 +79,37 @@ def assumed_ship_text(length: float, thrusters: Iterable[LoggedThruster]) -> str
     )
     # All thrusters together hold the speed, each by the same share.
     share = resistance * speed / max(len(units), 1)
-    return text + "".join(_thruster(one, length, share) for one in units)
+    return text + "".join(_thruster(unit, length, share) for unit in units)
 
 
-def _thruster(one: LoggedThruster, length: float, thrust: float) -> str:
+def _thruster(logged: LoggedThruster, length: float, thrust: float) -> str:
     """Entry of a thruster with the place that its name says; aft on the centreline without one."""
-    words = re.findall("[a-z]+", one.name.lower())
+    words = re.findall("[a-z]+", logged.name.lower())
     side = next((sign for word, sign in _SIDES.items() if word in words), 0.0)
     is_forward = any(word in words for word in _FORWARD)
     entry = {
-        "name": f'"{one.name}"',
+        "name": f'"{logged.name}"',
         "x": f"{(0.4 if is_forward else -0.4) * length:.4g}",
         "y": f"{0.2 * side * length:.4g}",
     }
-    if one.drives == {"thrust"}:
+    if logged.drives == {"thrust"}:
         entry |= {"kind": '"fixed"', "command": '"thrust"'}
-    elif one.drives == {"rpm"}:
+    elif logged.drives == {"rpm"}:
         # Thrust is proportional to the square of the shaft speed.
-        coefficient = thrust / (max(one.largest, 1.0) * pi / 30.0) ** 2
+        coefficient = thrust / (max(logged.largest, 1.0) * pi / 30.0) ** 2
         both = f"coefficient_ahead = {coefficient:.4g}, coefficient_astern = {coefficient:.4g}"
         entry |= {"kind": '"fixed"', "coefficients": f"{{ {both} }}"}
-    elif one.drives == {"rpm", "azimuth"}:
+    elif logged.drives == {"rpm", "azimuth"}:
         # Its diameter by a usual thrust coefficient of 0.3.
-        turns = max(one.largest, 1.0) / 60.0
+        turns = max(logged.largest, 1.0) / 60.0
         diameter = (thrust / (0.3 * 1000.0 * turns**2)) ** 0.25
         entry |= {"kind": '"azimuth"', "diameter": f"{diameter:.4g}"}
         entry |= {"thrust": f"{thrust:.4g}", "rpm": f"{60.0 * turns:.4g}"}
     else:
-        found = f"it has {' and '.join(sorted(one.drives))}."
+        message = f"it has {' and '.join(sorted(logged.drives))}."
         remedy = "A thruster has its rpm, its rpm and azimuth, or its thrust along a fixed axis."
-        raise error_at(f"thruster '{one.name}'", found, remedy)
-    if "azimuth" not in one.drives and any(word in words for word in _ACROSS):
+        raise error_at(f"thruster '{logged.name}'", message, remedy)
+    if "azimuth" not in logged.drives and any(word in words for word in _ACROSS):
         entry["direction"] = f"{0.5 * pi:.6g}"
     return "\n[[thrusters]]\n" + "".join(f"{key} = {value}\n" for key, value in entry.items())
 

@@ -47,21 +47,21 @@ def largest_multiple(sets: Sequence[NDArray], left: NDArray, loads: NDArray) -> 
     array([3., 1.])
     """
     # The zero load belongs to every set: a thruster can stop.
-    corners = [np.vstack([np.zeros(3), one]) for one in sets]
-    normals = _normals([_edges(one) for one in corners])
+    corners = [np.vstack([np.zeros(3), vertices]) for vertices in sets]
+    normals = _normals([_edges(corner) for corner in corners])
     # Support h_j(n) of each set in each direction.
-    most = np.stack([(normals @ one.T).max(axis=1) for one in corners], axis=1)
+    most = np.stack([(normals @ corner.T).max(axis=1) for corner in corners], axis=1)
     # For each load the facet that limits it first: s = min over n of h(n).left / n.w.
     size = np.linalg.norm(loads, axis=1)
-    found = np.full(len(loads), np.inf)
+    multiples = np.full(len(loads), np.inf)
     for row in np.flatnonzero(size):
         # Only facets that face the load limit it.
         along = normals @ (loads[row] / size[row])
         facing = along > ASIDE
         # A reach that is zero except for rounding means that no load is possible in this direction.
         reach = np.min(most[facing] @ left[row] / along[facing])
-        found[row] = reach / size[row] if reach > NOTHING * most.max() else 0.0
-    return found
+        multiples[row] = reach / size[row] if reach > NOTHING * most.max() else 0.0
+    return multiples
 
 
 def _normals(edges: list[NDArray]) -> NDArray:
@@ -74,12 +74,12 @@ def _normals(edges: list[NDArray]) -> NDArray:
         for b in groups[:i]
     ]
     # Normal of the plane of each set.
-    pairs += [np.cross(one[:1], one) for one in edges]
-    found = np.concatenate([np.eye(3), *pairs])
-    length = np.linalg.norm(found, axis=1, keepdims=True)
+    pairs += [np.cross(edge[:1], edge) for edge in edges]
+    normals = np.concatenate([np.eye(3), *pairs])
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
     # Parallel edges give no normal.
-    found = (found / np.maximum(length, 1e-300))[length[:, 0] > 1e-12]
-    return np.concatenate([found, -found])
+    normals = (normals / np.maximum(length, 1e-300))[length[:, 0] > 1e-12]
+    return np.concatenate([normals, -normals])
 
 
 def _edges(corners: NDArray) -> NDArray:

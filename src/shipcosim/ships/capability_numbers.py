@@ -23,14 +23,14 @@ def capability_entries(ship: Described) -> dict[str, dict[str, Quantity]]:
     wind = ship.file.wind
     breadth = number((ship.file.particulars or Particulars()).breadth)
     hull = hull_particulars(ship.form, breadth, number(wind.side_centre_x))
-    found = {"capability": {name: _entry(*one) for name, one in hull.items()}}
+    entries = {"capability": {name: _entry(*entry) for name, entry in hull.items()}}
     # Areas that the file gives come before estimates.
     for name, given in (("front", wind.front_area), ("side", wind.side_area)):
         if given is not None:
             origin = given.origin or ship.file.source
             area = Quantity(given.value, "m2", given.tolerance or 0.0, origin)
-            found["capability"][f"wind_area_{name}"] = area
-    for unit, one in zip(ship.units, ship.file.thrusters, strict=True):
+            entries["capability"][f"wind_area_{name}"] = area
+    for unit, thruster in zip(ship.units, ship.file.thrusters, strict=True):
         if unit.screw is None:
             continue
         screw = unit.screw
@@ -40,11 +40,14 @@ def capability_entries(ship: Described) -> dict[str, dict[str, Quantity]]:
             limits = {"power": ("W", screw.power), "thrust_ahead": ("N", unit.most)}
             limits["thrust_astern"] = ("N", -unit.least)
             of_unit = of_unit | {
-                name: (of, EstimatedNumber(value, 0.0, f"thruster {one.name} of the ship file"))
+                name: (
+                    of,
+                    EstimatedNumber(value, 0.0, f"thruster {thruster.name} of the ship file"),
+                )
                 for name, (of, value) in limits.items()
             }
-        found[f"capability-{unit.name}"] = {name: _entry(*n) for name, n in of_unit.items()}
-    return found
+        entries[f"capability-{unit.name}"] = {name: _entry(*n) for name, n in of_unit.items()}
+    return entries
 
 
 def _entry(unit: str, number: EstimatedNumber) -> Quantity:

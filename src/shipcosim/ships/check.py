@@ -50,10 +50,10 @@ def check_ship(path: str) -> list[Problem]:
     file = file_of(path)
     # Files without particulars describe a ship by parameter files: read these.
     try:
-        said = read_file(file)
-        if said.particulars is None and not said.thrusters:
+        content = read_file(file)
+        if content.particulars is None and not content.thrusters:
             return [*driven_by_water(f"{file}: vessel", _vessel(read_ship(file.parent).entries))]
-        ship = describe(file, said)
+        ship = describe(file, content)
     except ShipcosimError as error:
         return error.problems
     return check_described(ship)
@@ -118,19 +118,21 @@ def _hull(ship: Described) -> Iterator[Problem]:
         remedy += f"{_mass(BLOCK[0] * box)} to {_mass(BLOCK[1] * box)} would fit."
         yield Problem(f"{ship.path}: mass", f"{_mass(mass)} do not fit {dimensions}.", remedy)
     elif p.block_coefficient is not None and abs(mass / box / form.block - 1.0) > OWN_BLOCK:
-        found = f"{_mass(mass)} and a block coefficient of {form.block:g} do not fit {dimensions} together."
+        message = f"{_mass(mass)} and a block coefficient of {form.block:g} do not fit {dimensions} together."
         yield Problem(
             f"{ship.path}: mass",
-            found,
+            message,
             f"The mass is that of {mass / box:.3f}; leave one of them out.",
         )
     # Mass and displacement of a floating ship are the same.
     if m.mass and p.displacement and abs(m.mass.value / p.displacement.value - 1.0) > OWN_BLOCK:
-        found = (
+        message = (
             f"the mass is {_mass(m.mass.value)}, the displacement {_mass(p.displacement.value)}."
         )
         yield Problem(
-            f"{ship.path}: mass", found, "A ship that floats displaces her mass; give one of them."
+            f"{ship.path}: mass",
+            message,
+            "A ship that floats displaces her mass; give one of them.",
         )
     # Ratios of dimensions outside the usual range point to a wrong unit.
     breadth = number(p.breadth)
@@ -146,10 +148,10 @@ def _hull(ship: Described) -> Iterator[Problem]:
             )
     # Hulls must fit into the breadth of the ship.
     if form.hulls > 1 and form.hulls * form.breadth > breadth:
-        found = (
+        message = (
             f"{form.hulls} hulls of {form.breadth:g} m are broader than the ship, {breadth:g} m."
         )
-        yield Problem(where, found, "hull_breadth is that of one hull.")
+        yield Problem(where, message, "hull_breadth is that of one hull.")
 
 
 def _matrix(ship: Described) -> Iterator[Problem]:
@@ -167,13 +169,13 @@ def _matrix(ship: Described) -> Iterator[Problem]:
             "Mass with added mass must be positive, and sway_yaw squared less than sway times yaw: "
         )
         remedy += f"at most {np.sqrt(max(diagonal[1] * diagonal[2], 0.0)):.3g} kg.m."
-        found = (
+        message = (
             f"the mass matrix is not positive: {', '.join(names)}, sway by yaw {matrix[1, 2]:.3g}."
         )
-        yield Problem(where, found, remedy)
+        yield Problem(where, message, remedy)
     # Gyration radius about the centre of gravity, by Steiner's theorem.
-    own = value["inertia_yaw"] - mass * value.get("centre_of_gravity_x", 0.0) ** 2
-    gyradius = np.sqrt(max(own, 0.0) / mass) / length
+    about_centre = value["inertia_yaw"] - mass * value.get("centre_of_gravity_x", 0.0) ** 2
+    gyradius = np.sqrt(max(about_centre, 0.0) / mass) / length
     if not GYRADIUS[0] <= gyradius <= GYRADIUS[1]:
         low, high = (mass * (share * length) ** 2 for share in GYRADIUS)
         remedy = f"Ships have {GYRADIUS[0]:g} to {GYRADIUS[1]:g}, which is {low:.3g} to {high:.3g} kg.m2."
@@ -184,19 +186,19 @@ def _matrix(ship: Described) -> Iterator[Problem]:
         )
     # A ship with the centre of gravity far from midships would trim.
     if abs(value.get("centre_of_gravity_x", 0.0)) > 0.2 * length:
-        found = (
+        message = (
             f"the centre of gravity lies {value['centre_of_gravity_x']:g} m forward of midships."
         )
         yield Problem(
             where,
-            found,
+            message,
             f"With a length of {length:g} m it lies within about a tenth of the length.",
         )
     # Positive damping would drive the ship.
     for name in DRIVING:
         if value.get(name, 0.0) > 0.0:
-            found = f"{name} is {value[name]:g}: the water drives her."
-            yield Problem(f"{ship.path}: hull", found, "Damping coefficients are negative.")
+            message = f"{name} is {value[name]:g}: the water drives her."
+            yield Problem(f"{ship.path}: hull", message, "Damping coefficients are negative.")
 
 
 def _thrusters(ship: Described) -> Iterator[Problem]:
@@ -209,14 +211,16 @@ def _thrusters(ship: Described) -> Iterator[Problem]:
     for unit in ship.units:
         where = f"{ship.path}: thruster {unit.name}"
         if abs(unit.x) > BEYOND * length:
-            found = f"x is {unit.x:g} m, outside of the hull of {length:g} m."
+            message = f"x is {unit.x:g} m, outside of the hull of {length:g} m."
             yield Problem(
-                where, found, f"x is forward of midships: {-0.5 * length:g} to {0.5 * length:g} m."
+                where,
+                message,
+                f"x is forward of midships: {-0.5 * length:g} to {0.5 * length:g} m.",
             )
         if abs(unit.y) > BEYOND * breadth:
-            found = f"y is {unit.y:g} m, outside of the hull of {breadth:g} m."
+            message = f"y is {unit.y:g} m, outside of the hull of {breadth:g} m."
             yield Problem(
-                where, found, f"y is to starboard: {-0.5 * breadth:g} to {0.5 * breadth:g} m."
+                where, message, f"y is to starboard: {-0.5 * breadth:g} to {0.5 * breadth:g} m."
             )
         yield from _thrust(unit, where, draught)
 
@@ -229,33 +233,33 @@ def _thrust(unit: ShipThruster, where: str, draught: float) -> Iterator[Problem]
     # Momentum theory without losses is the upper bound of thrust for this power and diameter.
     most = most_thrust(screw.kind, screw.diameter, screw.power, screw.density)
     if screw.thrust > 1.02 * most:
-        found = (
+        message = (
             f"{screw.thrust / 1000:.4g} kN of {screw.power / 1000:.4g} kW and {screw.diameter:g} m."
         )
         yield Problem(
             where,
-            found,
+            message,
             f"No {screw.kind} propeller of that power gives more than {most / 1000:.4g} kN.",
         )
     # Thrust coefficients above MOST_KT do not occur: speed or diameter is wrong.
     if screw.thrust_coefficient > MOST_KT:
-        found = f"{screw.thrust / 1000:.4g} kN at {screw.rpm:.4g} rpm is a thrust coefficient of "
-        found += f"{screw.thrust_coefficient:.2g}."
+        message = f"{screw.thrust / 1000:.4g} kN at {screw.rpm:.4g} rpm is a thrust coefficient of "
+        message += f"{screw.thrust_coefficient:.2g}."
         yield Problem(
             where,
-            found,
+            message,
             f"Propellers have at most {MOST_KT:g}: is the speed, or the diameter, right?",
         )
     # A propeller larger than the draught points to a wrong unit.
     if screw.diameter > 1.2 * draught:
-        found = f"the propeller of {screw.diameter:g} m does not fit under a ship of {draught:g} m of draught."
-        yield Problem(where, found, "Diameter and draught are in m; is a unit missing?")
+        message = f"the propeller of {screw.diameter:g} m does not fit under a ship of {draught:g} m of draught."
+        yield Problem(where, message, "Diameter and draught are in m; is a unit missing?")
     # Tip speed: too high if the motor's speed was given.
     tip = pi * screw.diameter * screw.rpm / 60.0
     if tip > 80.0:
-        found = f"the tips run at {tip:.0f} m/s."
+        message = f"the tips run at {tip:.0f} m/s."
         yield Problem(
-            where, found, "Propellers stay below some 50 m/s: is rpm that of the motor?", "remark"
+            where, message, "Propellers stay below some 50 m/s: is rpm that of the motor?", "remark"
         )
 
 
@@ -267,10 +271,10 @@ def _remarks(ship: Described) -> Iterator[Problem]:
         yield Problem(f"{ship.path}: thrusters", f"there is no DP system: {why}.", "", "remark")
     count = len(estimated(ship))
     if count:
-        found = f"{count} numbers are estimated."
+        message = f"{count} numbers are estimated."
         yield Problem(
             str(ship.path),
-            found,
+            message,
             "Give what you know; the rest has the tolerance of its formula.",
             "remark",
         )
@@ -281,9 +285,9 @@ def _flat(ship: Described) -> Iterator[Problem]:
     ratio = ship.form.breadth / ship.form.draught
     if ratio > FLATTEST and "cross_flow_drag" in ship.vessel:
         if ship.vessel["cross_flow_drag"].origin.startswith(ESTIMATED):
-            found = f"breadth over draught is {ratio:.3g}, beyond {FLATTEST:g}, where the formulae of her loads end."
+            message = f"breadth over draught is {ratio:.3g}, beyond {FLATTEST:g}, where the formulae of her loads end."
             remedy = "What is estimated of sway and yaw is a guess: give added_sway, added_yaw and drag.cross_flow."
-            yield Problem(f"{ship.path}: particulars", found, remedy, "remark")
+            yield Problem(f"{ship.path}: particulars", message, remedy, "remark")
 
 
 def _speed(ship: Described) -> Iterator[Problem]:
@@ -300,11 +304,11 @@ def _speed(ship: Described) -> Iterator[Problem]:
         unit.most for unit in ship.units if unit.kind != "tunnel" and abs(unit.direction) < 0.5 * pi
     )
     if ahead and drag > ahead:
-        found = f"at {form.speed:.3g} m/s she has a resistance of {drag / 1000:.4g} kN, "
-        found += f"more than the {ahead / 1000:.4g} kN that her thrusters give at rest."
-        yield Problem(where, found, "She does not reach her service speed.", "remark")
+        message = f"at {form.speed:.3g} m/s she has a resistance of {drag / 1000:.4g} kN, "
+        message += f"more than the {ahead / 1000:.4g} kN that her thrusters give at rest."
+        yield Problem(where, message, "She does not reach her service speed.", "remark")
     # Holtrop and Mennen hold only below MOST_FROUDE.
     if entry.origin.startswith(ESTIMATED) and froude_number(form) > MOST_FROUDE:
-        found = f"{form.speed:.3g} m/s is Froude number {froude_number(form):.2g}, beyond the formulae of resistance."
+        message = f"{form.speed:.3g} m/s is Froude number {froude_number(form):.2g}, beyond the formulae of resistance."
         remedy = "Give a point of her speed trial: resistance.speed and resistance.resistance."
-        yield Problem(where, found, remedy, "remark")
+        yield Problem(where, message, remedy, "remark")

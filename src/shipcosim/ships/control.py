@@ -97,22 +97,22 @@ def dp_entries(ship: Described) -> dict[str, dict[str, Quantity]]:
     used = units_for_dp(ship)
     loop = _loop(ship, used)
     length = ship.form.length
-    own = {name: _numbers(fmu, ship.path) for name, fmu in COMPONENTS.items()}
-    own["sensors"].estimates(control.sensors(length))
-    own["reference"].estimates(control.reference(loop))
+    by_component = {name: _numbers(fmu, ship.path) for name, fmu in COMPONENTS.items()}
+    by_component["sensors"].estimates(control.sensors(length))
+    by_component["reference"].estimates(control.reference(loop))
     # Frequencies and limits that the user gives override the rule.
     given = ship.file.control
     for name in ("surge_frequency", "sway_frequency"):
-        own["controller"].give(name, given.position_frequency)
-    own["controller"].give("yaw_frequency", given.heading_frequency)
-    own["controller"].give("position_error_max", given.position_error_max)
-    own["controller"].estimates(control.controller(loop) | control.mast(length))
+        by_component["controller"].give(name, given.position_frequency)
+    by_component["controller"].give("yaw_frequency", given.heading_frequency)
+    by_component["controller"].give("position_error_max", given.position_error_max)
+    by_component["controller"].estimates(control.controller(loop) | control.mast(length))
     # Controller and vessel share the wind table: feedforward then matches the ship's wind load.
-    own["controller"].entries["wind_table"] = ship.vessel["wind_table"]
+    by_component["controller"].entries["wind_table"] = ship.vessel["wind_table"]
     allocation = _allocation(used)
-    own["allocator"].estimates(allocation)
-    own["consequences"].estimates(_consequences(used, allocation))
-    return {name: numbers.entries for name, numbers in own.items()}
+    by_component["allocator"].estimates(allocation)
+    by_component["consequences"].estimates(_consequences(used, allocation))
+    return {name: numbers.entries for name, numbers in by_component.items()}
 
 
 def _numbers(fmu: str, path: Path) -> Numbers:
@@ -145,14 +145,14 @@ def _loop(ship: Described, used: list[ShipThruster]) -> control.ControlledShip:
 
 def _allocation(used: list[ShipThruster]) -> dict[str, EstimatedNumber]:
     """Places, directions and limits of the thrusters, as the allocator needs them."""
-    found = {}
+    entries = {}
     for i, unit in enumerate(used, 1):
         places = {"x": unit.x, "y": unit.y, "azimuth": unit.direction, "thrust_rate": unit.rate}
         places |= {"thrust_min": unit.least, "thrust_max": unit.most}
         places["azimuth_rate"] = unit.azimuth_rate
         if unit.screw is not None:
             places["specific_power"] = unit.screw.power / unit.screw.thrust
-        found |= {
+        entries |= {
             f"{name}_{i}": EstimatedNumber(value, 0.0, f"thruster {unit.name}")
             for name, value in places.items()
         }
@@ -161,10 +161,10 @@ def _allocation(used: list[ShipThruster]) -> dict[str, EstimatedNumber]:
             least = EstimatedNumber(
                 LEAST * unit.most, 0.0, "1.3 % of the most, as tried with 60 kN"
             )
-            found[f"thrust_least_{i}"] = least
+            entries[f"thrust_least_{i}"] = least
     # A missed yaw moment weighs as a missed force at the largest lever.
     lever = max(max(abs(unit.effect[2]) for unit in used), 0.1)
-    return found | {"yaw_lever": EstimatedNumber(lever, 0.0, "largest lever of a thruster")}
+    return entries | {"yaw_lever": EstimatedNumber(lever, 0.0, "largest lever of a thruster")}
 
 
 def _consequences(

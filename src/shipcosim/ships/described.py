@@ -78,11 +78,13 @@ def read_file(path: Path) -> ShipFile:
 
 def file_from(text: str, path: Path) -> ShipFile:
     """Records from the text of a ship file; `path` is for messages. Raises as `read_file`."""
-    said = _toml(text, path)
+    content = _toml(text, path)
     try:
-        return ShipFile.model_validate(said)
+        return ShipFile.model_validate(content)
     except ValidationError as error:
-        raise ShipcosimError([_problem(path, said, one) for one in error.errors()]) from None
+        raise ShipcosimError(
+            [_problem(path, content, detail) for detail in error.errors()]
+        ) from None
 
 
 def describe(path: str | Path, file: ShipFile | None = None) -> Described:
@@ -102,12 +104,12 @@ def describe(path: str | Path, file: ShipFile | None = None) -> Described:
     """
     # Collect all problems before raising, so that the user sees them at once.
     path = file_of(path)
-    said = read_file(path) if file is None else file
+    content = read_file(path) if file is None else file
     problems = []
-    form = form_of(said, str(path), problems)
+    form = form_of(content, str(path), problems)
     # Names of thrusters become names of components: they
     # must differ, also from those of the system.
-    names = [one.name for one in said.thrusters]
+    names = [thruster.name for thruster in content.thrusters]
     if twice := sorted(
         {name for name in names if names.count(name) > 1 or name in ("vessel", "environment")}
     ):
@@ -119,9 +121,9 @@ def describe(path: str | Path, file: ShipFile | None = None) -> Described:
             )
         )
     if len(names) > MOST_THRUSTERS:
-        found = f"she has {len(names)}."
+        message = f"she has {len(names)}."
         problems.append(
-            Problem(f"{path}: thrusters", found, f"The model of a ship takes {MOST_THRUSTERS}.")
+            Problem(f"{path}: thrusters", message, f"The model of a ship takes {MOST_THRUSTERS}.")
         )
     if not names:
         remedy = f"Add a [[thrusters]] with name, kind ({', '.join(KINDS)}), x and y."
@@ -130,11 +132,11 @@ def describe(path: str | Path, file: ShipFile | None = None) -> Described:
     if form is None:
         raise ShipcosimError(problems)
     # Hull first: thrusters use its density and dimensions.
-    vessel = vessel_of(said, form, path, problems)
-    units = units_of_ship(said.thrusters, form, said.source, path, problems)
+    vessel = vessel_of(content, form, path, problems)
+    units = units_of_ship(content.thrusters, form, content.source, path, problems)
     raise_errors(problems)
     name = path.parent.name if path.name == "ship.toml" else path.stem
-    return Described(name=name, path=path, file=said, form=form, vessel=vessel, units=units)
+    return Described(name=name, path=path, file=content, form=form, vessel=vessel, units=units)
 
 
 def _text(path: Path) -> str:
@@ -158,19 +160,19 @@ def _toml(text: str, path: Path) -> dict[str, Any]:
         # The parser tells the line in its message: put it where our messages have it.
         line = re.search(r" \(at line (\d+), column \d+\)", str(error))
         where = f"{path}, line {line[1]}" if line else str(path)
-        said = str(error).replace(line[0], "") if line else "brackets are nested too deep"
+        reason = str(error).replace(line[0], "") if line else "brackets are nested too deep"
         raise error_at(
-            where, f"is no TOML: {said}.", "A key, =, a value; texts in quotes."
+            where, f"is no TOML: {reason}.", "A key, =, a value; texts in quotes."
         ) from None
 
 
-def _problem(path: Path, said: dict[str, Any], finding: Any) -> Problem:
+def _problem(path: Path, content: dict[str, Any], finding: Any) -> Problem:
     """Translate a finding of pydantic into our words."""
     keys = list(finding["loc"])
     kind = finding["type"]
     # Findings in thrusters have the thruster's name.
     if keys[:1] == ["thrusters"] and len(keys) > 1:
-        return _of_thruster(path, said, keys, finding)
+        return _of_thruster(path, content, keys, finding)
     last = str(keys[-1])
     record = ShipFile.model_fields
     where = (
@@ -180,8 +182,8 @@ def _problem(path: Path, said: dict[str, Any], finding: Any) -> Problem:
     )
     # An unknown key: suggest a similar one of the same section.
     if kind == "extra_forbidden":
-        known = record if len(keys) == 1 else type(_default(keys[0])).model_fields
-        return Problem(where, f"unknown key '{last}'.", suggestion(last, known))
+        keys_there = record if len(keys) == 1 else type(_default(keys[0])).model_fields
+        return Problem(where, f"unknown key '{last}'.", suggestion(last, keys_there))
     return Problem(where, *_words(finding))
 
 
@@ -194,23 +196,23 @@ def _default(section: Any) -> Any:
     )
 
 
-def _of_thruster(path: Path, said: dict[str, Any], keys: list, finding: Any) -> Problem:
+def _of_thruster(path: Path, content: dict[str, Any], keys: list, finding: Any) -> Problem:
     """Translate a finding in a thruster, called by its name."""
-    listed = said["thrusters"] if isinstance(said.get("thrusters"), list) else []
-    one = listed[keys[1]] if isinstance(keys[1], int) and keys[1] < len(listed) else {}
+    listed = content["thrusters"] if isinstance(content.get("thrusters"), list) else []
+    thruster = listed[keys[1]] if isinstance(keys[1], int) and keys[1] < len(listed) else {}
     name = (
-        one.get("name", keys[1] + 1 if isinstance(keys[1], int) else "")
-        if isinstance(one, dict)
+        thruster.get("name", keys[1] + 1 if isinstance(keys[1], int) else "")
+        if isinstance(thruster, dict)
         else ""
     )
     kind = finding["type"]
     where = f"{path}: thruster {name}"
     # An unknown or missing kind: pydantic cannot choose a record.
     if kind.startswith("union_tag"):
-        found = one.get("kind") if isinstance(one, dict) else None
-        if found is None:
+        stated_kind = thruster.get("kind") if isinstance(thruster, dict) else None
+        if stated_kind is None:
             return Problem(where, "nothing says its kind.", f"There is: {', '.join(KINDS)}.")
-        return Problem(where, f"kind = {found!r}.", suggestion(str(found), KINDS))
+        return Problem(where, f"kind = {stated_kind!r}.", suggestion(str(stated_kind), KINDS))
     last = str(keys[-1])
     if kind == "extra_forbidden":
         return Problem(

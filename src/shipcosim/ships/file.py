@@ -33,10 +33,10 @@ PerSpeed = Annotated[Given | None, reader("s/m")]
 Coefficients = dict[str, Any]
 
 
-def _known_kind(found: str | None) -> str | None:
-    if found is not None and found not in BLENDERMANN:
-        raise ValueError(f'found "{found}". {suggestion(found, BLENDERMANN)}')
-    return found
+def _known_kind(kind: str | None) -> str | None:
+    if kind is not None and kind not in BLENDERMANN:
+        raise ValueError(f'found "{kind}". {suggestion(kind, BLENDERMANN)}')
+    return kind
 
 
 class _Part(BaseModel):
@@ -163,7 +163,7 @@ class ThrustMap(_Thruster):
     direction: Angle = None
     table: Annotated[
         list[list[float]] | str,
-        BeforeValidator(lambda found: found if isinstance(found, str) else _rows(found)),
+        BeforeValidator(lambda rows: rows if isinstance(rows, str) else _rows(rows)),
     ]
     unit: str = "1"
     time_constant: Seconds = None
@@ -216,16 +216,16 @@ KINDS = {
 """Kinds of thrusters."""
 
 
-def number(found: Given | None, otherwise: float = 0.0) -> float:
+def number(given: Given | None, otherwise: float = 0.0) -> float:
     """Value of a given number, or a default."""
-    return otherwise if found is None else found.value
+    return otherwise if given is None else given.value
 
 
-def _rows(found: Any) -> Any:
-    if not isinstance(found, list) or not all(
-        isinstance(row, list) and len(row) == 2 for row in found
+def _rows(rows: Any) -> Any:
+    if not isinstance(rows, list) or not all(
+        isinstance(row, list) and len(row) == 2 for row in rows
     ):
         raise ValueError(
             "found no rows of two numbers. Write [[command, thrust in N], ...], or the name of a CSV file."
         )
-    return found
+    return rows

@@ -65,13 +65,13 @@ class Ship:
         """
         # Collect the problems of all components before raising.
         problems: list[Problem] = []
-        found = {
+        values = {
             name: self._values(name, tuple(kinds), problems) for name, kinds in components.items()
         }
         for name, kinds in components.items():
             self._find_unknown(name, kinds, problems)
         raise_errors(problems)
-        return found
+        return values
 
     def parameters(self, kind: type[Kind], component: str) -> Kind:
         """Parameters of a component as the dataclass of the models.
@@ -101,9 +101,9 @@ class Ship:
         self, component: str, kinds: tuple[type, ...], problems: list[Problem]
     ) -> dict[str, Quantity]:
         # Parameters without a default must be in the ship's files.
-        said = self.entries.get(component, {})
+        entries = self.entries.get(component, {})
         declared = [field for kind in kinds for field in fields(kind) if field.init]
-        missing = [f for f in declared if f.name not in said and f.default is MISSING]
+        missing = [f for f in declared if f.name not in entries and f.default is MISSING]
         if missing:
             names = ", ".join(f"{f.name} [{f.metadata['unit']}]" for f in missing)
             where = str(self.folder / f"{component}.toml")
@@ -116,18 +116,20 @@ class Ship:
             )
         # All others take the file's value or the default.
         present = [
-            field for field in declared if field.name in said or field.default is not MISSING
+            field for field in declared if field.name in entries or field.default is not MISSING
         ]
-        return {field.name: _quantity(field, said.get(field.name), problems) for field in present}
+        return {
+            field.name: _quantity(field, entries.get(field.name), problems) for field in present
+        }
 
     def _find_unknown(self, component: str, kinds: Iterable[type], problems: list[Problem]) -> None:
         # Inherited entries may be unknown here: a base has them for its own components.
-        known = {field.name for kind in kinds for field in fields(kind)}
+        names = {field.name for kind in kinds for field in fields(kind)}
         for name, entry in self.entries.get(component, {}).items():
-            if name not in known and not entry.inherited:
+            if name not in names and not entry.inherited:
                 problems.append(
                     Problem(
-                        entry.where, f"{component} has no such parameter.", suggestion(name, known)
+                        entry.where, f"{component} has no such parameter.", suggestion(name, names)
                     )
                 )
 
@@ -165,12 +167,12 @@ def read_ship(folder: str | Path) -> Ship:
     about = [_about(layer, []) for layer in layers]
     # A described ship adds estimates; parameter files come before them.
     for layer in layers:
-        for name, found in _described(layer, problems).items():
-            entries[name] = found | entries.get(name, {})
+        for name, described in _described(layer, problems).items():
+            entries[name] = described | entries.get(name, {})
     if problems:
         raise ShipcosimError(list(dict.fromkeys(problems)))
     # The last folder that names systems decides.
-    systems = next((one["systems"] for one in reversed(about) if "systems" in one), [])
+    systems = next((head["systems"] for head in reversed(about) if "systems" in head), [])
     return Ship(folder.name, about[-1].get("description", ""), folder, tuple(systems), entries)
 
 
@@ -193,7 +195,7 @@ def _layers(folder: Path, above: tuple[Path, ...], problems: list[Problem]) -> l
     Of the first base everything counts, its bases included; of a further base only its own files.
     """
     if folder in above:
-        circle = " -> ".join(one.name for one in (*above, folder))
+        circle = " -> ".join(ship.name for ship in (*above, folder))
         problems.append(Problem(str(folder / "ship.toml"), f"based on itself: {circle}.", ""))
         return []
     # Bases are neighbours of the folder.
@@ -215,20 +217,20 @@ def _about(folder: Path, problems: list[Problem]) -> dict[str, Any]:
         )
         return {}
     # Single names count as lists of one.
-    said = _toml(file, problems)
-    known = {
+    content = _toml(file, problems)
+    defaults = {
         key: [value] if key == "based_on" and isinstance(value, str) else value
-        for key, value in said.items()
+        for key, value in content.items()
     }
     # Sections of a described ship are read elsewhere.
-    known = {key: value for key, value in known.items() if key not in _SECTIONS}
-    for key, value in known.items():
+    defaults = {key: value for key, value in defaults.items() if key not in _SECTIONS}
+    for key, value in defaults.items():
         if not isinstance(value, _SHIP_KEYS.get(key, ())):
             problems.append(
                 Problem(f"{file}: {key}", f"found {value!r}.", suggestion(key, _SHIP_KEYS))
             )
     return {
-        key: value for key, value in known.items() if isinstance(value, _SHIP_KEYS.get(key, ()))
+        key: value for key, value in defaults.items() if isinstance(value, _SHIP_KEYS.get(key, ()))
     }
 
 
@@ -244,56 +246,58 @@ def _read(file: Path, problems: list[Problem]) -> dict[str, Any]:
     """Entries of a parameter file by name, and ``like`` as a list; empty without a file."""
     if not file.is_file():
         return {}
-    found = {
-        name: _entry(file, name, said, problems)
-        for name, said in _toml(file, problems).items()
+    entries = {
+        name: _entry(file, name, value, problems)
+        for name, value in _toml(file, problems).items()
         if name != "like"
     }
     # Components that this one is like.
-    said = _toml(file, []).get("like", [])
-    like = [said] if isinstance(said, str) else said
-    if not isinstance(like, list) or not all(isinstance(one, str) for one in like):
+    like_entry = _toml(file, []).get("like", [])
+    like = [like_entry] if isinstance(like_entry, str) else like_entry
+    if not isinstance(like, list) or not all(isinstance(name, str) for name in like):
         problems.append(
             Problem(
-                f"{file}: like", f"found {said!r}.", "Name the components that this one is like."
+                f"{file}: like",
+                f"found {like_entry!r}.",
+                "Name the components that this one is like.",
             )
         )
         like = []
-    return {"like": like} | {name: entry for name, entry in found.items() if entry is not None}
+    return {"like": like} | {name: entry for name, entry in entries.items() if entry is not None}
 
 
-def _entry(file: Path, name: str, said: Any, problems: list[Problem]) -> Quantity | None:
+def _entry(file: Path, name: str, content: Any, problems: list[Problem]) -> Quantity | None:
     """An entry of a file: a value, or a table in a CSV file."""
     where = f"{file}: {name}"
-    is_table = isinstance(said, dict) and "table" in said
-    if wrong := _wrong_keys(said, _TABLE_KEYS if is_table else _VALUE_KEYS):
+    is_table = isinstance(content, dict) and "table" in content
+    if wrong := _wrong_keys(content, _TABLE_KEYS if is_table else _VALUE_KEYS):
         remedy = 'Write { value = 1.0, unit = "m", tolerance = 0.1, origin = "drawing" }, or { table = "file.csv" }.'
         problems.append(Problem(where, f"{'; '.join(wrong)}.", remedy))
         return None
     if is_table:
-        return table_entry(file.parent / said["table"], where, problems)
-    uncertainty = tuple(map(float, said.get("uncertainty", ())))
+        return table_entry(file.parent / content["table"], where, problems)
+    uncertainty = tuple(map(float, content.get("uncertainty", ())))
     return Quantity(
-        said["value"],
-        said["unit"],
-        float(said.get("tolerance", 0.0)),
-        said["origin"],
+        content["value"],
+        content["unit"],
+        float(content.get("tolerance", 0.0)),
+        content["origin"],
         (),
         where,
         uncertainty,
     )
 
 
-def _wrong_keys(said: Any, keys: Mapping[str, Any]) -> list[str]:
+def _wrong_keys(content: Any, keys: Mapping[str, Any]) -> list[str]:
     """Problems with the keys of an entry and their values."""
-    if not isinstance(said, dict):
-        return [f"found {said!r}"]
-    wrong = [f"'{key}' is no key" for key in said if key not in keys]
-    wrong += [f"'{key}' is missing" for key in keys if key not in said and key not in _OPTIONAL]
+    if not isinstance(content, dict):
+        return [f"found {content!r}"]
+    wrong = [f"'{key}' is no key" for key in content if key not in keys]
+    wrong += [f"'{key}' is missing" for key in keys if key not in content and key not in _OPTIONAL]
     wrong += [
-        f"'{key}' is {said[key]!r}"
+        f"'{key}' is {content[key]!r}"
         for key, is_right in keys.items()
-        if key in said and not is_right(said[key])
+        if key in content and not is_right(content[key])
     ]
     return wrong
 
@@ -303,7 +307,7 @@ def _entries(
 ) -> dict[str, Quantity]:
     """Entries of a component: its own, over those of the components that it is like."""
     layers = files.get(name, [])
-    found = {}
+    entries = {}
     # The last folder that says what the component is like decides.
     likes = next((layer["like"] for layer in reversed(layers) if layer.get("like")), [])
     # In reverse order, so that the first of them wins.
@@ -318,16 +322,16 @@ def _entries(
             continue
         taken = _entries(like, files, (*above, name), problems)
         # Inherited entries need not exist in this component.
-        found |= {key: entry._replace(inherited=True) for key, entry in taken.items()}
+        entries |= {key: entry._replace(inherited=True) for key, entry in taken.items()}
     # Entries of the folders in turn; only the ship's own files must be known exactly.
     for layer in layers:
-        own = {key: entry for key, entry in layer.items() if key != "like"}
-        found |= (
-            own
+        of_component = {key: entry for key, entry in layer.items() if key != "like"}
+        entries |= (
+            of_component
             if layer is layers[-1]
-            else {key: e._replace(inherited=True) for key, e in own.items()}
+            else {key: e._replace(inherited=True) for key, e in of_component.items()}
         )
-    return found
+    return entries
 
 
 def _quantity(field: Field, entry: Quantity | None, problems: list[Problem]) -> Quantity:
@@ -345,9 +349,9 @@ def _quantity(field: Field, entry: Quantity | None, problems: list[Problem]) -> 
     value = (
         float(entry.value) if about["kind"] is float and _is_number(entry.value) else entry.value
     )
-    found, remedy = _wrong(value, entry, about)
-    if found:
-        problems.append(Problem(entry.where, found, remedy))
+    message, remedy = _wrong(value, entry, about)
+    if message:
+        problems.append(Problem(entry.where, message, remedy))
     return Quantity(
         value,
         about["unit"],

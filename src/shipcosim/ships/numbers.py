@@ -63,9 +63,9 @@ class Numbers:
             estimate.value, about["unit"], estimate.tolerance, origin, about["columns"], where
         )
 
-    def estimates(self, found: dict[str, EstimatedNumber]) -> None:
+    def estimates(self, estimates: dict[str, EstimatedNumber]) -> None:
         """Take all estimates for which no value is given."""
-        for name, estimate in found.items():
+        for name, estimate in estimates.items():
             self.estimate(name, estimate)
 
     def table(self, name: str, file: str) -> None:
@@ -74,10 +74,10 @@ class Numbers:
         if entry is not None:
             self.entries[name] = entry
 
-    def coefficients(self, found: dict[str, Any]) -> None:
+    def coefficients(self, coefficients: dict[str, Any]) -> None:
         """Take parameters that the file gives under the FMU's own names."""
         declared = metadata_of(self.fmu)
-        for name, value in found.items():
+        for name, value in coefficients.items():
             if name not in declared:
                 self.problems.append(
                     Problem(

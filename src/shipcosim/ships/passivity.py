@@ -91,9 +91,9 @@ def driven_by_water(where: str, values: Mapping[str, Any]) -> Iterator[Problem]:
         Parameters of the vessel by name, in SI. Of a hull that is not complete nothing is said.
     """
     declared = fields(HullParameters)
-    known = ((one.name, values.get(one.name)) for one in declared)
-    given = {name: value for name, value in known if isinstance(value, int | float)}
-    needed = {one.name for one in declared if one.default is MISSING}
+    numbers = ((field.name, values.get(field.name)) for field in declared)
+    given = {name: value for name, value in numbers if isinstance(value, int | float)}
+    needed = {field.name for field in declared if field.default is MISSING}
     if not needed <= given.keys() or any(map(left_out, given.values())) or given["length"] <= 0.0:
         return
     hull = HullParameters(**given)
@@ -101,10 +101,10 @@ def driven_by_water(where: str, values: Mapping[str, Any]) -> Iterator[Problem]:
     if gain is None:
         return
     rate = np.degrees(turning_rate_of_dp(hull))
-    found = (
+    message = (
         f"still water drives her in {100.0 * gain.share:.2g} % of the states of DP (u and v up to {DP_SPEED:g} m/s, r up "
         f"to {rate:.2g} deg/s). It gives her most, {gain.power:.3g} W, at u {gain.u:.2g} m/s, v {gain.v:.2g} m/s, "
         f"r {np.degrees(gain.r):.2g} deg/s. Her kinetic energy grows there by {100.0 * gain.growth:.2g} % a second."
     )
     remedy = "Still water brakes a ship: correct her damping, or add linear damping X_u, Y_v, N_r."
-    yield Problem(where, found, remedy, "remark")
+    yield Problem(where, message, remedy, "remark")

@@ -72,31 +72,31 @@ def make_systems(
     ShipcosimError
         With everything that is missing.
     """
-    known = ship if isinstance(ship, Described) else describe(Path(ship))
+    described = ship if isinstance(ship, Described) else describe(Path(ship))
     folders = [Path(folder) for folder in fmus]
     made = []
     # Every ship gets an open system; a DP system only if her thrusters allow it.
-    kinds = ["open"] if why_no_dp(known) else ["open", "dp"]
+    kinds = ["open"] if why_no_dp(described) else ["open", "dp"]
     for kind in kinds:
-        name = f"{known.name}_{kind}"
-        entries = known.entries | (dp_entries(known) if kind == "dp" else {})
-        system = structure(known, kind, folders)
+        name = f"{described.name}_{kind}"
+        entries = described.entries | (dp_entries(described) if kind == "dp" else {})
+        system = structure(described, kind, folders)
         folder = Path(out) / name
         # Values of all components; estimates included.
-        values = list(parameter_values(_as_ship(known, entries), _kinds(known, kind)))
+        values = list(parameter_values(_as_ship(described, entries), _kinds(described, kind)))
         # In an open system thrusters follow measured inputs instead of commands.
         if kind == "open":
             follow = "follows the inputs of the system, not a command"
             values += [
                 parameter(f"{u.name}.replay", True, None, follow)
-                for u in known.units
+                for u in described.units
                 if u.fmu in REPLAYED
             ]
         # Write the structure, then the values, then bind them: the check needs both.
         system.write(folder, fmus=False)
-        write_ssv(folder / "resources" / f"{known.name}.ssv", known.name, values)
+        write_ssv(folder / "resources" / f"{described.name}.ssv", described.name, values)
         bound = read(folder, fmus=folders)
-        bound.bind(f"resources/{known.name}.ssv")
+        bound.bind(f"resources/{described.name}.ssv")
         bound.write(folder, fmus=False)
         made.append(folder)
     return made
@@ -179,11 +179,11 @@ def _around(units: list[ShipThruster]) -> Iterable[tuple[str, str]]:
 def _open_to_outside(system: SystemStructure, ship: Described) -> None:
     """Inputs of an open system: commands of thrusters, wind and current."""
     for unit in ship.units:
-        for name, unit_of, target, said in _commands(unit, ship):
-            system.add_connector(name, "input", unit=unit_of, description=said)
+        for name, unit_of, target, description in _commands(unit, ship):
+            system.add_connector(name, "input", unit=unit_of, description=description)
             system.connect(name, f"{unit.name}.{target}")
-    for name, (target, unit_of, said) in OUTSIDE.items():
-        system.add_connector(name, "input", unit=unit_of, description=said)
+    for name, (target, unit_of, description) in OUTSIDE.items():
+        system.add_connector(name, "input", unit=unit_of, description=description)
         system.connect(name, f"environment.{target}")
 
 
@@ -191,8 +191,8 @@ def _commands(unit: ShipThruster, ship: Described) -> Iterable[tuple[str, str | 
     """Inputs of a thruster from outside: name, unit, FMU input, description."""
     # The command is a force, a map's command, or a speed.
     by_thrust = any(
-        one.name == unit.name and getattr(one, "command", "") == "thrust"
-        for one in ship.file.thrusters
+        thruster.name == unit.name and getattr(thruster, "command", "") == "thrust"
+        for thruster in ship.file.thrusters
     )
     if by_thrust:
         yield f"{unit.name}_thrust", "N", "thrust_in", f"force of thruster {unit.name}"
@@ -245,10 +245,10 @@ def _loop_wires(ship: Described) -> Iterable[tuple[str, str]]:
 
 def _kinds(ship: Described, kind: str) -> dict[str, tuple[type, ...]]:
     """Parameter classes by component."""
-    found = {"vessel": PARAMETERS["vessel"]} | {
+    kinds = {"vessel": PARAMETERS["vessel"]} | {
         unit.name: PARAMETERS[FMU_OF[unit.kind]] for unit in ship.units
     }
-    return found | (
+    return kinds | (
         {name: PARAMETERS[fmu] for name, fmu in COMPONENTS.items()} if kind == "dp" else {}
     )
 

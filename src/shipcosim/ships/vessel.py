@@ -58,9 +58,9 @@ def form_of(ship: ShipFile, where: str, problems: list[Problem]) -> HullDimensio
     needed = ["length", "breadth", "draught"] + (["hull_breadth"] if p.hulls > 1 else [])
     missing = [name for name in needed if getattr(p, name) is None]
     if missing:
-        found = f"nothing says {', '.join(missing)}."
+        message = f"nothing says {', '.join(missing)}."
         problems.append(
-            Problem(f"{where}: particulars", found, 'Write, for example, length = "28.9 m".')
+            Problem(f"{where}: particulars", message, 'Write, for example, length = "28.9 m".')
         )
     # Mass, displacement or block coefficient: one of them is needed.
     heavy = m.mass or p.displacement
@@ -102,29 +102,29 @@ def vessel_of(
         Gets what is wrong.
     """
     # Coefficients of the file first; each step fills in what is still missing.
-    own = Numbers("vessel", f"{file}: hull", file.parent, ship.source, problems)
-    own.coefficients(ship.hull)
+    numbers = Numbers("vessel", f"{file}: hull", file.parent, ship.source, problems)
+    numbers.coefficients(ship.hull)
     p = ship.particulars or Particulars()
     for name in ("length", "breadth", "draught", "water_density"):
-        own.give(name, getattr(p, name))
-    _inertia(own, ship.mass, ship.particulars or Particulars(), form)
-    _resistance(own, ship, form)
-    _across(own, ship, form)
-    _linear(own, ship, form)
-    _weather(own, ship, form)
-    return own.entries
+        numbers.give(name, getattr(p, name))
+    _inertia(numbers, ship.mass, ship.particulars or Particulars(), form)
+    _resistance(numbers, ship, form)
+    _across(numbers, ship, form)
+    _linear(numbers, ship, form)
+    _weather(numbers, ship, form)
+    return numbers.entries
 
 
-def _inertia(own: Numbers, m: Inertia, p: Particulars, form: HullDimensions) -> None:
+def _inertia(numbers: Numbers, m: Inertia, p: Particulars, form: HullDimensions) -> None:
     """Mass, inertia, added mass."""
     # Mass: given, or from the displaced volume.
-    if not own.give("mass", m.mass or p.displacement):
-        own.estimate("mass", EstimatedNumber(form.mass, 0.05 * form.mass, "rho C_B L B T"))
-    mass = float(own.entries["mass"].value)
-    own.give("centre_of_gravity_x", m.centre_of_gravity_x)
+    if not numbers.give("mass", m.mass or p.displacement):
+        numbers.estimate("mass", EstimatedNumber(form.mass, 0.05 * form.mass, "rho C_B L B T"))
+    mass = float(numbers.entries["mass"].value)
+    numbers.give("centre_of_gravity_x", m.centre_of_gravity_x)
     centre = number(m.centre_of_gravity_x)
     # Inertia: given, from a gyration radius, or by the rule of a quarter length.
-    if not own.give("inertia_yaw", m.inertia_yaw):
+    if not numbers.give("inertia_yaw", m.inertia_yaw):
         gyradius = m.yaw_gyradius
         if gyradius is not None:
             # Tolerance of m k^2: 2 m k times that of k.
@@ -135,110 +135,114 @@ def _inertia(own: Numbers, m: Inertia, p: Particulars, form: HullDimensions) -> 
             )
             # Steiner's theorem moves it from the centre of gravity to midships.
             value = mass * (gyradius.value**2 + centre**2)
-            own.give("inertia_yaw", Given(value, tolerance, gyradius.origin or own.source))
+            numbers.give("inertia_yaw", Given(value, tolerance, gyradius.origin or numbers.source))
         else:
             breadth = number(p.breadth)
-            own.estimate("inertia_yaw", inertia_yaw(mass, form.length, breadth, centre))
+            numbers.estimate("inertia_yaw", inertia_yaw(mass, form.length, breadth, centre))
     # Added mass: as given, else by formulae.
-    own.give("A11", m.added_surge)
-    own.give("A22", m.added_sway)
+    numbers.give("A11", m.added_surge)
+    numbers.give("A22", m.added_sway)
     for name in ("A26", "A62"):
-        own.give(name, m.added_sway_yaw)
-    own.give("A66", m.added_yaw)
-    own.estimates(added_masses(form))
+        numbers.give(name, m.added_sway_yaw)
+    numbers.give("A66", m.added_yaw)
+    numbers.estimates(added_masses(form))
 
 
-def _resistance(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
+def _resistance(numbers: Numbers, ship: ShipFile, form: HullDimensions) -> None:
     # Damping coefficients of the file replace an estimate.
-    known = ship.resistance
-    if any(name in own.entries for name in ALONG):
+    stated = ship.resistance
+    if any(name in numbers.entries for name in ALONG):
         return
     # One point of a speed trial gives the quadratic damping.
-    if known.resistance is not None and known.speed is not None:
-        tolerance = known.resistance.tolerance
-        square = known.speed.value**2
+    if stated.resistance is not None and stated.speed is not None:
+        tolerance = stated.resistance.tolerance
+        square = stated.speed.value**2
         share = None if tolerance is None else tolerance / square
-        own.give("X_uu", Given(-known.resistance.value / square, share, known.resistance.origin))
+        numbers.give(
+            "X_uu", Given(-stated.resistance.value / square, share, stated.resistance.origin)
+        )
         return
     # Else Holtrop and Mennen, with any data of the hull that the file has.
-    surface = known.wetted_surface.value if known.wetted_surface else None
-    factor = known.form_factor.value if known.form_factor else None
-    own.estimate("X_uu", drag_coefficient(form, surface, factor))
+    surface = stated.wetted_surface.value if stated.wetted_surface else None
+    factor = stated.form_factor.value if stated.form_factor else None
+    numbers.estimate("X_uu", drag_coefficient(form, surface, factor))
 
 
-def _across(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
+def _across(numbers: Numbers, ship: ShipFile, form: HullDimensions) -> None:
     """Cross-flow drag and manoeuvring derivatives, estimated if the file has none of them."""
-    own.give("cross_flow_drag", ship.drag.cross_flow)
+    numbers.give("cross_flow_drag", ship.drag.cross_flow)
     # The coefficients of a hull belong together: mixing given and estimated ones would be wrong.
     if ACROSS & set(ship.hull):
         return
-    own.estimate("cross_flow_drag", cross_flow_drag(form))
+    numbers.estimate("cross_flow_drag", cross_flow_drag(form))
     # The derivatives hold for single hulls only.
     if form.hulls == 1:
-        own.estimates(manoeuvring_derivatives(form, float(own.entries["A22"].value)))
+        numbers.estimates(manoeuvring_derivatives(form, float(numbers.entries["A22"].value)))
 
 
-def _linear(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
+def _linear(numbers: Numbers, ship: ShipFile, form: HullDimensions) -> None:
     """Linear damping near rest, of the axes of which the file has no coefficient."""
     # One that the file gives holds at all speeds, where an estimated one fades: never both.
     names = CONTRIBUTIONS["linear_damping"][1]
     if set(names) & set(ship.hull):
         return
     value = {
-        name: float(own.entries[name].value)
+        name: float(numbers.entries[name].value)
         for name in ("mass", "A11", "A22", "inertia_yaw", "A66")
     }
-    found = linear_damping(
+    damping = linear_damping(
         form,
         value["mass"] + value["A11"],
         value["mass"] + value["A22"],
         value["inertia_yaw"] + value["A66"],
     )
     if set(ALONG) & set(ship.hull):
-        found.pop("X_u")
+        damping.pop("X_u")
     if ACROSS & set(ship.hull):
         for name in names[1:]:
-            found.pop(name)
-    if len(found) > 1:
-        own.estimates(found)
+            damping.pop(name)
+    if len(damping) > 1:
+        numbers.estimates(damping)
 
 
-def _weather(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
+def _weather(numbers: Numbers, ship: ShipFile, form: HullDimensions) -> None:
     # Wind: a table, none, or Blendermann's formulae.
     w = ship.wind
-    own.give("wind_load_scale", w.scale)
+    numbers.give("wind_load_scale", w.scale)
     if w.table is not None and w.table != NONE:
-        own.table("wind_table", w.table)
+        numbers.table("wind_table", w.table)
     elif w.table == NONE:
-        own.estimate(
+        numbers.estimate(
             "wind_table", EstimatedNumber("0 0 0 0; 180 0 0 0", 0.0, "none, by the ship file")
         )
     else:
-        _wind(own, ship, form)
+        _wind(numbers, ship, form)
     # Waves: a table, none, or reflection at the hull.
     if ship.waves.table is not None and ship.waves.table != NONE:
-        own.table("drift_table", ship.waves.table)
+        numbers.table("drift_table", ship.waves.table)
     elif ship.waves.table == NONE:
-        own.estimate("drift_table", EstimatedNumber(_NO_WAVES, 0.0, "none, by the ship file"))
+        numbers.estimate("drift_table", EstimatedNumber(_NO_WAVES, 0.0, "none, by the ship file"))
     else:
         breadth = number((ship.particulars or Particulars()).breadth)
-        own.estimate("drift_table", drift_table(form.length, breadth, form.draught, form.density))
+        numbers.estimate(
+            "drift_table", drift_table(form.length, breadth, form.draught, form.density)
+        )
 
 
-def _wind(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
+def _wind(numbers: Numbers, ship: ShipFile, form: HullDimensions) -> None:
     """Blendermann's wind loads with given or estimated areas."""
     w = ship.wind
     breadth = number((ship.particulars or Particulars()).breadth)
     # Areas: given, or usual for her dimensions.
     both = (w.front_area, front_area(breadth)), (w.side_area, side_area(form.length))
-    front, side = (float(one.value) if given is None else given.value for given, one in both)
-    found = wind_table(w.kind or USUAL_KIND, front, side, number(w.side_centre_x), form.length)
-    unknown = [one for given, one in both if given is None]
-    source = found.source + "".join(f"; {one.source}" for one in unknown)
-    own.estimate("wind_table", found._replace(source=source))
+    front, side = (float(area.value) if given is None else given.value for given, area in both)
+    table = wind_table(w.kind or USUAL_KIND, front, side, number(w.side_centre_x), form.length)
+    unknown = [estimate for given, estimate in both if given is None]
+    source = table.source + "".join(f"; {estimate.source}" for estimate in unknown)
+    numbers.estimate("wind_table", table._replace(source=source))
     # Estimated areas make the load less certain.
     share = 0.2 if not unknown else 0.45
-    own.estimate(
+    numbers.estimate(
         "wind_load_scale",
         EstimatedNumber(1.0, share, "1; the tolerance is of the coefficients and the areas"),
     )

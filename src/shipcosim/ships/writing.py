@@ -131,9 +131,9 @@ def ship_text(answers: Answers) -> str:
     # Dimensions have no usual value without each other.
     missing = [key for key in ("length", "breadth", "draught") if not getattr(answers, key)]
     if missing:
-        found = f"nothing says {', '.join(missing)}."
+        message = f"nothing says {', '.join(missing)}."
         raise error_at(
-            "new ship", found, 'Give --length "60 m" and so on, or --from with a ship file.'
+            "new ship", message, 'Give --length "60 m" and so on, or --from with a ship file.'
         )
     # Given thrusters, else usual ones for the layout; and her hull, for the estimates.
     try:
@@ -144,7 +144,8 @@ def ship_text(answers: Answers) -> str:
     except ValueError as error:
         raise error_at("new ship", f"{error}") from None
     shown = "\n\n".join(
-        "[[thrusters]]\n" + "\n".join(_line(k, v) for k, v in one.items()) for one in thrusters
+        "[[thrusters]]\n" + "\n".join(_line(k, v) for k, v in thruster.items())
+        for thruster in thrusters
     )
     # Numbers that are estimated stand in comments, ready to be replaced.
     estimates = {

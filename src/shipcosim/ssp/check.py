@@ -90,8 +90,8 @@ def _unconnected_inputs(system: System) -> list[Problem]:
     if not owners:
         return []
     groups = [f"{shortened(those, 12)}: {shortened(free, 40)}" for free, those in owners.items()]
-    found = f"Unconnected inputs keep their start values. {shortened(groups, 40, '; ')}."
-    return [Problem(system.name, found, severity="remark")]
+    message = f"Unconnected inputs keep their start values. {shortened(groups, 40, '; ')}."
+    return [Problem(system.name, message, severity="remark")]
 
 
 def check_file(path: AnyPath, *, fmus: Iterable[AnyPath] = ()) -> list[Problem]:

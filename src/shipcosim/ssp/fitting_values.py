@@ -36,9 +36,9 @@ def fitting_values(path: AnyPath, system: System) -> tuple[dict[str, Value], lis
     values = {}
     remarks = []
     # Try each value alone: one that does not fit must not spoil the others.
-    for one in _read(path).values:
-        signal = _signal(one.name, system)
-        converted = _converted(one, signal, system)
+    for value in _read(path).values:
+        signal = _signal(value.name, system)
+        converted = _converted(value, signal, system)
         try:
             with_values(system, {signal: converted}, str(path))
             values[signal] = converted
@@ -48,18 +48,19 @@ def fitting_values(path: AnyPath, system: System) -> tuple[dict[str, Value], lis
             ]
     # A set of which nothing fits is for another system.
     if not values:
-        found = f"Nothing of it fits {system.name}: {', '.join(problem.where.rpartition(': ')[2] for problem in remarks)}."
-        raise error_at(str(path), found, f"Components: {', '.join(system.components)}.")
+        names = ", ".join(problem.where.rpartition(": ")[2] for problem in remarks)
+        message = f"Nothing of it fits {system.name}: {names}."
+        raise error_at(str(path), message, f"Components: {', '.join(system.components)}.")
     return values, remarks
 
 
 def _read(path: AnyPath) -> ParameterSet:
     findings = Findings()
     document = read_document(path, str(path), findings)
-    found = None if document is None else read_parameter_set(document, findings)
-    if findings.errors or found is None:
+    values = None if document is None else read_parameter_set(document, findings)
+    if findings.errors or values is None:
         raise ShipcosimError(findings.errors)
-    return found
+    return values
 
 
 def _signal(name: str, system: System) -> str:
@@ -79,13 +80,13 @@ def _signal(name: str, system: System) -> str:
     return f"{owners[0]}.{name}" if len(owners) == 1 else name
 
 
-def _converted(one: ParameterValue, signal: str, system: System) -> Value:
+def _converted(value: ParameterValue, signal: str, system: System) -> Value:
     """A value in the unit of its signal."""
-    if one.unit is None or not isinstance(one.value, float):
-        return one.value
+    if value.unit is None or not isinstance(value.value, float):
+        return value.value
     component, _, variable = signal.rpartition(".")
     part = system.components.get(component)
-    known = system.inputs.get(signal) if part is None else part.variables.get(variable)
-    unit = known.unit if known is not None else None
-    factor, offset = conversion(one.unit, spelled_unit(unit) if unit else None)
-    return factor * one.value + offset
+    target = system.inputs.get(signal) if part is None else part.variables.get(variable)
+    unit = target.unit if target is not None else None
+    factor, offset = conversion(value.unit, spelled_unit(unit) if unit else None)
+    return factor * value.value + offset

@@ -68,7 +68,10 @@ def assemble_fmu(
     root = _structure(path, fmu)
     package = Package(path.parent, str(path.parent), f"{path.stem}.ssd", tuple(map(Path, fmus)))
     package.held[(package.folder / package.ssd).resolve()] = Document(str(path), root, path.parent)
-    sets = [_for_component(one, path.stem, fmu) for one in parameter_sets(parameters, findings)]
+    sets = [
+        _for_component(parameter_set, path.stem, fmu)
+        for parameter_set in parameter_sets(parameters, findings)
+    ]
     return assemble_package(package, sets, str(path), findings, swapped=swapped)
 
 
@@ -95,28 +98,28 @@ def settings_for(system: System, settings: Mapping[str, Value]) -> dict[str, Val
         ``a=b=7``, the rest of it may stand before the value: the longest name that there is wins.
     """
     is_one = system.file.lower().endswith(".fmu")
-    known = {*system.inputs, *system.parameters}
+    signals = {*system.inputs, *system.parameters}
     for component in system.components.values():
         names = set(component.variables)
-        known |= {f"{component.name}.{name}" for name in names} | (names if is_one else set())
+        signals |= {f"{component.name}.{name}" for name in names} | (names if is_one else set())
     named = {}
     for signal, value in settings.items():
         if isinstance(value, str) and "=" in value:
-            signal, value = _longest_name(f"{signal}={value}", known) or (signal, value)
+            signal, value = _longest_name(f"{signal}={value}", signals) or (signal, value)
         # Inputs of one FMU belong to the system, all other variables to the component.
-        own = f"{next(iter(system.components))}." if is_one else ""
-        variable = signal.removeprefix(own)
-        signal = f"{own}{variable}" if f"{own}{variable}" in known else signal
+        prefix = f"{next(iter(system.components))}." if is_one else ""
+        variable = signal.removeprefix(prefix)
+        signal = f"{prefix}{variable}" if f"{prefix}{variable}" in signals else signal
         named[variable if variable in system.inputs else signal] = value
     return named
 
 
-def _longest_name(setting: str, known: Container[str]) -> tuple[str, Value] | None:
+def _longest_name(setting: str, names: Container[str]) -> tuple[str, Value] | None:
     """Name and value of ``name=value`` by the last sign that ends a name that there is."""
     parts = setting.split("=")
     for count in range(len(parts) - 1, 0, -1):
         name = "=".join(parts[:count]).strip()
-        if name in known:
+        if name in names:
             return name, value_of("=".join(parts[count:]))
     return None
 
@@ -192,14 +195,15 @@ def default_step_size(system: System, start_time: float, stop_time: float | str)
 
 def step_remarks(system: System, start_time: float, stop_time: float) -> list[Problem]:
     """A remark where `default_step_size` is not the step that the FMU asks for."""
-    asked = _step_asked(system) if system.file.lower().endswith(".fmu") else None
+    step_of_fmu = _step_asked(system) if system.file.lower().endswith(".fmu") else None
     step = default_step_size(system, start_time, stop_time)
     is_run = stop_time > start_time  # what ends before it starts is refused elsewhere
-    if asked is None or step is None or not is_run or step == asked:
+    if step_of_fmu is None or step is None or not is_run or step == step_of_fmu:
         return []
-    found = f"Its step of {asked:.9g} s does not divide the run's {stop_time - start_time:.9g} s; it takes {step:.9g} s."
+    run = stop_time - start_time
+    message = f"Its step of {step_of_fmu:.9g} s does not divide the run's {run:.9g} s; it takes {step:.9g} s."
     (name,) = system.components
-    return [Problem(name, found, "Give a step size or another stop time.", "remark")]
+    return [Problem(name, message, "Give a step size or another stop time.", "remark")]
 
 
 def _step_asked(system: System) -> float | None:
@@ -207,10 +211,10 @@ def _step_asked(system: System) -> float | None:
     return component.fmu.experiment.get("stepSize")
 
 
-def _dividing_step(asked: float | None, duration: float) -> float:
+def _dividing_step(wanted: float | None, duration: float) -> float:
     """A step that divides a run evenly: the one asked for, or the nearest; 500 steps where none is asked for. [s]"""
-    if asked is None or not 0.0 < asked < inf or duration <= 0.0:
+    if wanted is None or not 0.0 < wanted < inf or duration <= 0.0:
         return abs(duration or 1.0) / STEPS
-    if whole_steps(duration, asked):
-        return asked
-    return duration / max(1, round(steps_in(duration, asked)))
+    if whole_steps(duration, wanted):
+        return wanted
+    return duration / max(1, round(steps_in(duration, wanted)))

@@ -53,10 +53,10 @@ def indices_of(plan: Plan, runs: pandas.DataFrame) -> tuple[pandas.DataFrame, li
     """
     import pandas
 
-    columns = [one.name for one in plan.samples.columns] if plan.samples else []
-    factors = [one.name for one in plan.study.factor]
+    columns = [column.name for column in plan.samples.columns] if plan.samples else []
+    factors = [factor.name for factor in plan.study.factor]
     rows = []
-    said = []
+    remarks = []
     # The indices hold for one combination of the other factors at a time.
     for levels, part in by_levels(runs, factors):
         for measure in plan.measures:
@@ -65,29 +65,31 @@ def indices_of(plan: Plan, runs: pandas.DataFrame) -> tuple[pandas.DataFrame, li
             sound = part[part["error"] == ""]
             values[sound["sample"].to_numpy(int)] = sound[measure.name].to_numpy(float)
             blocks = values.reshape(-1, len(columns) + 2)
-            known = np.asarray(np.isfinite(blocks).all(axis=1))
+            is_complete = np.asarray(np.isfinite(blocks).all(axis=1))
             # Report how many blocks are lost, and why: failed runs or runs not done yet.
-            if not known.all():
+            if not is_complete.all():
                 # A sentence on blocks that are not used.
                 done = np.isin(np.arange(plan.shape[-1]), part["sample"]).reshape(blocks.shape)
                 open_ = int((~done.all(axis=1)).sum())
-                bad = int((~known).sum()) - open_
+                bad = int((~is_complete).sum()) - open_
                 why = [f"{bad} since a run of it failed or has no value"] if bad else []
                 why += [f"{open_} since not all of it is done"] if open_ else []
-                unknown = int((~known).sum())
-                missing = f"indices without {unknown} of {len(known)} blocks, {', '.join(why)}."
-                said.append(f"{_of(measure.name, levels)}: {missing}")
+                unknown = int((~is_complete).sum())
+                missing = (
+                    f"indices without {unknown} of {len(is_complete)} blocks, {', '.join(why)}."
+                )
+                remarks.append(f"{_of(measure.name, levels)}: {missing}")
             # Without variance, or with very few blocks, an index would be noise.
-            if known.sum() >= FEWEST and np.ptp(blocks[known]) > 0.0:
-                rows += _rows(levels, measure.name, columns, blocks[known], plan.study.seed)
+            if is_complete.sum() >= FEWEST and np.ptp(blocks[is_complete]) > 0.0:
+                rows += _rows(levels, measure.name, columns, blocks[is_complete], plan.study.seed)
             else:
-                said.append(
+                remarks.append(
                     f"{_of(measure.name, levels)}: no indices, it is the same in all runs, or too few are done."
                 )
     head = [*factors, "quantity", "parameter", "first_order", "first_order_low", "first_order_high"]
     return pandas.DataFrame(
         rows, columns=[*head, "total", "total_low", "total_high", "blocks"]
-    ), said
+    ), remarks
 
 
 def _rows(
@@ -98,7 +100,7 @@ def _rows(
     # The interval is a bootstrap over the blocks.
     from SALib.analyze import sobol
 
-    found = sobol.analyze(
+    indices = sobol.analyze(
         salib_problem(len(columns)),
         blocks.ravel(),
         calc_second_order=False,
@@ -107,12 +109,12 @@ def _rows(
         seed=seed + 1,  # SALib takes 0 for none
     )
     rows = []
-    for k in np.argsort(-found["ST"], kind="stable"):
+    for k in np.argsort(-indices["ST"], kind="stable"):
         row = levels | {"quantity": quantity, "parameter": columns[k]}
         # SALib gives half the width of the interval.
         for name, short in (("first_order", "S1"), ("total", "ST")):
-            value = float(found[short][k])
-            half = float(found[f"{short}_conf"][k])
+            value = float(indices[short][k])
+            half = float(indices[f"{short}_conf"][k])
             row |= {name: value, f"{name}_low": value - half, f"{name}_high": value + half}
         rows.append(row | {"blocks": len(blocks)})
     return rows

@@ -56,7 +56,7 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
         build,
     )
     components = scenario.components | {
-        name: str(_beside(study, fmu) or fmu) for name, fmu in study.components.items()
+        name: str(_in_study_folder(study, fmu) or fmu) for name, fmu in study.components.items()
     }
     system = with_values(read, scenario.set, str(scenario.path))
     # First check what all runs share; the levels of the factors build on it.
@@ -64,7 +64,7 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
     levels.check_names()
     # The order is that of precedence: parameter sets, then `set`, then the settings of the call.
     fitted = [levels.fitting(name, ("parameters",)) for name in study.parameters]
-    values = {signal: value for one in fitted for signal, value in one.items()}
+    values = {signal: value for start_values in fitted for signal, value in start_values.items()}
     values |= levels.checked(study.set, ("set",)) | settings_for(read, settings or {})
     events = [levels.event(event) for event in study.events]
     levels.check_events(events, ("events",))
@@ -79,21 +79,23 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
     system = with_values(system, values, "--set")
     # Now the factors, with the system as all runs see it.
     levels = Levels(study, scenario, system)
-    found = [levels.of(number) for number in range(len(study.factor))]
+    factors = [levels.of(number) for number in range(len(study.factor))]
     samples = ranges_of(study, levels, system) if study.tune else samples_of(study, levels, system)
     # Quantities may name signals that only events of some level change.
-    happening = [event for one in found for level in one for event in level.events]
+    happening = [
+        event for factor_levels in factors for level in factor_levels for event in level.events
+    ]
     measures, problems = measures_of(study, scenario, system, happening, planned)
     problems = [*levels.problems, *problems, *_of_summaries(study), *_of_fork(study, scenario)]
-    problems += _of_replaced(study, found, samples)
-    problems += [one for one in check_scenario(scenario, system) if one.is_error]
+    problems += _of_replaced(study, factors, samples)
+    problems += [problem for problem in check_scenario(scenario, system) if problem.is_error]
     raise_errors(problems)
     # One checked system for each combination of swapped FMUs.
     systems = {
         swapped: _swapped(study, scenario, swapped, system, build)
-        for swapped in _combinations(found)
+        for swapped in _combinations(factors)
     }
-    return Plan(study, scenario, systems, found, measures, samples, planned)
+    return Plan(study, scenario, systems, factors, measures, samples, planned)
 
 
 def _scenario(study: Study) -> tuple[Scenario, float]:
@@ -101,9 +103,9 @@ def _scenario(study: Study) -> tuple[Scenario, float]:
     try:
         path = study.scenario_path
     except ShipcosimError as error:
-        found = f"There is no scenario '{study.scenario}'."
+        message = f"There is no scenario '{study.scenario}'."
         raise ShipcosimError(
-            problem_of(study, ("scenario",), found, error.problems[0].remedy)
+            problem_of(study, ("scenario",), message, error.problems[0].remedy)
         ) from None
     scenario = read_scenario(path)
     # Times of the study replace those of the scenario; a wrong one is reported at the study's line.
@@ -112,7 +114,7 @@ def _scenario(study: Study) -> tuple[Scenario, float]:
     planned = scenario.stop_time
     scenario = scenario.model_copy(update=changed)
     raise_errors(check_files(scenario))
-    if wrong := [one for one in time_complaints(scenario) if one[-1] == "error"]:
+    if wrong := [complaint for complaint in time_complaints(scenario) if complaint[-1] == "error"]:
         keys = [keys if keys[0] in changed else tuple(changed)[:1] for keys, *_ in wrong]
         raise ShipcosimError(
             [problem_of(study, at, *one[1:3]) for at, one in zip(keys, wrong, strict=True)]
@@ -133,12 +135,12 @@ def _system(
     # An FMU lies beside the study or is known by name.
     for name, fmu in components.items():
         try:
-            paths[name] = _beside(study, fmu) or library.find(
+            paths[name] = _in_study_folder(study, fmu) or library.find(
                 "fmu", fmu, near=study.folder, build=build
             )
         except ShipcosimError as error:
-            found = f"There is no FMU '{fmu}', by this name or beside the study."
-            problems.append(problem_of(study, keys[name], found, error.problems[0].remedy))
+            message = f"There is no FMU '{fmu}', by this name or beside the study."
+            problems.append(problem_of(study, keys[name], message, error.problems[0].remedy))
     raise_errors(problems)
     try:
         return system_of(scenario, components=paths, build=build)
@@ -179,14 +181,14 @@ def _combinations(levels: Sequence[Sequence[Level]]) -> list[Swapped]:
     """Combinations of swapped components that runs have, the empty one first."""
     # Every level of a factor may meet every level of the others.
     per_factor = [list({tuple(level.components.items()) for level in one}) for one in levels]
-    found = {
+    sets = {
         tuple(sorted(dict(pair for part in parts for pair in part).items()))
         for parts in product(*per_factor)
     }
-    return sorted(found, key=lambda one: (len(one), one))
+    return sorted(sets, key=lambda entry: (len(entry), entry))
 
 
-def _beside(study: Study, fmu: str) -> Path | None:
+def _in_study_folder(study: Study, fmu: str) -> Path | None:
     """Path of an FMU beside the study; None if it is a name."""
     path = study.folder / fmu
     return path if path.is_file() else None
@@ -194,9 +196,13 @@ def _beside(study: Study, fmu: str) -> Path | None:
 
 def _of_fork(study: Study, scenario: Scenario) -> Iterator[Problem]:
     """Problems of a fork: missing, or at a time that no run has."""
-    waiting = [("factor", i, "at_fork") for i, one in enumerate(study.factor) if one.at_fork]
+    waiting = [("factor", i, "at_fork") for i, factor in enumerate(study.factor) if factor.at_fork]
     sampled = study.sample.of if study.sample else {}
-    waiting += [("sample", "of", name, "at_fork") for name, one in sampled.items() if one.at_fork]
+    waiting += [
+        ("sample", "of", name, "at_fork")
+        for name, distribution in sampled.items()
+        if distribution.at_fork
+    ]
     if study.fork_at is None:
         for keys in waiting:
             yield problem_of(
@@ -213,7 +219,7 @@ def _of_fork(study: Study, scenario: Scenario) -> Iterator[Problem]:
 
 
 def _of_replaced(
-    study: Study, found: Sequence[Sequence[Level]], samples: Samples | None
+    study: Study, factors: Sequence[Sequence[Level]], samples: Samples | None
 ) -> Iterator[Problem]:
     """Problems of factors without effect: later ones replace every value of them."""
     # From the last factor to the first: what is set in all runs by something later.
@@ -221,13 +227,13 @@ def _of_replaced(
     replaced_by = {
         signal: column.name for column in sampled if not column.at_fork for signal in column.signals
     }
-    for number in reversed(range(len(found))):
-        levels = found[number]
+    for number in reversed(range(len(factors))):
+        levels = factors[number]
         name = study.factor[number].name
-        own = {signal for level in levels for signal in level.values}
+        varied = {signal for level in levels for signal in level.values}
         does_more = any(level.events or level.components or level.stop_time for level in levels)
-        if own and own <= replaced_by.keys() and not does_more:
-            signal = min(own)
+        if varied and varied <= replaced_by.keys() and not does_more:
+            signal = min(varied)
             yield problem_of(
                 study,
                 ("factor", number),
@@ -241,20 +247,26 @@ def _of_replaced(
 
 def _of_summaries(study: Study) -> Iterator[Problem]:
     """Problems of summaries that name unknown quantities or factors."""
-    quantities = [one.name for one in study.quantity]
-    factors = [one.name for one in study.factor] + (
+    quantities = [quantity.name for quantity in study.quantity]
+    factors = [factor.name for factor in study.factor] + (
         ["sample"] if study.sample or study.tune else []
     )
-    for number, one in enumerate(study.summary):
-        if one.quantity not in quantities:
-            found = f"There is no quantity '{one.quantity}'."
+    for number, summary in enumerate(study.summary):
+        if summary.quantity not in quantities:
+            message = f"There is no quantity '{summary.quantity}'."
             yield problem_of(
-                study, ("summary", number, "quantity"), found, suggestion(one.quantity, quantities)
+                study,
+                ("summary", number, "quantity"),
+                message,
+                suggestion(summary.quantity, quantities),
             )
-        for key, names in (("over", one.over), ("along", [one.along] if one.along else [])):
+        for key, names in (
+            ("over", summary.over),
+            ("along", [summary.along] if summary.along else []),
+        ):
             for name in names:
                 if name not in factors:
-                    found = f"There is no factor '{name}'."
+                    message = f"There is no factor '{name}'."
                     yield problem_of(
-                        study, ("summary", number, key), found, suggestion(name, factors)
+                        study, ("summary", number, key), message, suggestion(name, factors)
                     )

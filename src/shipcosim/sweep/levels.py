@@ -90,8 +90,8 @@ class Levels:
         for label in [level.label for level in levels] if self._is_angle(number) else ():
             direction = round(float(label) / tau % 1.0, 9) % 1.0
             if direction in first:
-                found = f"The levels {first[direction]:g} and {label:g} rad are one direction."
-                self.complain(("factor", number), found, "Keep one.")
+                message = f"The levels {first[direction]:g} and {label:g} rad are one direction."
+                self.complain(("factor", number), message, "Keep one.")
             first.setdefault(direction, label)
         return levels
 
@@ -113,8 +113,8 @@ class Levels:
             made_by = "directions" if factor.directions else "conditions"
             keys = [("case", i) if factor.case else (made_by,) for i in range(len(cases))]
             return [
-                self._of_case(one, ("factor", number, *key))
-                for one, key in zip(cases, keys, strict=True)
+                self._of_case(case, ("factor", number, *key))
+                for case, key in zip(cases, keys, strict=True)
             ]
         if factor.seeds is not None:
             return self._of_seeds(factor, ("factor", number, "seeds"))
@@ -127,10 +127,10 @@ class Levels:
         # At the fork a value acts as an event; otherwise as a start value.
         if factor.at_fork:
             return [self.at_fork(signals, value, ("factor", number, key)) for value in values]
-        found = (
+        settings = (
             self.checked(dict.fromkeys(signals, value), ("factor", number, key)) for value in values
         )
-        return [Level(next(iter(one.values())), one) for one in found if one]
+        return [Level(next(iter(setting.values())), setting) for setting in settings if setting]
 
     def checked(self, values: Mapping[str, Value], keys: AnyKeys) -> dict[str, Value]:
         """Start values in the units of their variables; empty, with a problem, if one does not fit.
@@ -166,19 +166,19 @@ class Levels:
         components = list(self._system.components)
         for name, group in self._study.names.items():
             if name in components:
-                found = f"'{name}' is a component already."
-                self.complain(("names", name), found, "Give them another name.")
+                message = f"'{name}' is a component already."
+                self.complain(("names", name), message, "Give them another name.")
             for one in group:
                 if one not in components:
-                    found = f"There is no component '{one}'."
+                    message = f"There is no component '{one}'."
                     remedy = suggestion(one, components)
-                    self.complain(("names", name), found, remedy)
+                    self.complain(("names", name), message, remedy)
 
     def at_fork(self, signals: Sequence[str], value: Value, keys: AnyKeys) -> Level:
         """Level of a value that acts as an event at the fork."""
         event = Event(time=self._study.fork_at or 0.0, override=dict.fromkeys(signals, value))
-        for _, _, found, remedy in event_complaints(event, self._system):
-            self.complain(keys, found, remedy)
+        for _, _, message, remedy in event_complaints(event, self._system):
+            self.complain(keys, message, remedy)
         if not self.problems:
             value = in_unit_of(value, signals[0], units_of(self._system))
         return Level(value, events=(event,))
@@ -235,12 +235,14 @@ class Levels:
             Path(self._scenario.system_path) / "resources" / f"{name}.ssv",
             self._study.folder / name,
         ]
-        path = next((one for one in paths if one.is_file()), None)
+        path = next((candidate for candidate in paths if candidate.is_file()), None)
         if path is None:
-            known = [file.stem for file in paths[0].parent.glob("*.ssv")]
-            known += [file.name for file in self._study.folder.glob("*.ssv")]
-            found = f"There is no parameter set '{name}', in {paths[0].parent} or beside the study."
-            self.complain(keys, found, suggestion(name, known))
+            names = [file.stem for file in paths[0].parent.glob("*.ssv")]
+            names += [file.name for file in self._study.folder.glob("*.ssv")]
+            message = (
+                f"There is no parameter set '{name}', in {paths[0].parent} or beside the study."
+            )
+            self.complain(keys, message, suggestion(name, names))
             return {}
         try:
             return fitting_values(path, self._system)[0]
@@ -251,8 +253,8 @@ class Levels:
     def check_events(self, events: Iterable[Event], keys: Keys) -> None:
         """Check the signals, values and times of events, which keys of the study name."""
         for number, event in enumerate(events):
-            for verb, signal, found, remedy in event_complaints(event, self._system):
-                self.complain((*keys, number, verb, signal), found, remedy)
+            for verb, signal, message, remedy in event_complaints(event, self._system):
+                self.complain((*keys, number, verb, signal), message, remedy)
             self._check_time(event.time, (*keys, number, "time"), may_be_zero=True)
 
     def _check_time(self, time: float | None, keys: AnyKeys, may_be_zero: bool = False) -> None:
@@ -262,9 +264,9 @@ class Levels:
         # Events at time zero are allowed; an end at zero is not.
         count = whole_steps(time, step)
         if count is None or (count == 0 and not may_be_zero):
-            found = f"{keys[-1]} = {time:g} s is no multiple of the step size {step:g} s."
+            message = f"{keys[-1]} = {time:g} s is no multiple of the step size {step:g} s."
             nearest = max(1, round(steps_in(time, step))) * step
-            self.complain(keys, found, f"The nearest would be {nearest:g} s.")
+            self.complain(keys, message, f"The nearest would be {nearest:g} s.")
 
     def _spaced(self, factor: Factor, signal: str, number: int) -> list[float]:
         """Evenly spaced values of a factor, ends included, in the unit of its signal."""
@@ -282,8 +284,8 @@ class Levels:
         # A step in the wrong direction never arrives, and a tiny one makes more levels than memory
         # holds.
         if step == 0.0 or (last - first) / step < 0.0 or (last - first) / step > MOST_LEVELS:
-            found = f"Steps of {factor.step} do not lead from {factor.start} to {factor.to}."
-            self.complain(("factor", number, "step"), found, "Give another step.")
+            message = f"Steps of {factor.step} do not lead from {factor.start} to {factor.to}."
+            self.complain(("factor", number, "step"), message, "Give another step.")
             return []
         # A small tolerance, so that rounding does not lose the last value.
         return [first + i * step for i in range(floor((last - first) / step + 1e-9) + 1)]
@@ -297,8 +299,8 @@ class Levels:
             else list(seeds_of(self._system))
         )
         if not signals and not self.problems:
-            found = "Nothing in the system has a seed: it has no parameter named seed."
-            self.complain(keys, found, "Name the signals: signal = [...].")
+            message = "Nothing in the system has a seed: it has no parameter named seed."
+            self.complain(keys, message, "Name the signals: signal = [...].")
         # Seeds of one level differ between signals, so that two sensors have independent noise.
         levels = []
         for level in range(1, (factor.seeds or 0) + 1):

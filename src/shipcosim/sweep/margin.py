@@ -48,11 +48,11 @@ class Margin:
     def of(self, values: Mapping[str, Any]) -> float:
         """The margin of a run by its start values. [rad, 1 or s]"""
         # The run's own gains where it sets them, else those of all runs.
-        own = tuple(
+        of_run = tuple(
             float(values.get(f"{self.component}.{name}", value))
             for name, value in self.values.items()
         )
-        return _least(tuple(self.values), own, self.wave_frequency)[self.kind]
+        return _least(tuple(self.values), of_run, self.wave_frequency)[self.kind]
 
 
 def margin_of(quantity: Quantity, system: System) -> Margin:
@@ -73,19 +73,24 @@ def complaint_of_margin(study: Study, number: int, system: System) -> Problem | 
     name = study.quantity[number].component
     # A controller is recognised by its parameters, not by its name.
     having = [
-        c.name for c in system.components.values() if all(one in c.variables for one in _names())
+        c.name
+        for c in system.components.values()
+        if all(parameter in c.variables for parameter in _names())
     ]
     if name in having:
         return None
-    found = f"'{name}' is no DP controller: it lacks parameters of observer and control law."
-    known = f"Those of {', '.join(having)} are there." if having else "The system has none."
+    message = f"'{name}' is no DP controller: it lacks parameters of observer and control law."
+    remedy = f"Those of {', '.join(having)} are there." if having else "The system has none."
     return problem_of(
-        study, ("quantity", number, "component" if name != "controller" else "margin"), found, known
+        study,
+        ("quantity", number, "component" if name != "controller" else "margin"),
+        message,
+        remedy,
     )
 
 
 def _names() -> list[str]:
-    return [one.name for part in PARTS for one in fields(part)]
+    return [field.name for part in PARTS for field in fields(part)]
 
 
 @lru_cache(maxsize=64)
@@ -96,12 +101,12 @@ def _least(
     # Build the parameter groups that the analysis of the loop needs.
     given = dict(zip(names, values, strict=True))
     ship, noise, law = (
-        part(**{one.name: given[one.name] for one in fields(part)}) for part in PARTS
+        part(**{field.name: given[field.name] for field in fields(part)}) for part in PARTS
     )
     # The loop linearised about rest: ship, observer and control law, without further delays.
     loop = loops.linear_loop(ship, noise, law, loops.Delays(), wave_frequency)
     if not loops.is_stable(loop):
         return NONE
     # Surge, sway and yaw each have margins; the least one counts.
-    found = [loops.margins(loop, axis) for axis in range(len(loops.AXES))]
-    return {kind: min(getattr(one, kind) for one in found) for kind in UNITS}
+    margins = [loops.margins(loop, axis) for axis in range(len(loops.AXES))]
+    return {kind: min(getattr(margin, kind) for margin in margins) for kind in UNITS}

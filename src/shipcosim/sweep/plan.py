@@ -173,18 +173,18 @@ class Plan:
     def input_of(self, run: PlannedRun) -> dict[str, Any]:
         """The full input of a run: ``shipcosim.run(Scenario(**input))`` runs it alone."""
         # Only what differs is made anew; there may be millions of runs.
-        found = dict(self._common_input)
+        content = dict(self._common_input)
         if run.swapped:
-            found["components"] = self._portable_components(dict(run.swapped))
-        found["set"] = {**self.scenario.set, **run.values}
+            content["components"] = self._portable_components(dict(run.swapped))
+        content["set"] = {**self.scenario.set, **run.values}
         if run.events:
-            found["events"] = [
-                *found["events"],
+            content["events"] = [
+                *content["events"],
                 *(event.model_dump(exclude_defaults=True) for event in run.events),
             ]
         if run.stop_time is not None:
-            found["stop_time"] = run.stop_time
-        return {name: value for name, value in found.items() if value not in ({}, [], None)}
+            content["stop_time"] = run.stop_time
+        return {name: value for name, value in content.items() if value not in ({}, [], None)}
 
     @cached_property
     def _common_input(self) -> dict[str, Any]:
@@ -215,7 +215,7 @@ class Plan:
         # Columns in the order of the table: factors, samples, quantities. Units come from the
         # signals.
         unit_of = units_of(self.system)
-        found = []
+        columns = []
         for factor, levels in zip(self.study.factor, self.levels, strict=True):
             signals = list(levels[0].values) or [
                 name for event in levels[0].events for name in event.override
@@ -223,13 +223,16 @@ class Plan:
             unit = None if factor.cases or factor.seeds else unit_of(signals[0])
             labels = [level.label for level in levels] if factor.cases else None
             name = "deg" if factor.directions else unit.name if unit else None
-            found.append(ColumnOf(factor.name, "factor", name, ", ".join(factor.signal), labels))
+            columns.append(ColumnOf(factor.name, "factor", name, ", ".join(factor.signal), labels))
         if self.samples is not None:
-            found.append(ColumnOf("sample", "sample", description="number of the sample"))
-            signals = [(one, ", ".join(one.signals)) for one in self.samples.columns]
-            found += [ColumnOf(one.name, "sample", one.unit, text) for one, text in signals]
-        return found + [
-            ColumnOf(one.name, "quantity", one.unit, one.description) for one in self.measures
+            columns.append(ColumnOf("sample", "sample", description="number of the sample"))
+            signals = [(column, ", ".join(column.signals)) for column in self.samples.columns]
+            columns += [
+                ColumnOf(column.name, "sample", column.unit, text) for column, text in signals
+            ]
+        return columns + [
+            ColumnOf(measure.name, "quantity", measure.unit, measure.description)
+            for measure in self.measures
         ]
 
     @cached_property
@@ -238,11 +241,15 @@ class Plan:
         # Each factor with its own ends multiplies the runs; those without keep the ends so far.
         ends = [self.scenario.stop_time]
         for levels in self.levels:
-            own = [level.stop_time for level in levels]
-            if any(end is not None for end in own):
-                ends = [one if one is not None else end for end in ends for one in own]
+            of_factor = [level.stop_time for level in levels]
+            if any(end is not None for end in of_factor):
+                ends = [
+                    level_end if level_end is not None else end
+                    for end in ends
+                    for level_end in of_factor
+                ]
             else:
-                ends = [end for end in ends for _ in own]
+                ends = [end for end in ends for _ in of_factor]
         return float(sum(ends)) * (1 if self.samples is None else len(self.samples.numbers))
 
     def digest(self, engine: str) -> str:
@@ -284,5 +291,5 @@ def _portable(scenario: Scenario, name: str, kind: str = "fmu", path: Path | Non
     """A name known anywhere in the project, else the absolute path."""
     if library.named(kind, name, scenario.project) is not None:
         return name
-    found = path or Path(name)
-    return str(found.resolve()) if found.exists() else name
+    file = path or Path(name)
+    return str(file.resolve()) if file.exists() else name

@@ -85,7 +85,10 @@ class Measure:
             return None if self.is_truth else np.nan
         # A verdict: all expectations must hold.
         if self.is_truth:
-            return all(verdict_on(table, one, self.units.__getitem__).passed for one in self.expect)
+            return all(
+                verdict_on(table, expectation, self.units.__getitem__).passed
+                for expectation in self.expect
+            )
         rows = rows_of(table, self.expect[0])
         # Time counts from `since`; rows before it do not matter.
         rows = rows[table["time"].values[rows] >= self.since - 1e-9] if self.since else rows
@@ -160,13 +163,13 @@ def measures_of(
     problems = [
         problem_of(
             study,
-            ("quantity", number, *((key,) if one.signal else ("expect", i, key))),
-            found,
+            ("quantity", number, *((key,) if quantity.signal else ("expect", i, key))),
+            message,
             remedy,
         )
-        for number, one in enumerate(study.quantity)
-        for i, expect in enumerate(_claims(one, scenario, end, planned))
-        for key, found, remedy in expectation_complaints(expect, system, changed)
+        for number, quantity in enumerate(study.quantity)
+        for i, expect in enumerate(_claims(quantity, scenario, end, planned))
+        for key, message, remedy in expectation_complaints(expect, system, changed)
     ]
     tracked = study.tracks.signals if study.tracks else []
     # Tracks need signals that exist; an expectation with any limit checks the same.
@@ -175,11 +178,11 @@ def measures_of(
             Expectation(signal=[signal], at_most=0.0), system, changed
         ):
             problems.append(problem_of(study, ("tracks", "signals"), found, remedy))
-    margins = [i for i, one in enumerate(study.quantity) if one.margin]
+    margins = [i for i, quantity in enumerate(study.quantity) if quantity.margin]
     problems += filter(None, (complaint_of_margin(study, number, system) for number in margins))
     problems += _outside(study, scenario, end, planned)
     return () if problems else tuple(
-        _measure(one, scenario, system, end, planned) for one in study.quantity
+        _measure(quantity, scenario, system, end, planned) for quantity in study.quantity
     ), problems
 
 
@@ -190,7 +193,9 @@ def _claims(
         return []
     if not quantity.judges:
         return [quantity.claim]
-    within = [one for one in scenario.expect if _end_of(one, planned) <= end]
+    within = [
+        expectation for expectation in scenario.expect if _end_of(expectation, planned) <= end
+    ]
     return [*quantity.expect, *(within if quantity.scenario_expectations else ())]
 
 
@@ -205,13 +210,15 @@ def _remarks(quantity: Quantity, scenario: Scenario, end: float, planned: float)
     """Expectations of the scenario that the study does not judge."""
     if not quantity.scenario_expectations:
         return
-    late = sum(_end_of(one, planned) > end for one in scenario.expect)
+    late = sum(_end_of(expectation, planned) > end for expectation in scenario.expect)
     if late:
         yield (
             f"{quantity.name}: {late} of {len(scenario.expect)} expectations of {scenario.name} are not judged: they"
             f" need more than the {end:g} s of the runs."
         )
-    partly = sum(not one.during and not one.statistic for one in scenario.expect)
+    partly = sum(
+        not expectation.during and not expectation.statistic for expectation in scenario.expect
+    )
     if partly and end < planned:
         yield (
             f"{quantity.name}: {partly} of {len(scenario.expect)} expectations of {scenario.name} are judged on the"
@@ -221,26 +228,28 @@ def _remarks(quantity: Quantity, scenario: Scenario, end: float, planned: float)
 
 def _outside(study: Study, scenario: Scenario, end: float, planned: float) -> Iterable[Problem]:
     """Windows and times that no run reaches."""
-    for number, one in enumerate(study.quantity):
-        times = [(("during",), time) for time in one.during or ()]
-        times += [(("time",), one.time), (("since",), one.since)]
-        for i, expect in enumerate(one.expect):
+    for number, quantity in enumerate(study.quantity):
+        times = [(("during",), time) for time in quantity.during or ()]
+        times += [(("time",), quantity.time), (("since",), quantity.since)]
+        for i, expect in enumerate(quantity.expect):
             times += [(("expect", i, "during"), time) for time in expect.during or ()]
         for keys, time in times:
             if time is None or 0.0 <= time <= end:
                 continue
-            found = f"{keys[-1]} lies beyond the end of the runs at {end:g} s."
+            message = f"{keys[-1]} lies beyond the end of the runs at {end:g} s."
             if time < 0.0:
-                found = f"{keys[-1]} lies before the runs, which begin at 0 s."
-            yield problem_of(study, ("quantity", number, *keys), found, "Take a time within them.")
-        if one.scenario_expectations and len(_claims(one, scenario, end, planned)) == len(
-            one.expect
+                message = f"{keys[-1]} lies before the runs, which begin at 0 s."
+            yield problem_of(
+                study, ("quantity", number, *keys), message, "Take a time within them."
+            )
+        if quantity.scenario_expectations and len(_claims(quantity, scenario, end, planned)) == len(
+            quantity.expect
         ):
-            found = (
+            message = (
                 f"The scenario {study.scenario} expects nothing within {scenario.stop_time:g} s."
             )
             keys = "quantity", number, "scenario_expectations"
-            yield problem_of(study, keys, found, "Write expect = [...] here.")
+            yield problem_of(study, keys, message, "Write expect = [...] here.")
 
 
 def _measure(
@@ -257,10 +266,10 @@ def _measure(
     unit_of = units_of(system)
     # Limits and windows in plain numbers, in the units of the signals.
     claims = _claims(quantity, scenario, end, planned)
-    expect = tuple(expectation_in_numbers(one, unit_of) for one in claims)
+    expect = tuple(expectation_in_numbers(claim, unit_of) for claim in claims)
     # The study's own expectations without a window are meant for each run as long as it is.
-    needs = [_end_of(one, 0.0 if one in quantity.expect else planned) for one in claims]
-    units = {signal: unit_of(signal) for one in expect for signal in one.signals}
+    needs = [_end_of(claim, 0.0 if claim in quantity.expect else planned) for claim in claims]
+    units = {signal: unit_of(signal) for expectation in expect for signal in expectation.signals}
     if quantity.reduce is None:
         remarks = tuple(_remarks(quantity, scenario, end, planned))
         return Measure(

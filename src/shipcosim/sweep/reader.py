@@ -87,7 +87,7 @@ def study_of(source: Source) -> Study:
     except ValidationError as error:
         problems = {}
         for finding in sorted(
-            error.errors(), key=lambda one: one["type"] == "missing"
+            error.errors(), key=lambda finding: finding["type"] == "missing"
         ):  # perhaps it is misspelt
             keys = finding["loc"]
             problems.setdefault(
@@ -98,15 +98,15 @@ def study_of(source: Source) -> Study:
     study._source = source
     problems = _repeated(study)
     if study.sample is not None and study.tune is not None:
-        found = "A study has either [sample] or [tune]."
-        problems.append(problem_of(study, ("tune",), found, "Take one out."))
+        message = "A study has either [sample] or [tune]."
+        problems.append(problem_of(study, ("tune",), message, "Take one out."))
     raise_errors(problems)
     return study
 
 
-def problem_of(study: Study, keys: AnyKeys, found: str, remedy: str = "") -> Problem:
+def problem_of(study: Study, keys: AnyKeys, message: str, remedy: str = "") -> Problem:
     """Problem at a key of a study, with its line where it was read from a file."""
-    return Problem(study._source.location(keys) if study._source else study.name, found, remedy)
+    return Problem(study._source.location(keys) if study._source else study.name, message, remedy)
 
 
 def _read(path: Path, before: tuple[Path, ...]) -> Source:
@@ -128,44 +128,46 @@ def _read(path: Path, before: tuple[Path, ...]) -> Source:
         raise error_at(
             where, f"extends = {base!r}.", "Give the name or path of a study, in quotes."
         )
-    beside = resolved.parent / base
+    neighbour = resolved.parent / base
     try:
-        found = beside if beside.is_file() else library.find("study", base, near=resolved.parent)
+        extended = (
+            neighbour if neighbour.is_file() else library.find("study", base, near=resolved.parent)
+        )
     except ShipcosimError as error:
         raise error_at(where, f"There is no study '{base}'.", error.problems[0].remedy) from None
     # Studies that extend each other in a circle would never end.
-    if found.resolve() in (resolved, *before):
+    if extended.resolve() in (resolved, *before):
         raise error_at(
             where, f"'{base}' extends this study in turn.", "Extend a study that does not."
         )
-    return _over(_read(found, (*before, resolved)), source)
+    return _over(_read(extended, (*before, resolved)), source)
 
 
 def _is_list(content: dict[str, Any], name: str) -> bool:
     return isinstance(content.get(name), list) and all(
-        isinstance(one, dict) for one in content[name]
+        isinstance(entry, dict) for entry in content[name]
     )
 
 
-def _over(base: Source, own: Source) -> Source:
+def _over(base: Source, extending: Source) -> Source:
     """Merge a study with the one that it extends."""
-    files = [*own.files, *base.files]
-    shift = len(own.files)
+    files = [*extending.files, *base.files]
+    shift = len(extending.files)
     # What the other study says, with the scenario that lies beside it by its path.
     scenario = base.content.get("scenario")
-    beside = base.files[0][0].resolve().parent / scenario if isinstance(scenario, str) else None
+    neighbour = base.files[0][0].resolve().parent / scenario if isinstance(scenario, str) else None
     anchored = base.content | (
-        {"scenario": str(beside)} if beside is not None and beside.is_file() else {}
+        {"scenario": str(neighbour)} if neighbour is not None and neighbour.is_file() else {}
     )
-    content = _merged(anchored, own.content)
+    content = _merged(anchored, extending.content)
     origins = {}
     # Lists merge by name: an item of the same name replaces the old one in its place, others are
     # added.
     for name in LISTS:
-        if not any(_is_list(one.content, name) for one in (base, own)):
+        if not any(_is_list(source.content, name) for source in (base, extending)):
             continue
         items = [(item, (n + shift, i)) for item, (n, i) in _items(base, name)]
-        for item, origin in _items(own, name):
+        for item, origin in _items(extending, name):
             label = item.get(LISTS[name])
             same = next(
                 (i for i, (old, _) in enumerate(items) if label and old.get(LISTS[name]) == label),
@@ -183,14 +185,14 @@ def _items(source: Source, name: str) -> list[tuple[dict[str, Any], tuple[int, i
     return list(zip(source.content.get(name, []), source.origins.get(name, []), strict=False))
 
 
-def _merged(base: dict[str, Any], own: dict[str, Any]) -> dict[str, Any]:
-    """Merge tables key by key; other values are those of `own`."""
+def _merged(base: dict[str, Any], extending: dict[str, Any]) -> dict[str, Any]:
+    """Merge tables key by key; other values are those of `extending`."""
     both = {
-        n: _merged(base[n], own[n])
-        for n in base.keys() & own.keys()
-        if isinstance(base[n], dict) and isinstance(own[n], dict)
+        n: _merged(base[n], extending[n])
+        for n in base.keys() & extending.keys()
+        if isinstance(base[n], dict) and isinstance(extending[n], dict)
     }
-    return {**base, **own, **both}
+    return {**base, **extending, **both}
 
 
 def _repeated(study: Study) -> list[Problem]:
@@ -198,22 +200,26 @@ def _repeated(study: Study) -> list[Problem]:
     seen = {}
     problems = []
     # Factors, samples, searches, quantities and summaries share the columns of the tables.
-    columns = [(("factor", i, "name"), one.name) for i, one in enumerate(study.factor)]
+    columns = [(("factor", i, "name"), factor.name) for i, factor in enumerate(study.factor)]
     for part, drawn in (("sample", study.sample), ("tune", study.tune)):
         of = drawn.of if drawn is not None else {}
-        columns += [((part, "of", signal), one.name or signal) for signal, one in of.items()]
-    columns += [(("quantity", i, "name"), one.name) for i, one in enumerate(study.quantity)]
-    columns += [(("summary", i, "name"), one.name) for i, one in enumerate(study.summary)]
+        columns += [((part, "of", signal), line.name or signal) for signal, line in of.items()]
+    columns += [
+        (("quantity", i, "name"), quantity.name) for i, quantity in enumerate(study.quantity)
+    ]
+    columns += [(("summary", i, "name"), summary.name) for i, summary in enumerate(study.summary)]
     for keys, name in columns:
         if name in seen:
-            found = f"'{name}' is a {seen[name]} already."
+            message = f"'{name}' is a {seen[name]} already."
             problems.append(
-                problem_of(study, keys, found, "Give each column of the tables a name of its own.")
+                problem_of(
+                    study, keys, message, "Give each column of the tables a name of its own."
+                )
             )
         seen.setdefault(name, str(keys[0]))
     # Labels identify the cases in the table.
     for i, factor in enumerate(study.factor):
-        labels = [one.label for one in factor.case or ()]
+        labels = [case.label for case in factor.case or ()]
         for j, label in enumerate(labels):
             if label in labels[:j]:
                 keys = ("factor", i, "case", j, "label")

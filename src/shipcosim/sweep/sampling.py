@@ -108,66 +108,70 @@ def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
     with imported("sample", "Samples come from SciPy, which is missing."):
         import scipy  # noqa: F401
     lines = [
-        line for key, one in sample.of.items() for line in _lines(sample, levels, system, key, one)
+        line
+        for key, distribution in sample.of.items()
+        for line in _lines(sample, levels, system, key, distribution)
     ]
     # Each column maps probabilities to values (inverse transform sampling).
     quantiles = [_quantiles(levels, system, *line) for line in lines]
-    usable = [one for one in quantiles if one is not None]
+    usable = [quantile for quantile in quantiles if quantile is not None]
     if len(usable) < len(quantiles) or not usable:
         return None
     # Points in the unit cube, by the chosen method; kept off 0 and 1, where a normal distribution
     # is infinite.
     spread = np.clip(SPREADS[sample.method](sample.runs, len(usable), study.seed), EDGE, 1.0 - EDGE)
     numbers = np.column_stack([of(spread[:, i]) for i, (_, of) in enumerate(usable)])
-    found = Samples(tuple(column for column, _ in usable), numbers)
+    samples = Samples(tuple(column for column, _ in usable), numbers)
     # Only the extremes can break a bound.
-    _check_ends(levels, found, [key for key, _, _ in lines])
-    return found
+    _check_ends(levels, samples, [key for key, _, _ in lines])
+    return samples
 
 
 def _lines(
-    sample: Sample, levels: Levels, system: System, key: str, one: Distribution
+    sample: Sample, levels: Levels, system: System, key: str, distribution: Distribution
 ) -> Iterator[tuple[str, str, Distribution]]:
     """Key, name and distribution of each column of a line; ``vessel.*`` gives one per tolerance."""
     if not key.endswith(EVERY):
-        yield key, key, one
+        yield key, key, distribution
         return
     keys = ("sample", "of", key)
     group = key.removesuffix(EVERY)
-    if not one.tolerance or one.name or one.also:
-        found = f"'{key}' stands for each parameter with a tolerance."
-        levels.complain(keys, found, "It takes tolerance = true, and neither name nor also.")
+    if not distribution.tolerance or distribution.name or distribution.also:
+        message = f"'{key}' stands for each parameter with a tolerance."
+        levels.complain(keys, message, "It takes tolerance = true, and neither name nor also.")
         return
     # All parameters with a tolerance, except those that have a line of their own.
     component = system.components.get(levels.signals_of(key)[0].removesuffix(EVERY))
     names = [f"{group}.{name}" for name in component.tolerances] if component else []
     if not names:
-        known = [f"{c.name}{EVERY}" for c in system.components.values() if c.tolerances]
-        found = f"No parameter set states a tolerance of {key}."
-        levels.complain(keys, found, suggestion(key, known))
-    own = {
+        of_tolerances = [f"{c.name}{EVERY}" for c in system.components.values() if c.tolerances]
+        message = f"No parameter set states a tolerance of {key}."
+        levels.complain(keys, message, suggestion(key, of_tolerances))
+    in_lines = {
         signal
-        for line, said in sample.of.items()
-        for name in (line, *said.also)
+        for line, each in sample.of.items()
+        for name in (line, *each.also)
         for signal in levels.signals_of(name)
     }
-    yield from ((key, name, one) for name in names if own.isdisjoint(levels.signals_of(name)))
+    yield from (
+        (key, name, distribution) for name in names if in_lines.isdisjoint(levels.signals_of(name))
+    )
 
 
 def _quantiles(
-    levels: Levels, system: System, key: str, name: str, one: Distribution
+    levels: Levels, system: System, key: str, name: str, stated: Distribution
 ) -> tuple[SampledColumn, Callable[[np.ndarray], np.ndarray]] | None:
     """A column of samples, and its quantile function; None with a problem."""
     keys = "sample", "of", key
-    signals = [signal for each in (name, *one.also) for signal in levels.signals_of(each)]
+    signals = [signal for each in (name, *stated.also) for signal in levels.signals_of(each)]
     # Samples are drawn in their own unit and converted linearly to that of the signal.
     try:
         component, variable = system.split(signals[0])
         for other in signals[1:]:
             system.split(other)
         unit = units_of(system)(signals[0])
-        scale, shift = _conversion(one.unit, unit)
-        of = _with_tolerance(system, signals[0]) if one.tolerance else _distribution(one)
+        scale, shift = _conversion(stated.unit, unit)
+        of = _with_tolerance(system, signals[0]) if stated.tolerance else _distribution(stated)
     except UnitError as error:
         levels.complain(keys, error.found, error.remedy)
     except ShipcosimError as error:
@@ -179,7 +183,11 @@ def _quantiles(
         )
         is_whole = kind == "Integer"
         column = SampledColumn(
-            one.name or name, tuple(signals), unit.name if unit else None, is_whole, one.at_fork
+            stated.name or name,
+            tuple(signals),
+            unit.name if unit else None,
+            is_whole,
+            stated.at_fork,
         )
         return column, lambda shares: scale * of(shares) + shift
     return None
@@ -190,35 +198,36 @@ def _conversion(spelling: str | None, unit: Any) -> tuple[float, float]:
     if spelling is None:
         return 1.0, 0.0
     # Two values determine the linear conversion.
-    zero, one = (number_in(f"{value} {spelling}", unit) for value in (0.0, 1.0))
-    return one - zero, zero
+    zero, unity = (number_in(f"{value} {spelling}", unit) for value in (0.0, 1.0))
+    return unity - zero, zero
 
 
-def _distribution(one: Distribution) -> Callable[[np.ndarray], np.ndarray]:
+def _distribution(stated: Distribution) -> Callable[[np.ndarray], np.ndarray]:
     """Quantile function of a distribution of scipy.stats."""
     from scipy import stats
 
     kinds = stats.rv_continuous, stats.rv_discrete
     # Check name and shape parameters here: scipy's own errors do not name the line.
-    known = [name for name in dir(stats) if isinstance(getattr(stats, name), kinds)]
-    if one.distribution not in known:
-        found = f"scipy.stats has no distribution '{one.distribution}'."
-        raise error_at("", found, suggestion(str(one.distribution), known))
-    distribution = getattr(stats, str(one.distribution))
+    names_of_scipy = [name for name in dir(stats) if isinstance(getattr(stats, name), kinds)]
+    if stated.distribution not in names_of_scipy:
+        message = f"scipy.stats has no distribution '{stated.distribution}'."
+        raise error_at("", message, suggestion(str(stated.distribution), names_of_scipy))
+    distribution = getattr(stats, str(stated.distribution))
     needed = (distribution.shapes or "").replace(",", " ").split()
     allowed = [*needed, "loc"] + ([] if isinstance(distribution, stats.rv_discrete) else ["scale"])
-    if unknown := [name for name in one.shape if name not in allowed]:
+    if unknown := [name for name in stated.shape if name not in allowed]:
         raise error_at("", f"unknown key '{unknown[0]}'.", suggestion(unknown[0], allowed))
-    if missing := [name for name in needed if name not in one.shape]:
-        found = f"'{missing[0]}' is missing."
-        raise error_at("", found, f"{one.distribution} has: {', '.join(allowed)}.")
+    if missing := [name for name in needed if name not in stated.shape]:
+        message = f"'{missing[0]}' is missing."
+        raise error_at("", message, f"{stated.distribution} has: {', '.join(allowed)}.")
     # Wrong parameters show as values that are not finite.
-    if not np.isfinite(distribution.ppf([EDGE, 0.5, 1.0 - EDGE], **one.shape)).all():
-        found = f"{one.distribution} with {', '.join(f'{n} = {v:g}' for n, v in one.shape.items()) or 'no numbers'}."
+    if not np.isfinite(distribution.ppf([EDGE, 0.5, 1.0 - EDGE], **stated.shape)).all():
+        numbers = ", ".join(f"{name} = {value:g}" for name, value in stated.shape.items())
+        message = f"{stated.distribution} with {numbers or 'no numbers'}."
         raise error_at(
-            "", found, "These numbers make no distribution, or one without finite values."
+            "", message, "These numbers make no distribution, or one without finite values."
         )
-    return lambda shares: distribution.ppf(shares, **one.shape)
+    return lambda shares: distribution.ppf(shares, **stated.shape)
 
 
 def _with_tolerance(system: System, signal: str) -> Callable[[np.ndarray], np.ndarray]:
@@ -228,19 +237,19 @@ def _with_tolerance(system: System, signal: str) -> Callable[[np.ndarray], np.nd
     component, name = system.split(signal)
     tolerances = {} if component is None else system.components[component].tolerances
     if name not in tolerances:
-        known = [f"{c.name}.{n}" for c in system.components.values() for n in c.tolerances]
-        found = f"No parameter set states a tolerance of {signal}."
-        raise error_at("", found, suggestion(signal, known))
+        with_tolerance = [f"{c.name}.{n}" for c in system.components.values() for n in c.tolerances]
+        message = f"No parameter set states a tolerance of {signal}."
+        raise error_at("", message, suggestion(signal, with_tolerance))
     return lambda shares: norm.ppf(
         shares, loc=system.start_value(component, name), scale=tolerances[name]
     )
 
 
-def _check_ends(levels: Levels, found: Samples, lines: Sequence[str]) -> None:
+def _check_ends(levels: Levels, samples: Samples, lines: Sequence[str]) -> None:
     """Check the extremes of each column against bounds and types."""
-    for i, (key, column) in enumerate(zip(lines, found.columns, strict=True)):
-        for row in (int(np.argmin(found.numbers[:, i])), int(np.argmax(found.numbers[:, i]))):
-            value = found.values(row)[i]
+    for i, (key, column) in enumerate(zip(lines, samples.columns, strict=True)):
+        for row in (int(np.argmin(samples.numbers[:, i])), int(np.argmax(samples.numbers[:, i]))):
+            value = samples.values(row)[i]
             keys = ("sample", "of", key)
             if column.at_fork:
                 levels.at_fork(column.signals, value, keys)

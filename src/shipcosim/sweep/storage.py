@@ -77,7 +77,7 @@ class Store:
         self.done = np.zeros(len(plan), dtype=bool)
         self.failed = 0
         self.lost = 0
-        with _said(self.folder):
+        with _naming_file(self.folder):
             self.folder.mkdir(parents=True, exist_ok=True)
             clear_killed(self.folder)
             digest, done = self._plan_there()
@@ -135,7 +135,7 @@ class Store:
         """
         self.flush()
         # The table is written from the parts; they are removed only when all runs are done.
-        with _said(self.folder):
+        with _naming_file(self.folder):
             table = self._collected()
             self._write_runs(table)
             self._write_tracks()
@@ -154,7 +154,7 @@ class Store:
 
     def about(self) -> dict[str, Any]:
         """The content of study.json."""
-        columns = [asdict(one) for one in [*self._plan.columns, *_of_summaries(self._plan)]]
+        columns = [asdict(column) for column in [*self._plan.columns, *_of_summaries(self._plan)]]
         counts = {"planned": len(self._plan), "done": int(self.done.sum()), "failed": self.failed}
         return {
             "schema": SCHEMA,
@@ -175,8 +175,8 @@ class Store:
     def _plan_there(self) -> tuple[str, int]:
         """Digest of the plan whose results are there, and how many of its runs are done; no digest without results."""
         try:
-            found = json.loads((self.folder / "study.json").read_text(encoding="utf-8"))
-            return str(found["plan"]), int(found["runs"]["done"])
+            content = json.loads((self.folder / "study.json").read_text(encoding="utf-8"))
+            return str(content["plan"]), int(content["runs"]["done"])
         except (OSError, ValueError, TypeError, LookupError):
             return "", 0
 
@@ -304,12 +304,12 @@ class Store:
         import pyarrow
 
         pairs = zip(self._plan.study.factor, self._plan.levels, strict=True)
-        found = {factor.name: _kind([level.label for level in levels]) for factor, levels in pairs}
+        kinds = {factor.name: _kind([level.label for level in levels]) for factor, levels in pairs}
         if self._plan.samples is not None:
-            found["sample"] = pyarrow.int64()
-            for one in self._plan.samples.columns:
-                found[one.name] = pyarrow.int64() if one.is_whole else pyarrow.float64()
-        return found
+            kinds["sample"] = pyarrow.int64()
+            for column in self._plan.samples.columns:
+                kinds[column.name] = pyarrow.int64() if column.is_whole else pyarrow.float64()
+        return kinds
 
     def _group(self, done: pyarrow.Table, kinds: dict[str, Any]) -> pyarrow.Table:
         """Make rows of the table of runs."""
@@ -339,14 +339,14 @@ def _write(table: pyarrow.Table, path: Path, **options: Any) -> None:
 
 
 @contextmanager
-def _said(folder: Path) -> Iterator[None]:
+def _naming_file(folder: Path) -> Iterator[None]:
     """Turn errors of the operating system into one ShipcosimError."""
     try:
         yield
     except OSError as error:
-        found = f"Results cannot be written here: {error.strerror or error}."
+        message = f"Results cannot be written here: {error.strerror or error}."
         remedy = "Make room and run the study again: it goes on from what is done."
-        raise error_at(str(folder), found, remedy) from error
+        raise error_at(str(folder), message, remedy) from error
 
 
 def _kind(labels: list[Value]) -> Any:
@@ -366,17 +366,19 @@ def _of_summaries(plan: Plan) -> list[ColumnOf]:
         *(factor.name for factor in plan.study.factor),
         *["sample"][: plan.samples is not None],
     ]
-    found = []
-    for one in plan.study.summary:
+    columns = []
+    for summary in plan.study.summary:
         # Shares have no unit; others have that of their quantity.
-        unit = {"share": "1", "last_held": None}.get(one.statistic, units.get(one.quantity))
-        text = one.description or f"{one.statistic} of {one.quantity}"
-        if one.statistic == "last_held":
+        unit = {"share": "1", "last_held": None}.get(summary.statistic, units.get(summary.quantity))
+        text = summary.description or f"{summary.statistic} of {summary.quantity}"
+        if summary.statistic == "last_held":
             # What is meant by held follows from the study, whatever a description says.
-            sizes = [size for name, size in zip(names, plan.shape, strict=True) if name in one.over]
-            text += f", held in {one.share or SHARE:.0%} of the runs, {prod(sizes)} a case"
-        found.append(ColumnOf(one.name, "summary", unit, text))
-    return found
+            sizes = [
+                size for name, size in zip(names, plan.shape, strict=True) if name in summary.over
+            ]
+            text += f", held in {summary.share or SHARE:.0%} of the runs, {prod(sizes)} a case"
+        columns.append(ColumnOf(summary.name, "summary", unit, text))
+    return columns
 
 
 def read_part(path: Path) -> pandas.DataFrame:

@@ -97,8 +97,8 @@ class Factor(Part):
         kinds |= {"conditions": self.conditions, "seeds": self.seeds}
         given = [name for name, value in kinds.items() if value is not None]
         if len(given) != 1:
-            found = f"It has {' and '.join(given)}." if given else "It has no values."
-            raise ValueError(f"{found} A factor has one of {', '.join(KINDS)}.")
+            message = f"It has {' and '.join(given)}." if given else "It has no values."
+            raise ValueError(f"{message} A factor has one of {', '.join(KINDS)}.")
         if self.start is None and (self.to, self.count, self.step) != (None, None, None):
             raise ValueError("to, count and step belong to from. Give from, too.")
         if self.start is not None and (
@@ -236,9 +236,11 @@ class Quantity(Part):
                 "A quantity has either signal and reduce, or expect or scenario_expectations = true."
             )
         others = ("near", "reduce", "during", "time", "percentile", "limit", "since")
-        if self.judges and (beside := [name for name in others if getattr(self, name) is not None]):
+        if self.judges and (
+            others_given := [name for name in others if getattr(self, name) is not None]
+        ):
             raise ValueError(
-                f"{', '.join(beside)}: not used beside expect; an expectation has its own keys."
+                f"{', '.join(others_given)}: not used beside expect; an expectation has its own keys."
             )
         if self.judges:
             return self
@@ -364,8 +366,8 @@ class View(Part):
         needed, others = _KEYS_OF_VIEWS[self.kind]
         if missing := [key for key in needed if not getattr(self, key)]:
             raise ValueError(f"a view of kind '{self.kind}' needs {' and '.join(missing)}.")
-        known = {"kind", "title", "note", "series", "only", "table", *needed, *others}
-        if foreign := sorted(self.model_fields_set - known):
+        allowed = {"kind", "title", "note", "series", "only", "table", *needed, *others}
+        if foreign := sorted(self.model_fields_set - allowed):
             raise ValueError(f"a view of kind '{self.kind}' has no {', '.join(foreign)}.")
         return self
 
@@ -437,9 +439,9 @@ class Study(Part):
         ShipcosimError
             If there is none.
         """
-        beside = self.folder / self.scenario
+        neighbour = self.folder / self.scenario
         return (
-            beside
-            if beside.is_file()
+            neighbour
+            if neighbour.is_file()
             else library.find("scenario", self.scenario, near=self.folder)
         )

@@ -93,8 +93,8 @@ def run_study(
     if engine not in ENGINES:
         raise error_at("engine", f"engine = {engine!r}.", "Studies are run by 'native' or 'fmpy'.")
     if scheduler is not None and workers is not None:
-        found = f"workers = {workers}, but the scheduler has workers of its own."
-        raise error_at("workers (--workers)", found, "Leave one of them out.")
+        message = f"workers = {workers}, but the scheduler has workers of its own."
+        raise error_at("workers (--workers)", message, "Leave one of them out.")
     # The store knows which runs are done, also from an interrupted study.
     store = Store(folder, plan, engine, force)
     search = Search(plan) if plan.study.tune else None
@@ -117,8 +117,8 @@ def run_study(
     tables, remarks = _further(plan, runs, search)
     remarks = [*not_reached(plan), *remarks]
     if store.lost:
-        found = f"{folder}: a table is missing or damaged; the {store.lost} runs that only it held are to be made again."
-        remarks.insert(0, found)
+        message = f"{folder}: a table is missing or damaged; the {store.lost} runs that only it held are to be made again."
+        remarks.insert(0, message)
     for name, table in {"summary": summary, **tables}.items():
         write_file(folder / f"{name}.csv", table.to_csv(index=False).encode())
     about = store.write_about(tables=list(tables), remarks=remarks)
@@ -145,8 +145,8 @@ def not_reached(plan: Plan) -> list[str]:
         ends = [plan.scenario_of(plan.run(number)).stop_time for number in range(len(plan))]
         for measure in plan.measures:
             if short := sum(not measure.is_reached_at(end) for end in ends):
-                found = f"{short} of {len(ends)} runs end before {measure.needs:g} s"
-                remarks.append(f"{measure.name}: {found} and have no value.")
+                message = f"{short} of {len(ends)} runs end before {measure.needs:g} s"
+                remarks.append(f"{measure.name}: {message} and have no value.")
     return remarks
 
 

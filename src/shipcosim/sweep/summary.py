@@ -43,14 +43,14 @@ def summarised(plan: Plan, runs: pandas.DataFrame) -> pandas.DataFrame:
     """
     import pandas
 
-    factors = [one.name for one in plan.study.factor] + (
+    factors = [factor.name for factor in plan.study.factor] + (
         ["sample"] if plan.samples is not None else []
     )
     # Summaries over the same factors share their rows.
     groups: dict[tuple[str, ...], list[Summary]] = {}
-    for one in plan.study.summary:
-        gone = {*one.over, one.along}
-        groups.setdefault(tuple(name for name in factors if name not in gone), []).append(one)
+    for summary in plan.study.summary:
+        gone = {*summary.over, summary.along}
+        groups.setdefault(tuple(name for name in factors if name not in gone), []).append(summary)
     rows = [row for remaining, many in groups.items() for row in _rows(plan, runs, remaining, many)]
     return pandas.DataFrame(rows, columns=list(dict.fromkeys(name for row in rows for name in row)))
 
@@ -69,45 +69,45 @@ def _rows(
     for row, part in by_levels(runs, remaining):
         # Failed runs are counted, but their values are not used.
         row |= {"runs": len(part), "failed": int((part["error"] != "").sum())}
-        for one in summaries:
-            row |= _summary(plan, one, part[part["error"] == ""])
+        for summary in summaries:
+            row |= _summary(plan, summary, part[part["error"] == ""])
         rows.append(row)
     return rows
 
 
-def _summary(plan: Plan, one: Summary, part: Any) -> Mapping[str, Any]:
-    if one.statistic == "last_held":
-        return _last_held(plan, one, part)
-    values = part[one.quantity].to_numpy(dtype=float)
+def _summary(plan: Plan, summary: Summary, part: Any) -> Mapping[str, Any]:
+    if summary.statistic == "last_held":
+        return _last_held(plan, summary, part)
+    values = part[summary.quantity].to_numpy(dtype=float)
     # "Never" is later than any time: infinite instead of missing, or an average would be too early.
-    if any(measure.name == one.quantity and measure.may_never_be for measure in plan.measures):
+    if any(measure.name == summary.quantity and measure.may_never_be for measure in plan.measures):
         values = np.where(np.isnan(values), np.inf, values)
-    value, low, high = STATISTICS[one.statistic](values[~np.isnan(values)], one)
-    limits = {f"{one.name}_low": low, f"{one.name}_high": high}
-    return {one.name: value} | (limits if one.statistic in WITH_LIMITS else {})
+    value, low, high = STATISTICS[summary.statistic](values[~np.isnan(values)], summary)
+    limits = {f"{summary.name}_low": low, f"{summary.name}_high": high}
+    return {summary.name: value} | (limits if summary.statistic in WITH_LIMITS else {})
 
 
-def _last_held(plan: Plan, one: Summary, part: Any) -> dict[str, Any]:
+def _last_held(plan: Plan, summary: Summary, part: Any) -> dict[str, Any]:
     """Label of the last case up to which all hold, and what the study tells of the cases that it left out."""
-    factor = next(i for i, factor in enumerate(plan.study.factor) if factor.name == one.along)
-    found = one.none
+    factor = next(i for i, factor in enumerate(plan.study.factor) if factor.name == summary.along)
+    label = summary.none
     # None where no case fails: only cases that were not run could.
     failing = None
-    share = one.share if one.share is not None else SHARE
+    share = summary.share if summary.share is not None else SHARE
     # Levels come in increasing severity. Stop at the first in which too few runs hold.
     for level in plan.levels[factor]:
-        held = part.loc[part[one.along].astype(str) == str(level.label), one.quantity].to_numpy(
-            dtype=float
-        )
+        held = part.loc[
+            part[summary.along].astype(str) == str(level.label), summary.quantity
+        ].to_numpy(dtype=float)
         held = held[~np.isnan(held)]  # of runs that end before what is judged
         if not len(held):
             break
         if held.mean() < share - 1e-12:
             failing = level.label
             break
-        found = level.label
+        label = level.label
     is_condition = plan.study.factor[factor].conditions is not None
-    return {one.name: found, f"{one.name}{RANGE}": range_of(found, failing, is_condition)}
+    return {summary.name: label, f"{summary.name}{RANGE}": range_of(label, failing, is_condition)}
 
 
 def range_of(held: Any, failing: Any, is_condition: bool) -> str:
@@ -219,7 +219,7 @@ def _mean(values: np.ndarray) -> Interval:
 
 
 def _plain(reduce: Any, least: int = 1) -> Any:
-    return lambda values, one: (
+    return lambda values, summary: (
         float(reduce(values)) if len(values) >= least else np.nan,
         np.nan,
         np.nan,
@@ -228,11 +228,11 @@ def _plain(reduce: Any, least: int = 1) -> Any:
 
 WITH_LIMITS = ("percentile", "mean", "share")
 STATISTICS: dict[str, Any] = {
-    "percentile": lambda values, one: percentile(values, one.percentile),
-    "mean": lambda values, one: _mean(values),
+    "percentile": lambda values, summary: percentile(values, summary.percentile),
+    "mean": lambda values, summary: _mean(values),
     "std": _plain(lambda values: values.std(ddof=1), 2),
     "maximum": _plain(np.max),
     "minimum": _plain(np.min),
-    "share": lambda values, one: wilson(int(values.sum()), len(values)),
+    "share": lambda values, summary: wilson(int(values.sum()), len(values)),
 }
 """Statistics of (values, summary)."""

@@ -43,15 +43,17 @@ def ranges_of(study: Study, levels: Levels, system: System) -> Samples | None:
     assert study.tune is not None
     with imported("tune", "The search comes from Optuna, which is missing."):
         import optuna
-    made = [_range(study, levels, system, key, one) for key, one in study.tune.of.items()]
-    usable = [one for one in made if one is not None]
-    names = [one.name for one in study.quantity]
+    made = [_range(study, levels, system, key, bounds) for key, bounds in study.tune.of.items()]
+    usable = [bounds for bounds in made if bounds is not None]
+    names = [quantity.name for quantity in study.quantity]
     # Objectives are quantities of the study.
-    for number, one in enumerate(study.tune.objective):
-        if one.quantity not in names:
+    for number, objective in enumerate(study.tune.objective):
+        if objective.quantity not in names:
             keys = ("tune", "objective", number, "quantity")
-            found = f"There is no quantity '{one.quantity}'."
-            levels.problems.append(problem_of(study, keys, found, suggestion(one.quantity, names)))
+            message = f"There is no quantity '{objective.quantity}'."
+            levels.problems.append(
+                problem_of(study, keys, message, suggestion(objective.quantity, names))
+            )
     if len(usable) < len(made):
         return None
     columns, bounds = zip(*usable, strict=True)
@@ -62,16 +64,16 @@ def ranges_of(study: Study, levels: Levels, system: System) -> Samples | None:
 
 
 def _range(
-    study: Study, levels: Levels, system: System, key: str, one: Range
+    study: Study, levels: Levels, system: System, key: str, bounds: Range
 ) -> tuple[SampledColumn, tuple[float, float, float]] | None:
     """Column of a line of [tune.of]: lowest, highest, present value; None with a problem."""
     signals = levels.existing([key], ("tune", "of", key))
     ends = {}
-    others = levels.existing(one.also, ("tune", "of", key, "also"))
+    others = levels.existing(bounds.also, ("tune", "of", key, "also"))
     if not signals:
         return None
     # Check both ends against bounds and types; values between them then fit too.
-    for end, value in (("low", one.low), ("high", one.high)):
+    for end, value in (("low", bounds.low), ("high", bounds.high)):
         checked = levels.checked(dict.fromkeys(signals, value), ("tune", "of", key, end))
         ends[end] = next(iter(checked.values()), None)
         levels.checked(dict.fromkeys(others, value), ("tune", "of", key, "also"))
@@ -80,20 +82,20 @@ def _range(
     present = system.start_value(*system.split(signals[0]))
     low, high, now = (float(value) for value in (ends["low"], ends["high"], present))
     # A logarithmic range needs positive numbers, and the present value starts the search.
-    if not low < high or (one.log and low <= 0.0):
-        found = f"low = {low:g} and high = {high:g}."
+    if not low < high or (bounds.log and low <= 0.0):
+        message = f"low = {low:g} and high = {high:g}."
         remedy = "low is the smaller one, and with log above 0."
     elif not low <= now <= high:
-        found = f"{signals[0]} is {now:g} now, which is not among them."
+        message = f"{signals[0]} is {now:g} now, which is not among them."
         remedy = "Take a range that has it in."
     else:
         unit = units_of(system)(signals[0])
         is_whole = isinstance(present, int)
         column = SampledColumn(
-            one.name or key, (*signals, *others), unit.name if unit else None, is_whole, False
+            bounds.name or key, (*signals, *others), unit.name if unit else None, is_whole, False
         )
         return column, (low, high, now)
-    levels.problems.append(problem_of(study, ("tune", "of", key), found, remedy))
+    levels.problems.append(problem_of(study, ("tune", "of", key), message, remedy))
     return None
 
 
@@ -125,9 +127,11 @@ class Search:
         self._among: dict[str, Any] = {}
         now = {}
         ranges = zip(plan.samples.columns, plan.samples.bounds.tolist(), strict=True)
-        for (column, (low, high, value)), one in zip(ranges, self._tune.of.values(), strict=True):
+        for (column, (low, high, value)), bounds in zip(
+            ranges, self._tune.of.values(), strict=True
+        ):
             kind = IntDistribution if column.is_whole else FloatDistribution
-            self._among[column.name] = kind(low, high, log=one.log)
+            self._among[column.name] = kind(low, high, log=bounds.log)
             now[column.name] = round(value) if column.is_whole else value
         # The seed makes the search reproducible.
         sampler = optuna.samplers.NSGAIISampler(
@@ -137,7 +141,7 @@ class Search:
         optuna.logging.set_verbosity(optuna.logging.WARNING)
         try:
             spelling: Any = {"maximise": "maximize", "minimise": "minimize"}
-            directions = [spelling[one.direction] for one in self._tune.objective]
+            directions = [spelling[objective.direction] for objective in self._tune.objective]
             self._search = optuna.create_study(directions=directions, sampler=sampler)
         finally:
             optuna.logging.set_verbosity(verbosity)
@@ -168,11 +172,12 @@ class Search:
         for trial in self._asked:
             samples_of = np.unravel_index(runs["run"].to_numpy(int), self._plan.shape)[-1]
             # A failed trial gets the worst possible values, so that it has no offspring.
-            found = _objectives(self._tune.objective, runs[samples_of == trial.number])
+            objectives = _objectives(self._tune.objective, runs[samples_of == trial.number])
             worst = [
-                -np.inf if one.direction == "maximise" else np.inf for one in self._tune.objective
+                -np.inf if objective.direction == "maximise" else np.inf
+                for objective in self._tune.objective
             ]
-            self._search.tell(trial, worst if found is None else found)
+            self._search.tell(trial, worst if objectives is None else objectives)
 
     def table(self, runs: Any) -> pandas.DataFrame:
         """Trials that are done.
@@ -191,7 +196,10 @@ class Search:
         import pandas
 
         # Quantities are summed up as their objective does, others by their mean.
-        statistics = {one.quantity: STATISTICS[one.statistic] for one in self._tune.objective}
+        statistics = {
+            objective.quantity: STATISTICS[objective.statistic]
+            for objective in self._tune.objective
+        }
         best = {trial.number for trial in self._search.best_trials}
         rows = []
         for number, part in runs.groupby("sample", sort=True):
@@ -221,6 +229,7 @@ def _objectives(objectives: list[Objective], runs: Any) -> list[float] | None:
     if (runs["error"] != "").any():
         return None
     found = [
-        float(STATISTICS[one.statistic](runs[one.quantity].to_numpy(float))) for one in objectives
+        float(STATISTICS[objective.statistic](runs[objective.quantity].to_numpy(float)))
+        for objective in objectives
     ]
     return found if np.isfinite(found).all() else None

@@ -121,14 +121,14 @@ class Cluster(Workers):
             remedy = (
                 "Start one: dask scheduler, and on each machine dask worker ADDRESS --nthreads 1."
             )
-            found = f"No scheduler of Dask answers: {str(error) or type(error).__name__}."
-            raise error_at(self._where, found, remedy) from None
+            message = f"No scheduler of Dask answers: {str(error) or type(error).__name__}."
+            raise error_at(self._where, message, remedy) from None
         self.n = len(self._client.scheduler_info(n_workers=-1)["workers"])
         if not self.n:
             self._client.close()
-            found = "It has no worker."
+            message = "It has no worker."
             remedy = f"Start some: dask worker {address} --nthreads 1."
-            raise error_at(self._where, found, remedy)
+            raise error_at(self._where, message, remedy)
         # The job goes to all workers once; each chunk then only refers to it.
         self._packed: PackedJob = pack(plan, engine, with_fmus=True)
         self._executor = self._client.get_executor(pure=False, retries=2)
@@ -143,9 +143,9 @@ class Cluster(Workers):
         try:
             self._job: Any = self._client.scatter(self._packed, broadcast=True, hash=False)
         except OSError as error:
-            found = f"The cluster answers no more: {error}."
+            message = f"The cluster answers no more: {error}."
             remedy = "Start it again, then the same command, which goes on."
-            raise error_at(self._where, found, remedy) from None
+            raise error_at(self._where, message, remedy) from None
 
     def close(self) -> None:
         """See `Workers`."""

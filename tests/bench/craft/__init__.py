@@ -1,4 +1,4 @@
-"""Drawn craft of other sizes and forms with gross faults, and what commanded force against felt says of them."""
+"""Drawn craft of other sizes and forms with gross faults, and what commanded against measured force says of them."""
 
 from craft.drawn import CHANGES, FAULTS, STYLES, Drawn, draw
 

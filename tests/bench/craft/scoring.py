@@ -1,4 +1,4 @@
-"""What the comparison of commanded and felt force says of a drawn log: right, open, silent or wrong."""
+"""What the comparison of commanded and measured force says of a drawn log: right, open, silent or wrong."""
 
 from collections import Counter
 

@@ -577,7 +577,7 @@ CASES = [
         interaction.thrust_shares,
         [(1.3, 0.2, -3.0, 5.0, 4.0, -2.0), (-1.6, 1.6, 0.1, 1.0, 0.0, 9.0)],
         lambda *row: ((*row[:3], *row[:3]), (*row[3:], *row[3:])),
-        dict(found=interaction.pairs(ROW)),
+        dict(unit_pairs=interaction.pairs(ROW)),
     ),
     *(
         Case(azimuth.azimuth_given, [(n, 0.4) for n in (2.0, -1.0)], constants=dict(unit=unit))

@@ -62,11 +62,11 @@ def calibrate(
     read = None if learn else ship_of(system or SYSTEM_OF_LOGS)
     name = read.name if read else "craft"
     folder = out or Path("results") / f"calibrated-{name}"
-    asked: dict[str, Any] = {"out": folder, "force": force, "learn": learn, "length": length}
+    options: dict[str, Any] = {"out": folder, "force": force, "learn": learn, "length": length}
     with shown_progress(steps_of(logs)) as progress:
-        found = calibrate_ship(logs, read or system, channels, effects, progress, **asked)
+        calibration = calibrate_ship(logs, read or system, channels, effects, progress, **options)
 
     def show() -> None:
-        print_found(outcome(found), blocks(found), folder / "report.html")
+        print_found(outcome(calibration), blocks(calibration), folder / "report.html")
 
-    return Conclusion(name, found, show, folder)
+    return Conclusion(name, calibration, show, folder)

@@ -62,7 +62,7 @@ def capability(
     groups = [
         tuple(name.strip() for name in given.split(",") if name.strip()) for given in failure or ()
     ]
-    found = capability_of(system, parameters=parameters or (), ship=ship, failures=groups)
-    folder = out or Path("results") / f"capability-{found.vessel.name}"
-    found.save(folder, force=force)
-    return Conclusion(found.vessel.name, found, lambda: print_capability(found, folder), folder)
+    result = capability_of(system, parameters=parameters or (), ship=ship, failures=groups)
+    folder = out or Path("results") / f"capability-{result.vessel.name}"
+    result.save(folder, force=force)
+    return Conclusion(result.vessel.name, result, lambda: print_capability(result, folder), folder)

@@ -71,14 +71,14 @@ def diagnose(
     from shipcosim.diagnose.pipeline import STEPS
 
     folder = out or default_folder(data[0])
-    asked: dict[str, Any] = {"channels": channels, "causes": effects, "reference": reference}
-    asked |= {"out": folder, "force": force, "learn": learn, "length": length}
+    options: dict[str, Any] = {"channels": channels, "causes": effects, "reference": reference}
+    options |= {"out": folder, "force": force, "learn": learn, "length": length}
     if len(data) > 1:
         with shown_progress(steps_of(data)) as progress:
-            diagnosis = diagnose_logs(data, system, progress=progress, **asked)
+            diagnosis = diagnose_logs(data, system, progress=progress, **options)
         name = f"{len(data)} logs"
     else:
         with shown_progress(STEPS) as progress:
-            diagnosis = diagnose_logs(data[0], system, progress=progress, **asked)
+            diagnosis = diagnose_logs(data[0], system, progress=progress, **options)
         name = data[0].name
     return Conclusion(name, diagnosis, lambda: print_diagnosis(diagnosis, folder), folder)

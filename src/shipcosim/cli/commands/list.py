@@ -29,8 +29,8 @@ def list_(
 
     unknown = [kind for kind in kinds or () if kind not in LISTED]
     if unknown:
-        found = "There is no such kind of thing."
-        raise ShipcosimError([Problem(kind, found, suggestion(kind, LISTED)) for kind in unknown])
+        message = "There is no such kind of thing."
+        raise ShipcosimError([Problem(kind, message, suggestion(kind, LISTED)) for kind in unknown])
     say(listed(kinds or ()))
 
 
@@ -53,20 +53,20 @@ def docs(
     """
     from shipcosim.cli.start.listing import pages, site_page, table_of_pages
 
-    found = pages()
-    if page is not None and page not in found:
-        raise ShipcosimError([Problem(page, "There is no such page.", suggestion(page, found))])
+    by_name = pages()
+    if page is not None and page not in by_name:
+        raise ShipcosimError([Problem(page, "There is no such page.", suggestion(page, by_name))])
     console = make_console()
-    site = site_page(found[page] if page else None)
+    site = site_page(by_name[page] if page else None)
     # A pipe gets the text. So does a terminal on a machine without a browser.
     if site and console.is_terminal and not terminal and webbrowser.open(site.as_uri()):
         say(f"Page: {site}")
         return
     if page is None:
-        say(table_of_pages(found))
+        say(table_of_pages(by_name))
         return
     # Marks for the site are no text.
-    text = re.sub(r"<!--.*?-->\n*", "", found[page].read_text(encoding="utf-8"))
+    text = re.sub(r"<!--.*?-->\n*", "", by_name[page].read_text(encoding="utf-8"))
     if not console.is_terminal:
         say(text)
         return

@@ -65,6 +65,8 @@ def replay(
 
     folder = out or default_folder(log, "-replay")
     with progress_of(f"replaying {log.name}") as progress:
-        asked = {"parameters": parameters or [], "horizon": horizon, "out": folder, "force": force}
-        replayed = replay_log(log, system, before, channels, progress=progress, **asked)
+        options = {"parameters": parameters or [], "horizon": horizon, "force": force}
+        replayed = replay_log(
+            log, system, before, channels, progress=progress, out=folder, **options
+        )
     return Conclusion(log.name, replayed, lambda: print_replay(replayed, folder), folder)

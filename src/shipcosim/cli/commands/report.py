@@ -31,12 +31,10 @@ def report(
     check_targets(folder)
     tables = read_table(_table(first)), read_table(_table(second))
     with staged(folder, force=force) as stage:
-        outcome, found = write_comparison(tables, names, stage / "report.html")
+        outcome, differences = write_comparison(tables, names, stage / "report.html")
     say(f"{outcome.word} {outcome.sentence}")
-    for one in found[:5]:
-        say(
-            f"  {one.signal}: {one.rms:.3g} {one.unit} rms, {one.largest:.3g} {one.unit} at {one.time:g} s"
-        )
+    for d in differences[:5]:
+        say(f"  {d.signal}: {d.rms:.3g} {d.unit} rms, {d.largest:.3g} {d.unit} at {d.time:g} s")
     say(f"Page: {folder / 'report.html'}")
 
 

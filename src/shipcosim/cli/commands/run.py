@@ -83,7 +83,7 @@ def run(
     from shipcosim.cli.requests import isolation, parsed_components, parsed_settings
     from shipcosim.cli.runs import concluded, prepare_folder, run_folder
 
-    asked = {
+    options = {
         "parameters": parameters or [],
         "fmus": fmus or [],
         "strict": strict,
@@ -94,12 +94,12 @@ def run(
         "set": parsed_settings(settings or []),
         "components": parsed_components(components or ()),
     }
-    asked |= {"stop_time": stop_time, "step_size": step_size, "until": until}
-    asked |= {"realtime": realtime, "profile": profile, **isolation(isolate, timeout)}
+    options |= {"stop_time": stop_time, "step_size": step_size, "until": until}
+    options |= {"realtime": realtime, "profile": profile, **isolation(isolate, timeout)}
     if files := library.scenarios(scenario):
         if store or resume:
-            found = "This is a folder of scenarios: it has no one state to store or to go on from."
-            raise error_at(scenario, found, "Name one scenario, or leave out --store and --from.")
-        return run_folder(prepare_folder(files, asked), Path(scenario).resolve().name, out, force)
-    prepared = prepare_run(scenario, store=store, **asked)
+            message = "A folder of scenarios has no one state to store or to go on from."
+            raise error_at(scenario, message, "Name one scenario, or leave out --store and --from.")
+        return run_folder(prepare_folder(files, options), Path(scenario).resolve().name, out, force)
+    prepared = prepare_run(scenario, store=store, **options)
     return concluded(prepared, out or Path("results") / prepared.scenario.name, force)

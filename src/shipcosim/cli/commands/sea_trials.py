@@ -47,7 +47,7 @@ def sea_trials(
 
     folder = out or default_folder(data, "-sea-trials")
     with shown_progress(STEPS) as progress:
-        found = study_trials(
+        study = study_trials(
             data, system, channels, effects, progress, orders=orders, out=folder, force=force
         )
-    return Conclusion(data.name, found, lambda: print_study(found, folder), folder)
+    return Conclusion(data.name, study, lambda: print_study(study, folder), folder)

@@ -75,24 +75,24 @@ class Output:
             with redirect_stdout(sys.stderr) if self.as_json or self.quiet else nullcontext():
                 yield
 
-    def conclude(self, found: Conclusion) -> None:
+    def conclude(self, conclusion: Conclusion) -> None:
         """Print the result; exit code 1 unless it passed."""
         from shipcosim.cli.console import print_problems, say_outcome
         from shipcosim.cli.terminal import make_console
 
         if self.as_json or self.quiet:
-            print_problems(found.result.failures)
+            print_problems(conclusion.result.failures)
         if self.as_json:
-            say_json(found.result.as_json())  # pyright: ignore[reportAttributeAccessIssue]
+            say_json(conclusion.result.as_json())  # pyright: ignore[reportAttributeAccessIssue]
         elif self.quiet:
-            say_outcome(make_console(soft_wrap=True), found.result.outcome)
+            say_outcome(make_console(soft_wrap=True), conclusion.result.outcome)
         else:
-            found.show()
+            conclusion.show()
         if self.is_published:
-            outcome = found.result.outcome
+            outcome = conclusion.result.outcome
             sentence = f"{outcome.word} {outcome.sentence}"
-            self.publish(found.name, sentence, found.result.checks, found.folder)
-        if not found.result.passed:
+            self.publish(conclusion.name, sentence, conclusion.result.checks, conclusion.folder)
+        if not conclusion.result.passed:
             raise typer.Exit(FAILED)
 
     @property
@@ -132,15 +132,15 @@ def guarded(function: Callable[..., Conclusion | None]) -> Callable[..., None]:
 
     @functools.wraps(function)
     def wrapper(*args: Any, debug: bool = False, **kwargs: Any) -> None:
-        asked = {name: kwargs[name] for name in Output.__annotations__ if kwargs.get(name)}
-        output = Output(**asked)
+        flags = {name: kwargs[name] for name in Output.__annotations__ if kwargs.get(name)}
+        output = Output(**flags)
         # NumPy's warnings name lines of ours; what overflows is shown as inf, or is an error of its own.
         warnings.simplefilter("ignore", RuntimeWarning)
         try:
             with output.working():
-                found = function(*args, **kwargs)
-            if found is not None:
-                output.conclude(found)
+                conclusion = function(*args, **kwargs)
+            if conclusion is not None:
+                output.conclude(conclusion)
             return
         except typer.Exit:
             raise
@@ -168,12 +168,12 @@ def guarded(function: Callable[..., Conclusion | None]) -> Callable[..., None]:
         raise typer.Exit(code)
 
     # typer reads the options of a command from its signature.
-    own = inspect.signature(function, eval_str=True)
+    signature = inspect.signature(function, eval_str=True)
     debug = inspect.Parameter(
         "debug", inspect.Parameter.KEYWORD_ONLY, default=False, annotation=Debug
     )
-    parameters = [*own.parameters.values(), debug]
-    wrapper.__signature__ = own.replace(parameters=parameters)  # pyright: ignore[reportAttributeAccessIssue]
+    parameters = [*signature.parameters.values(), debug]
+    wrapper.__signature__ = signature.replace(parameters=parameters)  # pyright: ignore[reportAttributeAccessIssue]
     return wrapper
 
 

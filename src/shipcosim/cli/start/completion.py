@@ -13,8 +13,10 @@ def names_of(*kinds: str) -> Callable[[str], Names]:
     """Function that completes names of these kinds, each with its line."""
 
     def complete(incomplete: str) -> Names:
-        found = {name: (kind, path) for kind in kinds for name, path in library.names(kind).items()}
-        fitting = {name: at for name, at in found.items() if name.startswith(incomplete)}
+        candidates = {
+            name: (kind, path) for kind in kinds for name, path in library.names(kind).items()
+        }
+        fitting = {name: at for name, at in candidates.items() if name.startswith(incomplete)}
         return [(name, library.line_of(*at)) for name, at in fitting.items()]
 
     return complete

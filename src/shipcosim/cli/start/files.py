@@ -149,11 +149,11 @@ def system_files(name: str, origin: str) -> Files:
     if named:
         text = text.replace(f'name="{named[1]}"', f'name="{name}"', 2)
     sources = [
-        one
-        for one in dict.fromkeys(re.findall(r'source="([^"]+)"', text))
-        if (folder / one).is_file()
+        source
+        for source in dict.fromkeys(re.findall(r'source="([^"]+)"', text))
+        if (folder / source).is_file()
     ]
-    sets = [one for one in sources if one.endswith(".ssv")]
+    sets = [source for source in sources if source.endswith(".ssv")]
     copied: Files = {}
     for source in sources:
         target = source
@@ -275,18 +275,18 @@ def _outputs(system: "System") -> Iterator[str]:
 def _own_system() -> str | None:
     """First system of the project around the working folder."""
     project = library.project_of()
-    own = (
+    names = (
         name
         for name, path in library.names("system").items()
         if project and path.is_relative_to(project)
     )
-    return next(own, None)
+    return next(names, None)
 
 
 def _check_name(name: str, kind: str) -> None:
     if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", name):
-        found = f"This cannot name a {kind}: '{name}'."
-        raise error_at("NAME", found, "Use letters, digits, '_', '-' and '.'.")
+        message = f"This cannot name a {kind}: '{name}'."
+        raise error_at("NAME", message, "Use letters, digits, '_', '-' and '.'.")
 
 
 def _filled(template: str, **values: object) -> str:

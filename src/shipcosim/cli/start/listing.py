@@ -24,17 +24,17 @@ def overview() -> str:
     lines = []
     for kind, heading in zip(library.KINDS, LISTED, strict=False):
         paths = library.names(kind)
-        own = [
+        of_project = [
             name
             for name, path in paths.items()
             if project not in (None, shipped) and path.is_relative_to(project)
         ]
-        others = [name for name in paths if name not in own]
-        for where, found in (("here", own), ("shipcosim", others)):
-            if found:
-                first = sorted(found, key=lambda name: "/" in name)[:4]
-                shown = ", ".join(first) + (", ..." if len(found) > 4 else "")
-                lines.append((heading, f"{len(found):>3} {where + ':':<11}{shown}"))
+        others = [name for name in paths if name not in of_project]
+        for where, names in (("here", of_project), ("shipcosim", others)):
+            if names:
+                first = sorted(names, key=lambda name: "/" in name)[:4]
+                shown = ", ".join(first) + (", ..." if len(names) > 4 else "")
+                lines.append((heading, f"{len(names):>3} {where + ':':<11}{shown}"))
     return f"{BEGIN}\nWhat is there:\n" + "\n".join(f"  {kind:<11}{text}" for kind, text in lines)
 
 
@@ -54,12 +54,18 @@ def _section(kind: str) -> str:
     project = library.project_of()
     shipped = library.shipped()
     entries = library.entries("study" if kind == "studies" else kind.removesuffix("s"))
-    own = [e for e in entries if project not in (None, shipped) and e.path.is_relative_to(project)]
-    others = [e for e in entries if e not in own]
-    tables = [(f"{kind} of {project.name}", own)] if own and project else []
-    tables += [(f"{kind} of shipcosim" if own else kind, others)] if others or not own else []
+    of_project = [
+        e for e in entries if project not in (None, shipped) and e.path.is_relative_to(project)
+    ]
+    others = [e for e in entries if e not in of_project]
+    tables = [(f"{kind} of {project.name}", of_project)] if of_project and project else []
+    tables += (
+        [(f"{kind} of shipcosim" if of_project else kind, others)]
+        if others or not of_project
+        else []
+    )
     return "\n\n".join(
-        _table(heading, ((e.name, e.line) for e in found)) for heading, found in tables
+        _table(heading, ((e.name, e.line) for e in listed)) for heading, listed in tables
     )
 
 
@@ -67,10 +73,10 @@ def _engines() -> list[Row]:
     from shipcosim.cosim.engines.registry import ENGINES, engines_missing
 
     missing = engines_missing()
-    said = {name: f"{problem.found} {problem.remedy}" for name, problem in missing.items()}
-    said |= {"auto": "native for long runs, else fmpy", "fmpy": "our own"}
-    said |= {"native": "our own, with the models compiled"}
-    return [(name, said.get(name, "installed")) for name in ENGINES]
+    notes = {name: f"{problem.found} {problem.remedy}" for name, problem in missing.items()}
+    notes |= {"auto": "native for long runs, else fmpy", "fmpy": "our own"}
+    notes |= {"native": "our own, with the models compiled"}
+    return [(name, notes.get(name, "installed")) for name in ENGINES]
 
 
 def pages() -> dict[str, Path]:
@@ -89,10 +95,10 @@ def site_page(page: Path | None) -> Path | None:
     return file if file.is_file() else None
 
 
-def table_of_pages(found: Mapping[str, Path]) -> str:
+def table_of_pages(paths: Mapping[str, Path]) -> str:
     """The names of pages with their titles."""
     titles = {
-        name: path.read_text(encoding="utf-8").partition("\n")[0] for name, path in found.items()
+        name: path.read_text(encoding="utf-8").partition("\n")[0] for name, path in paths.items()
     }
     return _table(
         "pages (shipcosim docs PAGE)",
@@ -101,7 +107,7 @@ def table_of_pages(found: Mapping[str, Path]) -> str:
 
 
 def _table(heading: str, rows: Iterable[Row]) -> str:
-    found = list(rows)
-    width = max((len(name) for name, _ in found), default=0)
-    lines = [f"  {name:<{width}}  {text}".rstrip() for name, text in found]
+    cells = list(rows)
+    width = max((len(name) for name, _ in cells), default=0)
+    lines = [f"  {name:<{width}}  {text}".rstrip() for name, text in cells]
     return "\n".join([heading, *(lines or ["  none"])])

@@ -77,7 +77,7 @@ def _progress(plan: Plan) -> Iterator[Callable[[int, int], None]]:
     with bar_on(console, *columns) as bar:
         task = bar.add_task("", total=len(plan), pace="")
         first = []
-        said = []
+        announced = []
         say_tenth = tenths(console, plan.study.name)
 
         def report(done: int, total: int) -> None:
@@ -88,8 +88,8 @@ def _progress(plan: Plan) -> Iterator[Callable[[int, int], None]]:
             pace = f"{rate:.1f} runs/s, {rate * each:,.0f} ship-s/s" if rate else ""
             bar.update(task, completed=done, total=total, pace=pace)
             say_tenth(done, total, pace)
-            if rate and not said and elapsed - first[0][1] > 2.0 and done < total:
-                said.append(done)
+            if rate and not announced and elapsed - first[0][1] > 2.0 and done < total:
+                announced.append(done)
                 left = total - done
                 console.print(
                     f"{pace}: about {_time(left / rate)} for the {left:,} runs that are left."
@@ -142,7 +142,7 @@ def _print_frame(console: Console, swept: Swept, frame: pandas.DataFrame) -> Non
 def _say_indices(console: Console, swept: Swept) -> None:
     """Sobol indices of each quantity, those of the most important parameters."""
     indices = swept.tables["indices"]
-    factors = [one.name for one in swept.plan.study.factor]
+    factors = [factor.name for factor in swept.plan.study.factor]
     for key, part in indices.groupby(["quantity", *factors], sort=False):
         quantity, *levels = key if isinstance(key, tuple) else (key,)
         of = ", ".join(
@@ -163,18 +163,18 @@ def _say_trials(console: Console, swept: Swept) -> None:
     trials = swept.tables["trials"]
     tune = swept.plan.study.tune
     assert tune is not None
-    names = [one.quantity for one in tune.objective]
+    names = [objective.quantity for objective in tune.objective]
     front = trials.loc[trials["pareto"]].sort_values(by=names[0])
-    said = (
+    message = (
         f"{len(front)} of {len(trials)} trials are Pareto-optimal; trial 0 has the shipped gains."
     )
     console.print(
-        f"{', '.join(f'{one.quantity} {one.direction}d' for one in tune.objective)}: {said}",
+        f"{', '.join(f'{objective.quantity} {objective.direction}d' for objective in tune.objective)}: {message}",
     )
     shown = front.iloc[:: max(-(-len(front) // SHOWN), 1)]
     ours = trials[trials["as_shipped"] & ~trials["trial"].isin(shown["trial"])]
     columns = (
-        ["trial", *names, *(one.name for one in swept.plan.samples.columns)]
+        ["trial", *names, *(column.name for column in swept.plan.samples.columns)]
         if swept.plan.samples
         else []
     )

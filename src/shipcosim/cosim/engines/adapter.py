@@ -122,21 +122,21 @@ class Job:
 
     def starts(self, name: str) -> dict[str, Any]:
         """Start values of a component, those of its external inputs among them."""
-        external = {end[1]: found.start for end, found in self.external.items() if end[0] == name}
+        external = {end[1]: signal.start for end, signal in self.external.items() if end[0] == name}
         return dict(self.system.components[name].start) | external
 
     def intervals(self) -> Iterator[tuple[int, int, dict[End, float]]]:
         """(first step, last, {End: value} that change before it), over the whole run."""
         # Values before and after each step, to find where any input changes.
-        values = np.array([found.values for found in self.external.values()], dtype=float)
+        values = np.array([signal.values for signal in self.external.values()], dtype=float)
         values = values.reshape(len(self.external), self.n_steps + 1)
         # An interval ends where an input moves, and after MOST_STEPS, so that Ctrl-C is noticed.
         moving = np.flatnonzero((np.diff(values[:, :-1], axis=1) != 0).any(axis=0)) + 1
         starts = sorted({*range(0, self.n_steps, MOST_STEPS), *moving.tolist()})
-        before = {end: found.start for end, found in self.external.items()}
+        before = {end: signal.start for end, signal in self.external.items()}
         # Pass on only the inputs that differ from the interval before.
         for first, last in zip(starts, [*starts[1:], self.n_steps], strict=True):
-            now = {end: found.values[first].item() for end, found in self.external.items()}
+            now = {end: signal.values[first].item() for end, signal in self.external.items()}
             yield first, last, {end: value for end, value in now.items() if value != before[end]}
             before = now
 
@@ -164,15 +164,15 @@ class Job:
             for kind, arrays in outputs.items()
         }
         times = self.times[every]
-        known = (
+        metadata = (
             attributes_of(self.system, self.scenario)
             | self._known
             | {"start_time": 0.0}
             | dict(attributes)
         )
-        remarks = json.loads(str(known.get("remarks", "[]")))
-        known["remarks"] = json.dumps([*remarks, *range_remarks(self.plan, times, recorded)])
-        return make_table(times, columns_of(self.plan, len(times), recorded), known)
+        remarks = json.loads(str(metadata.get("remarks", "[]")))
+        metadata["remarks"] = json.dumps([*remarks, *range_remarks(self.plan, times, recorded)])
+        return make_table(times, columns_of(self.plan, len(times), recorded), metadata)
 
     def _external_values(self, kind):
         """(n + 1, external values) array."""
@@ -268,13 +268,13 @@ def run_on(
     """
 
     def table(complete):
-        known = {
+        metadata = {
             "engine": engine,
             "order": "jacobi",
             "complete": int(complete),
             "remarks": json.dumps([]),
         }
-        return job.table(session.outputs(), known | dict(about))
+        return job.table(session.outputs(), metadata | dict(about))
 
     # Ctrl-C is checked between intervals, so the engine is never stopped within a call.
     with delayed_interrupt() as check_interrupt, _opened(engine, open_session, job) as session:
@@ -282,8 +282,8 @@ def run_on(
         try:
             _advance(session, job, check_interrupt)
         except EngineError as error:
-            found = f"failed in the step from t = {job.times[session.n_done]:.9g} s. {error}"
-            raise RunError(Problem(engine, found), table(complete=False)) from error
+            message = f"failed in the step from t = {job.times[session.n_done]:.9g} s. {error}"
+            raise RunError(Problem(engine, message), table(complete=False)) from error
         except KeyboardInterrupt:
             raise Interrupted(table(complete=False)) from None
         return table(complete=True)
@@ -331,13 +331,13 @@ def unsupported(
     # Types and interfaces that the engine does not have, by component.
     for component in job.system.components.values():
         if interface_type_of(component) == "ModelExchange":
-            found = f"runs as model exchange, which {engine} does not do."
-            problems.append(Problem(component.name, found, "The engine fmpy does."))
+            message = f"runs as model exchange, which {engine} does not do."
+            problems.append(Problem(component.name, message, "The engine fmpy does."))
         if wide := [v.name for v in component.variables.values() if v.type in WIDE]:
-            found = (
+            message = (
                 f"has Integers of more than 32 bits, which {engine} has not: {', '.join(wide[:5])}."
             )
-            problems.append(Problem(component.name, found))
+            problems.append(Problem(component.name, message))
         if items := [v.name for v in component.variables.values() if v.kind == "Enumeration"]:
             problems.append(
                 Problem(
@@ -347,9 +347,9 @@ def unsupported(
             )
     # Connections: problems common to all other engines first, then the engine's own.
     for connection in job.connections:
-        if found := _unsupported_connection(job, connection) or complaint_of(connection):
-            found = f"{engine} cannot make this connection: {found}."
-            problems.append(Problem(connection.arrow, found, "The engine fmpy can."))
+        if message := _unsupported_connection(job, connection) or complaint_of(connection):
+            message = f"{engine} cannot make this connection: {message}."
+            problems.append(Problem(connection.arrow, message, "The engine fmpy can."))
     return problems
 
 

@@ -66,12 +66,12 @@ def _problems(job):
     """Problems of ecos other than connections."""
     for name, multiple in job.plan.multiples.items():
         if multiple > 1:
-            found = f"steps {multiple} base steps at a time; ecos only lets components step with the base step."
-            yield Problem(name, found)
+            message = f"steps {multiple} base steps at a time; ecos only lets components step with the base step."
+            yield Problem(name, message)
     for change in job.changes:
         if job.plan.variable(change.end).kind != "Real":
-            found = f"is connected and not Real, so ecos knows no {change.action} of it."
-            yield Problem(label(change.end), found)
+            message = f"is connected and not Real, so ecos knows no {change.action} of it."
+            yield Problem(label(change.end), message)
 
 
 @dataclass
@@ -141,12 +141,12 @@ class EcosSession:
         """Go on to the step of this number."""
         step = _function("step")
         simulation = c_void_p(self._simulation.sim)
-        one = c_size_t(1)
+        single_step = c_size_t(1)
         # Changes act before the step that starts at their time.
         for k in range(self.n_done, last):
             if k in self._changes:
                 self._act(self._changes[k])
-            step(simulation, one)
+            step(simulation, single_step)
             self.n_done = k + 1
             # Each step is read at once, because ecos keeps no history in full precision.
             for record in self._records:

@@ -56,8 +56,8 @@ def readers(
     """
     # The tool reads the file alone, so nothing of our scenario reaches it.
     if scenario.events or scenario.set or scenario.components:
-        found = "A tool that reads the file itself knows no events, start values or swapped FMUs of ours."
-        raise error_at(scenario.name or "scenario", found, "Compare the system alone.")
+        message = "A tool that reads the file itself knows no events, start values or swapped FMUs of ours."
+        raise error_at(scenario.name or "scenario", message, "Compare the system alone.")
     # ecos reads SSP files only.
     hosts = ["libcosim"] if Path(path).suffix == ".xml" else ["libcosim", "ecos"]
     return {host: partial(_run, host, str(path), scenario, set_name) for host in hosts}

@@ -72,8 +72,8 @@ def _problems(job: Job) -> Iterator[Problem]:
     """Problems other than connections, which libcosim would ignore or crash on."""
     # libcosim counts in nanoseconds; a step that is no whole number of them would drift.
     if abs(job.scenario.step_size * 1e9 - nanoseconds(job.scenario.step_size)) > 1e-6:
-        found = f"The step size {job.scenario.step_size!r} s is no whole number of nanoseconds, in which libcosim counts."
-        yield Problem("step_size", found)
+        message = f"The step size {job.scenario.step_size!r} s is no whole number of nanoseconds, in which libcosim counts."
+        yield Problem("step_size", message)
     for component in job.system.components.values():
         if component.fmu.fmi_version != "2.0":
             yield Problem(

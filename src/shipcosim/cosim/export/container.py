@@ -86,19 +86,19 @@ def _problems(system, step_size):
     yield from _repeated(system)
     # A second connection into one input would be a sum, so remember the inputs seen.
     for connection in system.connections:
-        known = f"{connection.arrow}: " if connection.arrow not in connection.place else ""
-        for found in _connection_faults(connection, system, targets):
+        prefix = f"{connection.arrow}: " if connection.arrow not in connection.place else ""
+        for fault in _connection_faults(connection, system, targets):
             yield Problem(
-                connection.place, f"{known}{found}", "The container FMU copies values as they are."
+                connection.place, f"{prefix}{fault}", "The container FMU copies values as they are."
             )
         targets.add(connection.target)
     # A system parameter is set as it is; its value cannot be converted on the way.
     for connection in system.given:
         if (connection.factor, connection.offset, connection.mapping) != (1.0, 0.0, None):
-            found = f"{connection.arrow}: the parameter's value changes on its way (unit conversion or transformation)."
+            fault = f"{connection.arrow}: the parameter's value changes on its way (unit conversion or transformation)."
             yield Problem(
                 connection.place or connection.arrow,
-                found,
+                fault,
                 "Give the connector the unit of the FMU's parameter.",
             )
 
@@ -106,8 +106,8 @@ def _problems(system, step_size):
 def _component_problems(component, step_size):
     fmu = component.fmu
     if fmu.fmi_version not in ("2.0", "3.0") or "CoSimulation" not in fmu.interfaces:
-        found = f"{fmu.path.name} is no co-simulation FMU of FMI 2.0 or 3.0."
-        yield Problem(component.name, found, "The container FMU steps no other FMUs.")
+        message = f"{fmu.path.name} is no co-simulation FMU of FMI 2.0 or 3.0."
+        yield Problem(component.name, message, "The container FMU steps no other FMUs.")
     elif component.implementation == "ModelExchange":
         yield Problem(
             component.name,
@@ -122,13 +122,13 @@ def _component_problems(component, step_size):
                 if fmu.variables[name].whole
                 else f"of type {fmu.variables[name].type}"
             )
-            found = f"{name} gets a start value and is {what}."
-            yield Problem(component.name, found, "The container FMU cannot set it.")
+            message = f"{name} gets a start value and is {what}."
+            yield Problem(component.name, message, "The container FMU cannot set it.")
     if component.step_size not in (None, step_size):
-        found = (
+        message = (
             f"has a step of {component.step_size:g} s of its own; the exchange has {step_size:g} s."
         )
-        yield Problem(component.name, found, "The container FMU steps all components alike.")
+        yield Problem(component.name, message, "The container FMU steps all components alike.")
 
 
 def _repeated(system):
@@ -137,10 +137,10 @@ def _repeated(system):
         # Components are compared by the FMU's file.
         others = [c.name for c in system.components.values() if c.fmu.path == component.fmu.path]
         if len(others) > 1 and component.fmu.capability("canBeInstantiatedOnlyOncePerProcess"):
-            found = f"{component.fmu.path.name} can be instantiated only once in a process, but makes up"
+            message = f"{component.fmu.path.name} can be instantiated only once in a process, but makes up"
             yield Problem(
                 component.name,
-                f"{found} {', '.join(others)}.",
+                f"{message} {', '.join(others)}.",
                 "Export it again without this limit.",
             )
 
@@ -201,7 +201,7 @@ def _configuration(system, exposed, paths, step_size, sweeps):
         "parallelDoStep": False,
         "components": [_component(component, paths) for component in system.components.values()],
         "variables": [
-            _variable(one, system, numbers) for one in [*exposed, *_hidden(system, exposed)]
+            _variable(entry, system, numbers) for entry in [*exposed, *_hidden(system, exposed)]
         ],
         "connections": list(_connections(system, numbers)) * sweeps,
     }
@@ -220,7 +220,7 @@ def _component(component, paths):
 
 def _hidden(system, exposed):
     """Start values that the system sets on variables which the container does not show."""
-    shown = {end for one in exposed for end in one.ends}
+    shown = {end for entry in exposed for end in entry.ends}
     for component in system.components.values():
         for name, value in component.start.items():
             if (component.name, name) not in shown:
@@ -230,22 +230,22 @@ def _hidden(system, exposed):
                 )
 
 
-def _variable(one, system, numbers):
-    name, variable = one.ends[0]
-    known = {
+def _variable(entry, system, numbers):
+    name, variable = entry.ends[0]
+    attributes = {
         "variableType": library_type(system.components[name].fmu, variable),
         "mappings": [
             {
                 "component": numbers[name],
-                "valueReference": system.components[name].variables[own].value_reference,
+                "valueReference": system.components[name].variables[inner].value_reference,
             }
-            for name, own in one.ends
+            for name, inner in entry.ends
         ],
     }
     return (
-        known
-        if one.start is None or one.causality == "output"
-        else known | {"start": [text_of(one.start)]}
+        attributes
+        if entry.start is None or entry.causality == "output"
+        else attributes | {"start": [text_of(entry.start)]}
     )
 
 

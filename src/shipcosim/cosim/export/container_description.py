@@ -41,7 +41,7 @@ def container_description(
         description=f"{len(system.components)} components of the system {system.name}",
         generationTool=f"shipcosim {__version__}",
         variableNamingConvention="structured"
-        if all(is_structured(one.name) for one in exposed)
+        if all(is_structured(variable.name) for variable in exposed)
         else "flat",
         numberOfEventIndicators="0",
     )
@@ -55,8 +55,8 @@ def container_description(
     time = xml.SubElement(variables, "ScalarVariable", name=_time_name(exposed), valueReference="0")
     time.attrib |= {"causality": "independent", "variability": "continuous", "description": "time"}
     xml.SubElement(time, "Real")
-    for reference, one in enumerate(exposed, start=1):
-        variables.append(_scalar_variable(reference, one, system, types))
+    for reference, entry in enumerate(exposed, start=1):
+        variables.append(_scalar_variable(reference, entry, system, types))
     _add_structure(root, exposed)
     xml.indent(root)
     return xml.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"
@@ -77,18 +77,24 @@ def _abilities(system):
 
 
 def _add_units(root, system, exposed):
-    used = sorted({one.unit for one in exposed if one.unit and one.variable.kind == "Real"})
+    used = sorted(
+        {
+            variable.unit
+            for variable in exposed
+            if variable.unit and variable.variable.kind == "Real"
+        }
+    )
     if not used:
         return
     definitions = xml.SubElement(root, "UnitDefinitions")
     for name in used:
         # An FMU has one definition per unit name; two definitions in its parts cannot be merged.
-        found = {c.fmu.units[name] for c in system.components.values() if name in c.fmu.units}
-        if len({(unit.exponents, unit.factor, unit.offset) for unit in found}) > 1:
+        units = {c.fmu.units[name] for c in system.components.values() if name in c.fmu.units}
+        if len({(unit.exponents, unit.factor, unit.offset) for unit in units}) > 1:
             text = f"The unit {name} is defined in two ways by its FMUs."
             raise error_at(system.name, text, "An FMU can have one definition of a unit.")
         element = xml.SubElement(definitions, "Unit", name=name)
-        for unit in found:
+        for unit in units:
             xml.SubElement(element, "BaseUnit", unit.base_unit_attributes)
             break
 
@@ -97,7 +103,7 @@ def _add_types(root, exposed):
     """Write the enumerations under new names; return the names by items."""
     # Equal enumerations of different FMUs become one type.
     kinds = dict.fromkeys(
-        tuple(one.variable.items.items()) for one in exposed if one.variable.items
+        tuple(variable.variable.items.items()) for variable in exposed if variable.variable.items
     )
     names = {items: f"Enumeration{number}" for number, items in enumerate(kinds, start=1)}
     if names:
@@ -122,35 +128,37 @@ def _add_experiment(root, system, step_size):
 
 
 def _time_name(exposed):
-    names = {one.name for one in exposed}
+    names = {variable.name for variable in exposed}
     return next(name for name in ("time", "simulation_time", "_time") if name not in names)
 
 
-def _scalar_variable(reference, one, system, types):
-    variable = one.variable
+def _scalar_variable(reference, entry, system, types):
+    variable = entry.variable
     element = xml.Element(
-        "ScalarVariable", name=one.name, valueReference=str(reference), causality=one.causality
+        "ScalarVariable", name=entry.name, valueReference=str(reference), causality=entry.causality
     )
-    if one.description:
-        element.set("description", one.description)
-    element.set("variability", _variability(one))
+    if entry.description:
+        element.set("description", entry.description)
+    element.set("variability", _variability(entry))
     # FMI 2.0 table of causality, variability and initial: outputs are calculated, others are exact.
-    if one.causality != "input":
-        element.set("initial", "calculated" if one.causality == "output" else "exact")
+    if entry.causality != "input":
+        element.set("initial", "calculated" if entry.causality == "output" else "exact")
     values = (
-        {"start": text_of(one.start)} if one.start is not None and one.causality != "output" else {}
+        {"start": text_of(entry.start)}
+        if entry.start is not None and entry.causality != "output"
+        else {}
     )
-    name, own = one.ends[0]
+    name, inner = entry.ends[0]
     kind = (
         "Enumeration"
         if variable.items
-        else FMI2_TYPES[str(library_type(system.components[name].fmu, own))]
+        else FMI2_TYPES[str(library_type(system.components[name].fmu, inner))]
     )
     # Attributes by type, as the schema allows them.
     if kind == "Enumeration":
         values["declaredType"] = types[tuple(variable.items.items())]
-    if kind == "Real" and one.unit:
-        values["unit"] = one.unit
+    if kind == "Real" and entry.unit:
+        values["unit"] = entry.unit
     if kind in ("Real", "Integer", "Enumeration"):
         number = float if kind == "Real" else int
         bounds = {"min": variable.minimum, "max": variable.maximum}
@@ -159,12 +167,12 @@ def _scalar_variable(reference, one, system, types):
     return element
 
 
-def _variability(one):
-    if one.causality == "parameter":
-        return "tunable" if one.variable.variability == "tunable" else "fixed"
+def _variability(entry):
+    if entry.causality == "parameter":
+        return "tunable" if entry.variable.variability == "tunable" else "fixed"
     return (
         "continuous"
-        if one.variable.kind == "Real" and one.variable.variability == "continuous"
+        if entry.variable.kind == "Real" and entry.variable.variability == "continuous"
         else "discrete"
     )
 
@@ -173,7 +181,9 @@ def _add_structure(root, exposed):
     structure = xml.SubElement(root, "ModelStructure")
     # Indices count from 1, and the first variable is time.
     indices = [
-        str(index) for index, one in enumerate(exposed, start=2) if one.causality == "output"
+        str(index)
+        for index, variable in enumerate(exposed, start=2)
+        if variable.causality == "output"
     ]
     for kind in ("Outputs", "InitialUnknowns") if indices else ():
         unknowns = xml.SubElement(structure, kind)

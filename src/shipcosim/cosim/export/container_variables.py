@@ -68,21 +68,23 @@ def exposed_variables(
     """
     # A connector that cannot be shown is an error: the user asked for it.
     exposed = [
-        one for one in _connectors(system, problems) if _is_shown(one, system, problems, "error")
+        entry
+        for entry in _connectors(system, problems)
+        if _is_shown(entry, system, problems, "error")
     ]
     if connectors_only:
         return exposed
     # Then the variables of the components, except inputs that something feeds already.
-    names = {one.name for one in exposed}
-    fed = {end for one in exposed if one.causality != "output" for end in one.ends}
+    names = {entry.name for entry in exposed}
+    fed = {end for entry in exposed if entry.causality != "output" for end in entry.ends}
     fed |= system.feeding.keys()
-    for one in _variables(system, fed):
-        if one.name in names:
-            found = f"A connector of the system and a variable of a component are both called {one.name}."
-            problems.append(Problem(system.name, found, "Rename the connector."))
+    for shown in _variables(system, fed):
+        if shown.name in names:
+            message = f"A connector of the system and a variable of a component are both called {shown.name}."
+            problems.append(Problem(system.name, message, "Rename the connector."))
         # Variables that FMI 2.0 cannot show are left out with a remark.
-        elif _is_shown(one, system, problems, "remark"):
-            exposed.append(one)
+        elif _is_shown(shown, system, problems, "remark"):
+            exposed.append(shown)
     return exposed
 
 
@@ -90,8 +92,8 @@ def _connectors(system, problems):
     """Connectors of the outermost system."""
     for signal, causality, ends in _signals(system):
         if not ends:
-            found = f"The {causality} {signal.name} is connected to nothing and is left out."
-            problems.append(Problem(system.name, found, severity="remark"))
+            message = f"The {causality} {signal.name} is connected to nothing and is left out."
+            problems.append(Problem(system.name, message, severity="remark"))
             continue
         # Type and bounds come from the first variable that the connector leads to.
         variable = _variable(system, ends[0])
@@ -118,16 +120,16 @@ def _signals(system):
 
 def _ends(connections, signal, near):
     far = {"source": "target", "target": "source"}[near]
-    found = (getattr(c, far) for c in connections if getattr(c, near) == (None, signal.name))
-    return tuple(end for end in found if end[0] is not None)
+    ends = (getattr(c, far) for c in connections if getattr(c, near) == (None, signal.name))
+    return tuple(end for end in ends if end[0] is not None)
 
 
 def _common_start(system, signal, ends, problems):
     starts = {system.components[name].start_value(variable) for name, variable in ends}
     if len(starts) > 1:
-        found = f"{signal.name} has no start value, and {', '.join(map(label, ends))} start with different ones."
+        message = f"{signal.name} has no start value, and {', '.join(map(label, ends))} start with different ones."
         problems.append(
-            Problem(system.name, found, "Set a start value for it: an FMU has to state one.")
+            Problem(system.name, message, "Set a start value for it: an FMU has to state one.")
         )
     return starts.pop()
 
@@ -153,20 +155,20 @@ def _variables(system, fed):
         )
 
 
-def _is_shown(one, system, problems, severity):
+def _is_shown(entry, system, problems, severity):
     """True if FMI 2.0 has a type for a variable; otherwise note a problem."""
-    name, variable = one.ends[0]
+    name, variable = entry.ends[0]
     kind = library_type(system.components[name].fmu, variable)
     if kind in FMI2_TYPES:
         return True
     what = (
         "an element of an array"
-        if one.variable.whole is not None
-        else f"of type {one.variable.type}"
+        if entry.variable.whole is not None
+        else f"of type {entry.variable.type}"
     )
-    found = f"{one.name} is {what}, which FMI 2.0 has not"
-    found += "; it is left out." if severity == "remark" else "."
-    problems.append(Problem(system.name, found, severity=severity))
+    message = f"{entry.name} is {what}, which FMI 2.0 has not"
+    message += "; it is left out." if severity == "remark" else "."
+    problems.append(Problem(system.name, message, severity=severity))
     return False
 
 

@@ -88,7 +88,7 @@ def export_fmu(
         "There, components whose outputs follow their inputs at once are in another order. If only last digits differ, "
         "a component amplifies rounding: the FMU can then be written without this comparison."
     )
-    raise ShipcosimError([Problem(system.name, found, remedy) for found in differing[:5]])
+    raise ShipcosimError([Problem(system.name, text, remedy) for text in differing[:5]])
 
 
 def block_of(fmu: Path) -> System:
@@ -105,7 +105,7 @@ def _run(system, step_size, options):
 
 def _differences(ours, theirs):
     """Describe the outputs of the container that differ from the system's, the worst first."""
-    found = []
+    differing = []
     scales = _scales(ours)
     # Texts cannot be compared by size; the container passes them on unchanged.
     for name in theirs.data_vars:
@@ -121,25 +121,25 @@ def _differences(ours, theirs):
         if error.max() > TOLERANCE * scale:
             row = int(error.argmax())
             time = float(ours["time"][row])
-            found.append(
+            differing.append(
                 (
                     error.max() / scale,
                     f"{shown} is {a[row]:.9g} at t = {time:g} s, in the FMU {b[row]:.9g}.",
                 )
             )
-    return [text for _, text in sorted(found, reverse=True)]
+    return [text for _, text in sorted(differing, reverse=True)]
 
 
 def _scales(table):
     """Largest absolute value among the signals of each component in each unit."""
-    found = {}
+    scales = {}
     for name in table.data_vars:
         if table[name].dtype.kind in "fbi":
             kind = _kind(table, name)
-            found[kind] = max(
-                found.get(kind, 0.0), float(np.abs(table[name].values.astype(float)).max())
+            scales[kind] = max(
+                scales.get(kind, 0.0), float(np.abs(table[name].values.astype(float)).max())
             )
-    return found
+    return scales
 
 
 def _kind(table, name):

@@ -141,17 +141,19 @@ def _remarks(system, scenario):
     }
     for what, (signals, remedy) in lost.items():
         if signals:
-            found = f"OSP has no {what}: {', '.join(signals)} have no name there."
-            yield Problem(system.name, found, remedy, "remark")
+            message = f"OSP has no {what}: {', '.join(signals)} have no name there."
+            yield Problem(system.name, message, remedy, "remark")
     # libcosim reads texts in the machine's own encoding.
     for name, component in system.components.items():
         for variable, value in component.start.items():
             if isinstance(value, str) and not value.isascii():
-                found = "is a text beyond ASCII, which libcosim reads in the encoding of the machine that it runs on."
-                yield Problem(f"{name}.{variable}", found, "Run it where that is UTF-8.", "remark")
+                message = "is a text beyond ASCII, which libcosim reads in the encoding of the machine that it runs on."
+                yield Problem(
+                    f"{name}.{variable}", message, "Run it where that is UTF-8.", "remark"
+                )
     if scenario.expect:
-        found = f"OSP has no expectations: {len(scenario.expect)} stay behind."
-        yield Problem(scenario.name or "scenario", found, severity="remark")
+        message = f"OSP has no expectations: {len(scenario.expect)} stay behind."
+        yield Problem(scenario.name or "scenario", message, severity="remark")
 
 
 def write_osp(

@@ -170,9 +170,9 @@ class Master:
         # Changes within rounding are accepted: the loop has converged.
         if any(change > SAME * abs(inputs[name]) for name, change in moving.items()):
             names = ", ".join(name for name in inputs if name in moving)
-            found = f"the start does not settle: after {MOST_ITERATIONS} sweeps over the components {names} still change."
+            message = f"the start does not settle: after {MOST_ITERATIONS} sweeps over the components {names} still change."
             remedy = "They lie on or behind a loop of direct feedthrough. One of it has to hold its output over a step."
-            raise Failure(Problem("initialisation", found, remedy))
+            raise Failure(Problem("initialisation", message, remedy))
 
     def _inputs(self):
         """Values of all inputs, by name."""
@@ -296,9 +296,9 @@ class Master:
         if np.isfinite(values).all():
             return
         row = int(np.flatnonzero(~np.isfinite(values))[0])
-        found = f"is {values[row]} at t = {time:.9g} s."
+        message = f"is {values[row]} at t = {time:.9g} s."
         raise Failure(
-            Problem(self._names["Real"][0][row], found, "Every value has to be a finite number.")
+            Problem(self._names["Real"][0][row], message, "Every value has to be a finite number.")
         )
 
 

@@ -408,18 +408,20 @@ class _CompiledLoop:
     def _compiled(self, grid) -> dict[str, CompiledStep]:
         objects = {component.name: component.slave.python_object for component in self._components}
         # Only FMUs of our shell have Python code that can be recorded.
-        ours = {name: fmu for name, fmu in objects.items() if fmu is not None}
+        own_fmus = {name: fmu for name, fmu in objects.items() if fmu is not None}
         # The first step serves as the example from which the code is recorded.
         time = float(grid.times[grid.first])
         self._first_step = time, float(grid.times[grid.first + 1]) - time
-        found = dict(zip(ours, compiled_steps(list(ours.values()), *self._first_step), strict=True))
+        steps = dict(
+            zip(own_fmus, compiled_steps(list(own_fmus.values()), *self._first_step), strict=True)
+        )
         self._reasons: dict[str, object] = {
-            name: "its code is not ours" for name in objects if name not in ours
+            name: "its code is not ours" for name in objects if name not in own_fmus
         }
         self._reasons |= {
-            name: step for name, step in found.items() if isinstance(step, Untraceable)
+            name: step for name, step in steps.items() if isinstance(step, Untraceable)
         }
-        return {name: step for name, step in found.items() if isinstance(step, CompiledStep)}
+        return {name: step for name, step in steps.items() if isinstance(step, CompiledStep)}
 
     def _exchange(self, kind: str, exchange: Exchange) -> _Exchange:
         recorder = self._recorders.by_kind[kind]
@@ -452,14 +454,14 @@ class _CompiledLoop:
         made.kept = self._pointer(step.kept)
         # Copies between memory and exchange: place in the memory, exchange, row.
         for name, rows in (("input", component.input_rows), ("output", component.output_rows)):
-            found = [
+            table = [
                 (step.places[variable.name], kinds[kind], first + number)
                 for kind, (first, variables) in rows.items()
                 for number, variable in enumerate(variables)
             ]
-            setattr(made, f"n_{name}s", len(found))
+            setattr(made, f"n_{name}s", len(table))
             for column, part in enumerate(("place", "exchange", "row")):
-                numbers = np.array([row[column] for row in found], dtype=np.int64)
+                numbers = np.array([row[column] for row in table], dtype=np.int64)
                 setattr(made, f"{name}_{part}", self._pointer(numbers))
         return made
 

@@ -36,12 +36,12 @@ def _is_inner(connection: Connection, plan: Plan) -> bool:
     components = [plan.system.components[name or ""] for name, _ in ends]
     # A common solver steps with the base step, and it cannot see events that change the ends.
     is_free = plan.modified.isdisjoint(ends) and all(
-        plan.multiples[one.name] == 1 for one in components
+        plan.multiples[component.name] == 1 for component in components
     )
     # State events would need one event search for the whole group, which is not done.
     smooth = all(
-        interface_type_of(one) == "ModelExchange" and one.fmu.n_event_indicators == 0
-        for one in components
+        interface_type_of(component) == "ModelExchange" and component.fmu.n_event_indicators == 0
+        for component in components
     )
     return is_free and smooth and all(plan.variable(end).kind == "Real" for end in ends)
 
@@ -69,11 +69,11 @@ def exchanged_at_steps(
     """
     # One remark per pair; pairs inside a group are integrated together and need none.
     groups = groups_of(inner)
-    said = {}
+    by_pair = {}
     for c in plan.system.connections:
         pair = tuple(sorted({c.source[0] or "", c.target[0] or ""}))
         is_carried = c in inner and any(set(pair) <= group for group in groups)
-        if is_carried or "" in pair or pair in said or not _is_of_models(c, plan):
+        if is_carried or "" in pair or pair in by_pair or not _is_of_models(c, plan):
             continue
         what = (
             "run in model exchange, wired together"
@@ -81,18 +81,18 @@ def exchanged_at_steps(
             else "runs in model exchange, wired to itself"
         )
         why = how or _why_apart(c, plan)
-        said[pair] = (
+        by_pair[pair] = (
             f"{' and '.join(pair)} {what}, but not as one system: {why}. What they exchange is held for "
             f"{step_size:g} s: an error of first order in the step."
         )
-    return list(said.values())
+    return list(by_pair.values())
 
 
 def _is_of_models(connection: Connection, plan: Plan) -> bool:
     """True for a connection from Real to Real between model-exchange components."""
     ends = (connection.source, connection.target)
     names = [plan.system.components[name or ""] for name, _ in ends]
-    return all(interface_type_of(one) == "ModelExchange" for one in names) and all(
+    return all(interface_type_of(name) == "ModelExchange" for name in names) and all(
         plan.variable(end).kind == "Real" for end in ends
     )
 
@@ -101,7 +101,9 @@ def _why_apart(connection: Connection, plan: Plan) -> str:
     """Why a common solver cannot carry a connection between model-exchange components."""
     ends = (connection.source, connection.target)
     components = {name: plan.system.components[name or ""] for name, _ in ends}
-    if eventful := [str(name) for name, one in components.items() if one.fmu.n_event_indicators]:
+    if eventful := [
+        str(name) for name, component in components.items() if component.fmu.n_event_indicators
+    ]:
         return f"{' and '.join(eventful)} can have events of state (event indicators)"
     if slow := [str(name) for name in components if plan.multiples[name or ""] != 1]:
         return f"{' and '.join(slow)} steps with a step of its own"

@@ -137,9 +137,11 @@ def digest(table: xarray.Dataset) -> str:
 def _unknown(table, system):
     unknown = [str(name) for name in table.data_vars if name not in system.inputs]
     if unknown:
-        found = f"{system.name} has no input {shortened(map(repr, unknown), 8)}."
+        message = f"{system.name} has no input {shortened(map(repr, unknown), 8)}."
         yield Problem(
-            "inputs", found, f"{suggestion(unknown[0], system.inputs)} Rename or drop such columns."
+            "inputs",
+            message,
+            f"{suggestion(unknown[0], system.inputs)} Rename or drop such columns.",
         )
     if not table.data_vars:
         yield Problem(
@@ -156,9 +158,9 @@ def _clock_problems(clock):
     # Two rows of one time are a jump, as FMI's tools write it; three say nothing more.
     elif len(back := np.flatnonzero((np.diff(clock) < 0.0) | _third_of_a_time(clock))):
         row = int(back[0]) + 1
-        found = f"The time of row {row + 1} is {clock[row]:g} s, after {clock[row - 1]:g} s in the row before."
+        message = f"The time of row {row + 1} is {clock[row]:g} s, after {clock[row - 1]:g} s in the row before."
         remedy = "Times have to grow; two rows of one time are a jump. Sort the rows."
-        yield Problem("inputs", found, remedy)
+        yield Problem("inputs", message, remedy)
 
 
 def _third_of_a_time(clock):
@@ -173,9 +175,9 @@ def _rows(clock, times):
     end = times[-1]
     # No extrapolation: the table must cover the whole run.
     if clock[0] > start + CLOSE or clock[-1] < end - CLOSE:
-        found = f"The table goes from {clock[0]:.9g} s to {clock[-1]:.9g} s, the run from {start:.9g} s to {end:.9g} s."
+        message = f"The table goes from {clock[0]:.9g} s to {clock[-1]:.9g} s, the run from {start:.9g} s to {end:.9g} s."
         remedy = "Start later or stop earlier: the table has to cover the run from the first step to the last."
-        raise error_at("inputs", found, remedy)
+        raise error_at("inputs", message, remedy)
     first = max(0, np.searchsorted(clock, start + CLOSE, side="right") - 1)
     last = int(np.searchsorted(clock, end - CLOSE)) + 1
     # A jump at the end has its second row there too.
@@ -194,11 +196,11 @@ def _gaps(table, clock):
         longest = LONGEST_GAP * usual if even else np.inf
     for row in np.flatnonzero(apart > longest * (1.0 + 1e-9))[:5]:
         between = f"{clock[row]:.9g} s and {clock[row + 1]:.9g} s"
-        found = f"There is no row between {between}; {longest:.3g} s are allowed."
+        message = f"There is no row between {between}; {longest:.3g} s are allowed."
         remedy = (
             "Run the components before and after it, fill it, or allow it (max_gap, --max-gap)."
         )
-        yield Problem("inputs", found, remedy)
+        yield Problem("inputs", message, remedy)
 
 
 def _column(column, signal, clock, times):
@@ -214,8 +216,8 @@ def _column(column, signal, clock, times):
         raise error_at("", f"is {values[bad[0]]} at {clock[bad[0]]:.9g} s.{more}", remedy)
     # Flags and integers must be whole: a rounded value would hide an error of the log.
     if signal.type != "Real" and np.any(off := values != np.round(values)):
-        found = f"is {values[off][0]} at {clock[off][0]:.9g} s."
-        raise error_at("", found, f"It feeds a {signal.type}, which takes whole numbers.")
+        message = f"is {values[off][0]} at {clock[off][0]:.9g} s."
+        raise error_at("", message, f"It feeds a {signal.type}, which takes whole numbers.")
     # Convert the unit before interpolating, so that a full turn is in the input's unit.
     factor, offset = conversion(column.attrs.get("units"), signal.unit)
     values = values if (factor, offset) == (1.0, 0.0) else factor * values + offset

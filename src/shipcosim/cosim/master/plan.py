@@ -226,8 +226,8 @@ def _component_problems(component, base, duration):
                 f"{variable.name} starts with {start}.",
                 "Values of 64 bits end at 2**63 - 1.",
             )
-    for found in resized(component):
-        yield Problem(component.name, found, RESIZE)
+    for problem in resized(component):
+        yield Problem(component.name, problem, RESIZE)
 
 
 def _connection_problems(system):
@@ -237,15 +237,17 @@ def _connection_problems(system):
             name is not None
             and system.components[name].variables[connection.target[1]].kind == "Clock"
         ):
-            found = "is a Clock. FMUs are stepped without event mode, in which clocks do not tick."
-            yield Problem(label(connection.target), found, "Leave the clock unconnected.")
+            message = (
+                "is a Clock. FMUs are stepped without event mode, in which clocks do not tick."
+            )
+            yield Problem(label(connection.target), message, "Leave the clock unconnected.")
         if (
             connection.initial
             and name is not None
             and system.components[name].fmu.fmi_version == "1.0"
         ):
-            found = "its value comes from a connection, but FMI 1.0 has no initialisation mode to set it in."
-            yield Problem(label(connection.target), found, "Set it as a start value.")
+            message = "its value comes from a connection, but FMI 1.0 has no initialisation mode to set it in."
+            yield Problem(label(connection.target), message, "Set it as a start value.")
 
 
 def passes_own_start(connection: Connection, system: System) -> bool:
@@ -257,11 +259,11 @@ def passes_own_start(connection: Connection, system: System) -> bool:
     component, variable = connection.target
     if component is None or start is None:
         return False
-    own = system.components[component]
+    part = system.components[component]
     return (
-        variable not in own.start
+        variable not in part.start
         and not connection.is_linear
-        and own.start_value(variable) == start
+        and part.start_value(variable) == start
     )
 
 
@@ -304,18 +306,18 @@ def _lay_out(plan, by_input):
 def _input_connection(plan, layout, end, connection):
     """The connection of an input; without one, an external value of its own."""
     # An input that only events change is fed by a constant: its start value.
-    own = plan.multiples[end[0]]
+    multiple = plan.multiples[end[0]]
     if connection is None:
         start = plan.system.components[end[0]].start_value(end[1])
-        return InputConnection(_external_row(layout, end, start or 0), period=own)
+        return InputConnection(_external_row(layout, end, start or 0), period=multiple)
     # Values from outside come at every step of the component.
     how = connection.factor, connection.offset, connection.mapping
     component, name = connection.source
     if component is None:
         start = plan.system.inputs[name].start or 0
-        return InputConnection(_external_row(layout, connection.source, start), *how, own)
+        return InputConnection(_external_row(layout, connection.source, start), *how, multiple)
     # Two components with different steps exchange where both steps end.
-    period = lcm(own, plan.multiples[component])
+    period = lcm(multiple, plan.multiples[component])
     kind = plan.kind_of(connection.source)
     row = plan.layouts[kind].outputs.index(connection.source)
     # A source of another type comes as an external value that is copied from the other exchange.

@@ -31,20 +31,20 @@ def changed_values(before: System, system: System) -> dict[str, Values] | None:
     # An input that is set has a row; one without a value, or with the FMU's own, has none. This must not change.
     rows_before, rows = (
         [
-            one.inputs[c.source[1]].start is None or passes_own_start(c, one)
-            for c in one.connections
-            if c.source[0] is None and c.source[1] in one.inputs
+            structure.inputs[c.source[1]].start is None or passes_own_start(c, structure)
+            for c in structure.connections
+            if c.source[0] is None and c.source[1] in structure.inputs
         ]
-        for one in (before, system)
+        for structure in (before, system)
     )
     # The numbers that differ, by component.
-    found = {
+    changed = {
         name: _changed(before.components[name], component)
         for name, component in system.components.items()
     }
-    if rows_before != rows or any(values is None for values in found.values()):
+    if rows_before != rows or any(values is None for values in changed.values()):
         return None
-    return {name: values for name, values in found.items() if values is not None}
+    return {name: values for name, values in changed.items() if values is not None}
 
 
 def _changed(before: Component, component: Component) -> Values | None:

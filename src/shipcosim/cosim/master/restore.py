@@ -37,20 +37,20 @@ def check_storable(system: System) -> None:
         fmu = component.fmu
         # The solver of a model-exchange component lies outside the FMU; its state would be lost.
         if interface_type_of(component) == "ModelExchange":
-            found = "it runs as model exchange, and the solver's state cannot be stored."
-            problems.append(Problem(component.name, found, "Run the system without storing it."))
+            message = "it runs as model exchange, and the solver's state cannot be stored."
+            problems.append(Problem(component.name, message, "Run the system without storing it."))
             continue
         needed = ABILITIES[fmu.fmi_version.startswith("3")]
         lacking = [
             name for name in needed if fmu.interfaces["CoSimulation"].get(name) not in ("true", "1")
         ]
         if lacking:
-            found = f"{fmu.path.name} cannot store its state: it does not declare {' and '.join(lacking)}."
-            problems.append(Problem(component.name, found, "Run the system without storing it."))
+            message = f"{fmu.path.name} cannot store its state: it does not declare {' and '.join(lacking)}."
+            problems.append(Problem(component.name, message, "Run the system without storing it."))
         elif stores_registered_alone(fmu.path):
-            found = f"{fmu.path.name} stores its registered variables alone: PythonFMU loses what else it keeps."
+            message = f"{fmu.path.name} stores its registered variables alone: PythonFMU loses what else it keeps."
             remedy = "Give its class _get_fmu_state and _set_fmu_state, or run the system without storing it."
-            problems.append(Problem(component.name, found, remedy))
+            problems.append(Problem(component.name, message, remedy))
     raise_errors(problems)
 
 
@@ -60,14 +60,14 @@ def check_fit(snapshot: Snapshot, system: System, scenario: Scenario) -> None:
     problems = []
     # The step is counted in steps since the start, so its size must stay.
     if scenario.step_size != snapshot.step_size:
-        found = f"it was stored in a run with steps of {snapshot.step_size:g} s, this one has {scenario.step_size:g} s."
-        problems.append(Problem(where, found, "The step size cannot change on the way."))
+        message = f"it was stored in a run with steps of {snapshot.step_size:g} s, this one has {scenario.step_size:g} s."
+        problems.append(Problem(where, message, "The step size cannot change on the way."))
     # Other components, another FMU or other parameters make the states meaningless.
     if set(snapshot.fmus) != set(system.components):
-        found = (
+        message = (
             f"it holds {', '.join(snapshot.fmus)}; the system has {', '.join(system.components)}."
         )
-        problems.append(Problem(where, found, "Continue with the system that was stored."))
+        problems.append(Problem(where, message, "Continue with the system that was stored."))
     else:
         problems += _changed_fmus(snapshot, system, where) or _changed_values(
             snapshot, system, where
@@ -138,12 +138,12 @@ def take_snapshot(
         inputs |= zip(layout.transferred_names, exchange.transferred.tolist(), strict=True)
         # Overrides that act at the end must act again after the restart.
         modifiers |= {
-            label(layout.outputs[row]): found
-            for row, found in exchange.output_modifiers.active.items()
+            label(layout.outputs[row]): modifier
+            for row, modifier in exchange.output_modifiers.active.items()
         }
         modifiers |= {
-            label(layout.inputs[row]): found
-            for row, found in exchange.input_modifiers.active.items()
+            label(layout.inputs[row]): modifier
+            for row, modifier in exchange.input_modifiers.active.items()
         }
     return Snapshot(
         system=plan.system.name,
@@ -186,8 +186,8 @@ def check_restored(
         _stored(component, component.restore, snapshot.states[name])
         again = _stored(component, _stepped, component, exchanges, ends)
         if live != again:
-            found = "its state is not complete: restored, it goes on with other outputs than without that."
-            raise Failure(Problem(name, found, "Run the system without storing it."))
+            message = "its state is not complete: restored, it goes on with other outputs than without that."
+            raise Failure(Problem(name, message, "Run the system without storing it."))
 
 
 def _stepped(component, exchanges, times):
@@ -219,8 +219,10 @@ def restore_snapshot(
     # A row before the first step would else show values of the start.
     shown = [label(end) for layout in plan.layouts.values() for end in layout.outputs]
     if lost := sorted(set(shown) - set(snapshot.outputs)):
-        found = f"it has no value of {shortened(lost)}."
-        raise Failure(Problem(f"snapshot at {snapshot.time:g} s", found, "Store the state again."))
+        message = f"it has no value of {shortened(lost)}."
+        raise Failure(
+            Problem(f"snapshot at {snapshot.time:g} s", message, "Store the state again.")
+        )
     # FMU states first, then the overrides, then the values in the arrays.
     for name, component in components.items():
         _stored(component, component.restore, snapshot.states[name])
@@ -241,9 +243,9 @@ def restore_snapshot(
         connection.last = None
 
 
-def _fill(values, names, known):
+def _fill(values, names, stored):
     """Set the values of known names; keep the others."""
-    values[:] = [known.get(name, value) for name, value in zip(names, values, strict=True)]
+    values[:] = [stored.get(name, value) for name, value in zip(names, values, strict=True)]
 
 
 def _stored(component, call, *arguments):

@@ -289,8 +289,8 @@ class Simulation:
         # For a repetition keep the state before the start; it is faster than a new instance.
         if self._repeated and can_rewind(plan, self.components):
             states = {
-                name: one.slave.python_object._get_fmu_state()
-                for name, one in self.components.items()
+                name: component.slave.python_object._get_fmu_state()
+                for name, component in self.components.items()
             }
             self._fresh = plan.system, states
         self._together = groups_of(inner)
@@ -370,26 +370,26 @@ class Simulation:
 
     def attributes(self, complete: bool) -> dict[str, object]:
         """Facts about the run. `complete` is 1 or 0, since NetCDF has no truth values."""
-        known = attributes_of(self.plan.system, self._scenario)
+        metadata = attributes_of(self.plan.system, self._scenario)
         # Where nothing could be compiled, Python has stepped all.
         in_python = self._in_python()
         engine = "fmpy" if ALL in in_python else self._engine
-        known |= {"start_time": self._grid.start_time, "engine": engine, "order": self._order}
+        metadata |= {"start_time": self._grid.start_time, "engine": engine, "order": self._order}
         if engine == "native" and in_python:
-            known["stepped_by_python"] = ", ".join(in_python)
+            metadata["stepped_by_python"] = ", ".join(in_python)
         if self._inputs is not None:
-            known["inputs_sha256"] = digest(self._inputs)
+            metadata["inputs_sha256"] = digest(self._inputs)
         if self._grid.run_times[-1] < self._grid.times[-1]:
-            known["until"] = float(self._grid.run_times[-1])
+            metadata["until"] = float(self._grid.run_times[-1])
         if self._resume is not None:
-            known["continued_from"] = self._resume.time
+            metadata["continued_from"] = self._resume.time
         if self._together:
-            known["integrated_together"] = "; ".join(
+            metadata["integrated_together"] = "; ".join(
                 ", ".join(sorted(group)) for group in self._together
             )
         if self._profile is not None:
-            known["profile"] = self._profile.as_json()
-        return known | {"complete": int(complete), "remarks": json.dumps(self.remarks())}
+            metadata["profile"] = self._profile.as_json()
+        return metadata | {"complete": int(complete), "remarks": json.dumps(self.remarks())}
 
     def _in_python(self) -> Mapping[str, str]:
         """Why Python steps components that were to be compiled, by name."""

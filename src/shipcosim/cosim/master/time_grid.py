@@ -86,9 +86,9 @@ def time_grid_of(
     # The run must end after its first step, and not after the scenario.
     if n is not None and last is not None and not first < last <= n:
         begin = start_time + first * step
-        found = f"the run would go from {begin:g} s to {end:g} s."
+        message = f"the run would go from {begin:g} s to {end:g} s."
         remedy = f"Its end must lie after {begin:g} s and not after the stop time, {scenario.stop_time:g} s."
-        problems.append(Problem(list(ends)[-1], found, remedy))
+        problems.append(Problem(list(ends)[-1], message, remedy))
     # An event between two steps could only act late: refuse it.
     for event in scenario.events:
         if whole_steps(event.time - start_time, step) is None:

@@ -175,12 +175,14 @@ class ComponentProcess:
             code = self._process.wait()
         self._reader.join(1.0)
         # The last printed lines often name the cause.
-        said = f" It printed last:\n{''.join(self._last).rstrip()}" if self._last else ""
+        message = f" It printed last:\n{''.join(self._last).rstrip()}" if self._last else ""
         if self._was_late:
-            return f"Its process gave no answer to {what} within {limit:g} s and was ended.{said}"
+            return (
+                f"Its process gave no answer to {what} within {limit:g} s and was ended.{message}"
+            )
         if code < 0:
-            return f"Its process was ended in {what} by signal {-code}, {signal.strsignal(-code)}.{said}"
-        return f"Its process ended itself in {what}, with exit code {code if code < 256 else hex(code)}.{said}"
+            return f"Its process was ended in {what} by signal {-code}, {signal.strsignal(-code)}.{message}"
+        return f"Its process ended itself in {what}, with exit code {code if code < 256 else hex(code)}.{message}"
 
     def _print_output(self):
         """Pass printed text on to stderr, with the component's name."""

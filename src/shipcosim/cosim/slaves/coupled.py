@@ -189,10 +189,10 @@ class CoupledModels:
         # Collect dx/dt member by member.
         rates = np.ctypeslib.as_array(derivatives, (self._n,))
         for name, slave in self._members.items():
-            own = np.zeros(slave.n_states)
-            if status := slave.derivatives_into(own):
+            of_slave = np.zeros(slave.n_states)
+            if status := slave.derivatives_into(of_slave):
                 return status
-            rates[self._slices[name]] = own
+            rates[self._slices[name]] = of_slave
         return 0
 
     def _settle(self):

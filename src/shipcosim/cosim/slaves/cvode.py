@@ -157,5 +157,5 @@ class Cvode:
             self._error = None
             raise error
         if flag < 0:
-            found = "The equations cannot be integrated further: a derivative is no number, jumps or grows without limit"
-            raise SolverError(f"{found} (code {flag} of CVode).")
+            message = "The equations cannot be integrated further: a derivative is no number, jumps or grows without limit"
+            raise SolverError(f"{message} (code {flag} of CVode).")

@@ -40,11 +40,11 @@ class Slave1(LibrarySlave):
         if kind == "Long":
             return self._long_setter(variables, buffer)
         # FMI 1.0 has Booleans of one byte, unlike our buffers: use a buffer of the FMU's own type.
-        own, signs, call = self._prepared("Set", kind, variables)
+        native_buffer, signs, call = self._prepared("Set", kind, variables)
 
         # An alias with opposite sign (FMI 1.0) has the negated value of the base variable.
         def set_all():
-            own[:] = buffer * signs
+            native_buffer[:] = buffer * signs
             return call()
 
         return set_all
@@ -53,12 +53,12 @@ class Slave1(LibrarySlave):
         """Prepared call that gets variables of one kind into a buffer and returns the status."""
         if kind == "Long":
             return self._long_getter(variables, buffer)
-        own, signs, call = self._prepared("Get", kind, variables)
+        native_buffer, signs, call = self._prepared("Get", kind, variables)
 
         def get_all():
             if (status := call()) >= FAILED:
                 return status
-            np.multiply(own, signs, out=buffer)
+            np.multiply(native_buffer, signs, out=buffer)
             return OK
 
         return get_all
@@ -83,7 +83,7 @@ class Slave1(LibrarySlave):
 
     def _prepared(self, verb, kind, variables):
         """Buffer of the FMU's own type, sign of each variable, and the prepared call."""
-        own = np.zeros(
+        native_buffer = np.zeros(
             len(variables),
             dtype={"Real": np.float64, "Integer": np.int32, "Boolean": np.int8}[kind],
         )
@@ -91,8 +91,16 @@ class Slave1(LibrarySlave):
             [-1 if variable.negated and kind != "Boolean" else 1 for variable in variables]
         )
         pointer = {"Real": c_double, "Integer": c_int, "Boolean": c_char}[kind] * len(variables)
-        arguments = references(variables), c_size_t(len(variables)), pointer.from_buffer(own)
-        return own, signs, partial(self._function(verb + kind), self.component, *arguments)
+        arguments = (
+            references(variables),
+            c_size_t(len(variables)),
+            pointer.from_buffer(native_buffer),
+        )
+        return (
+            native_buffer,
+            signs,
+            partial(self._function(verb + kind), self.component, *arguments),
+        )
 
     def _symbol(self, function):
         return f"{self._identifier}_fmi{function}"

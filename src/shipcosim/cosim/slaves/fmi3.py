@@ -146,7 +146,9 @@ class Slave3(LibrarySlave):
             data = [
                 (c_ubyte * max(len(value), 1)).from_buffer_copy(value or b"\0") for value in whole
             ]
-            pointers = (c_void_p * layout.n)(*(cast(one, c_void_p).value for one in data))
+            pointers = (c_void_p * layout.n)(
+                *(cast(pointer_to, c_void_p).value for pointer_to in data)
+            )
             self._call_binary(
                 "SetBinary", layout, (c_size_t * layout.n)(*map(len, whole)), pointers
             )

@@ -22,5 +22,5 @@ def missing_interface_type(component: Component) -> tuple[str, str]:
         else component.implementation
     )
     offered = ", ".join(component.fmu.interfaces) or "nothing"
-    found = f"{component.fmu.path.name} offers no {wanted}. It offers {offered}."
-    return found, "Export the FMU again in this form, or ask for the one that it has."
+    message = f"{component.fmu.path.name} offers no {wanted}. It offers {offered}."
+    return message, "Export the FMU again in this form, or ask for the one that it has."

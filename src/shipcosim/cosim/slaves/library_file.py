@@ -39,9 +39,9 @@ def _is_unusable(library: Path) -> bool:
         return False
     with library.open("rb") as opened, open("/proc/self/exe", "rb") as program:
         head = opened.read(HEAD)
-        own = program.read(HEAD)
+        program_head = program.read(HEAD)
     # Format, width and processor are those of the program that loads it.
-    if (head[:6], head[18:20], len(head)) != (own[:6], own[18:20], HEAD):
+    if (head[:6], head[18:20], len(head)) != (program_head[:6], program_head[18:20], HEAD):
         return True
     # Where the table of sections begins, how long an entry is, and how many there are.
     start, entry, count = struct.unpack("<40xQ10xHHxx", head)

@@ -198,27 +198,27 @@ class LibrarySlave(Slave):
 
     def _long_setter(self, variables, buffer):
         """Setter from a 64-bit buffer for an FMU with 32-bit integers."""
-        own = np.zeros(len(variables), dtype=np.int32)
-        set_all = self.setter("Integer", variables, own)
+        narrow = np.zeros(len(variables), dtype=np.int32)
+        set_all = self.setter("Integer", variables, narrow)
 
         # Refuse values that do not fit: a cast would wrap silently.
         def set_narrowed():
-            if (status := self.status_of_range(buffer, own.dtype, variables)) is not None:
+            if (status := self.status_of_range(buffer, narrow.dtype, variables)) is not None:
                 return status
-            own[:] = buffer
+            narrow[:] = buffer
             return set_all()
 
         return set_narrowed
 
     def _long_getter(self, variables, buffer):
         """Getter into a 64-bit buffer."""
-        own = np.zeros(len(variables), dtype=np.int32)
-        get_all = self.getter("Integer", variables, own)
+        narrow = np.zeros(len(variables), dtype=np.int32)
+        get_all = self.getter("Integer", variables, narrow)
 
         def get_widened():
             if (status := get_all()) >= FAILED:
                 return status
-            buffer[:] = own
+            buffer[:] = narrow
             return OK
 
         return get_widened

@@ -43,7 +43,9 @@ def _pass_on(environment, name, status, category, text):
     """Give a message to the instance with this environment, else to the newest of this name."""
     receiver = _receivers.get(environment or 0)
     if receiver is None:
-        named = [one for one in list(_receivers.values()) if one.name.encode() == name]
+        named = [
+            receiver for receiver in list(_receivers.values()) if receiver.name.encode() == name
+        ]
         receiver = named[-1] if named else None
     if receiver is not None:
         receiver.log_message(status, text)

@@ -43,8 +43,8 @@ def module_clashes(system: System, *, late_alone: bool = False) -> list[Problem]
         owners = [components[0] for components in by_content.values()]
         if len(owners) > 1 and not (late_alone and not any(map(_imports_late, owners))):
             listed = ", ".join(owner.name for owner in owners)
-            found = f"each bring another Python module '{name}'; in one process one of them runs the other's code."
-            problems.append(Problem(listed, found, REMEDY))
+            message = f"each bring another Python module '{name}'; in one process one of them runs the other's code."
+            problems.append(Problem(listed, message, REMEDY))
     return problems
 
 

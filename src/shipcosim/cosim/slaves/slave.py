@@ -67,8 +67,8 @@ class Slave:
         """Warnings that the FMU logged, with its name in front."""
         texts = [text for status, text in self.messages if status == WARNING]
         # PythonFMU's begin with the name already; a word that begins with the same letters is none.
-        own = (f"{self.name} ", f"{self.name}:", f"{self.name},")
-        return [text if text.startswith(own) else f"{self.name}: {text}" for text in texts]
+        prefixes = (f"{self.name} ", f"{self.name}:", f"{self.name},")
+        return [text if text.startswith(prefixes) else f"{self.name}: {text}" for text in texts]
 
     def setter(self, kind: str, variables: Variables, buffer: np.ndarray) -> Call:
         """Prepared call that sets variables of one kind from a buffer and returns the status."""

@@ -49,9 +49,9 @@ class UnpackedFmus:
         if self._root in self._folders[fmu].parents:
             # Forget modules of other FMUs that are named like one in this FMU; who has imported them keeps them.
             folder = self._folders[fmu]
-            own = {path.stem for path in (folder / "resources").glob("*")}
+            modules = {path.stem for path in (folder / "resources").glob("*")}
             for name in self._imported(self._root) - self._imported(folder):
-                if name.partition(".")[0] in own:
+                if name.partition(".")[0] in modules:
                     del sys.modules[name]
         return self._folders[fmu]
 
@@ -85,14 +85,14 @@ def _in_cache(fmu: Path) -> Path | None:
                 for name in names
                 if name.startswith("resources/") and not name.endswith("/")
             }
-            found = [
+            scripts = [
                 name.removesuffix(".py")
                 for name in resources
                 if re.fullmatch(r"\w+_[0-9a-f]{16}\.py", name)
             ]
-            has_a_name_of_its_own = len(found) == 1 and resources == {
-                f"{found[0]}.py",
-                f"{found[0]}_code",
+            has_a_name_of_its_own = len(scripts) == 1 and resources == {
+                f"{scripts[0]}.py",
+                f"{scripts[0]}_code",
                 "slavemodule.txt",
             }
             if not has_a_name_of_its_own:

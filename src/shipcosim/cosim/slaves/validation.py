@@ -25,14 +25,14 @@ def validation_problems(path: Path) -> list[Problem]:
     """
     from fmpy.validation import validate_fmu
 
-    found = (" ".join(str(one).split()) for one in validate_fmu(str(path)))
+    texts = (" ".join(str(raw_text).split()) for raw_text in validate_fmu(str(path)))
     # FMPy passes on what Python says where an index leads to no variable.
     unreadable = {
         "list index out of range": "An index of ModelStructure or of a derivative leads to no variable."
     }
-    found = (unreadable.get(text, text) for text in found)
+    texts = (unreadable.get(text, text) for text in texts)
     remedy = "FMI does not allow it; export the FMU again."
-    return [Problem(str(path), text, remedy) for text in dict.fromkeys(found) if text]
+    return [Problem(str(path), text, remedy) for text in dict.fromkeys(texts) if text]
 
 
 def library_problems(path: Path) -> list[Problem]:
@@ -54,8 +54,11 @@ def library_problems(path: Path) -> list[Problem]:
     with UnpackedFmus() as unpacked:
         folder = unpacked.folder(path)
         version = fmu.fmi_version[0]
-        found = [library_problem(folder, version, fmu.identifier(one)) for one in fmu.interfaces]
-        problems = [Problem(str(path), text) for text in dict.fromkeys(found) if text]
+        texts = [
+            library_problem(folder, version, fmu.identifier(interface))
+            for interface in fmu.interfaces
+        ]
+        problems = [Problem(str(path), text) for text in dict.fromkeys(texts) if text]
         if problems or loader is None:
             return problems
         for name in (platform, platform_tuple):
@@ -72,6 +75,8 @@ def library_problems(path: Path) -> list[Problem]:
                         f"It needs {os.fsdecode(library)}, which is not here.",
                         "Install it, or put its folder into LD_LIBRARY_PATH.",
                     )
-                    for library in dict.fromkeys(one or other for one, other in needed)
+                    for library in dict.fromkeys(
+                        library_name or other for library_name, other in needed
+                    )
                 ]
     return problems

@@ -85,17 +85,17 @@ def texts_of(system: System, progress: CountProgress | None = None) -> dict[str,
     NotForPages
         With every component that has no native code, and why.
     """
-    found = {}
+    texts = {}
     problems = []
-    known: dict[Any, str] = {}
+    compiled: dict[Any, str] = {}
     with delayed_interrupt() as check_interrupt, Instances() as instances:
         for done, component in enumerate(system.components.values(), start=1):
             # Components that share FMU and start values share their text.
             key = component.fmu.path, repr(sorted(component.start.items()))
             try:
-                if key not in known:
-                    known[key] = _text_of(component, instances)
-                found[component.name] = known[key]
+                if key not in compiled:
+                    compiled[key] = _text_of(component, instances)
+                texts[component.name] = compiled[key]
             except Untraceable as reason:
                 problems.append(Problem(component.name, f"has no native code: {reason}.", REMEDY))
             if progress is not None:
@@ -103,7 +103,7 @@ def texts_of(system: System, progress: CountProgress | None = None) -> dict[str,
             check_interrupt()
     if problems:
         raise NotForPages(problems)
-    return found
+    return texts
 
 
 def _text_of(component: Component, instances: Instances) -> str:
@@ -137,7 +137,7 @@ def _runtime(name: str) -> str:
 def _linked(sources: Sequence[tuple[str, str]]) -> bytes:
     """Compile texts, each with a prefix for its functions of FMI, and link them."""
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        objects = list(pool.map(lambda one: _object(*one), sources))
+        objects = list(pool.map(lambda source: _object(*source), sources))
     with temporary_folder() as folder:
         for number, content in enumerate(objects):
             Path(folder, f"{number}.o").write_bytes(content)

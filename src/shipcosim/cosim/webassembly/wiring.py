@@ -88,15 +88,15 @@ class Wiring:
         """The tables as C."""
         components = [*self._plan.system.components.values()]
         # Each FMU's functions once, however many components use it.
-        found = dict.fromkeys(self._prefixes[component.name] for component in components)
-        self._lines = [f"DECLARED({prefix})" for prefix, _ in found]
-        rows = [f'{{"{guid}", FUNCTIONS({prefix})}}' for prefix, guid in found]
+        declared = dict.fromkeys(self._prefixes[component.name] for component in components)
+        self._lines = [f"DECLARED({prefix})" for prefix, _ in declared]
+        rows = [f'{{"{guid}", FUNCTIONS({prefix})}}' for prefix, guid in declared]
         self._table("static const Fmu fmus[]", rows)
         rows = [self._exchange(n, *pair) for n, pair in enumerate(self.exchanges.items())]
         self._table("static Exchange exchanges[]", rows)
         self._external_values()
         values = [self._part_arrays(n, component) for n, component in enumerate(components)]
-        order = [*found]
+        order = [*declared]
         parts = [
             self._part(n, component, order.index(self._prefixes[component.name]))
             for n, component in enumerate(components)
@@ -180,14 +180,14 @@ class Wiring:
 
     def _rows(self, component: Component, side: int) -> list[tuple[int, int, int]]:
         """(value reference, exchange, row) of a component's outputs or inputs, in the memory's order."""
-        found = []
+        rows = []
         for kind in KINDS:
             if kind not in self.exchanges:
                 continue
             first, variables = self._plan.rows(kind, component.name)[side]
             number = self.kinds.index(kind)
-            found += [(v.value_reference, number, first + i) for i, v in enumerate(variables)]
-        return found
+            rows += [(v.value_reference, number, first + i) for i, v in enumerate(variables)]
+        return rows
 
     def _part_arrays(self, number: int, component: Component) -> tuple[int, int]:
         """Arrays of a component; how many inputs and outputs it has."""

@@ -1,1 +1,1 @@
-"""Simulated against measured, and commanded force against felt: what is grossly wrong."""
+"""Simulated against measured, and commanded against measured force: what is grossly wrong."""

@@ -1,4 +1,4 @@
-"""Commanded against felt on each axis: how much of the measured force the thrusters explain, with which gain.
+"""Commanded against measured force on each axis: how much of the measured force the thrusters explain, with which gain.
 
 The measured force is inertia times acceleration, less what turning asks of the rigid body. Beside the thrusters it is
 explained by whatever else may act: the model's load of the water with any size, further damping of any size, coupling
@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from shipcosim.diagnose.comparison.commanded import Commanded, moving_mass
-from shipcosim.diagnose.comparison.measured_force import Felt
+from shipcosim.diagnose.comparison.measured_force import MeasuredForce
 from shipcosim.diagnose.comparison.regression import Regression, regressed
 from shipcosim.diagnose.comparison.thresholds import (
     BLOCK_WIDTHS,
@@ -65,8 +65,8 @@ class Axis:
     ----------
     number : int
         Of `AXES`.
-    felt : (n,) array
-        Felt force. [N or N.m]
+    force : (n,) array
+        Measured force. [N or N.m]
     hull, wind : (n,) array
         Loads by the model; no wind is 0.
     rest : (n, q) array
@@ -77,20 +77,20 @@ class Axis:
         What the thrusters are commanded, root mean square: other forces that no model knows are of its order.
     rows : (m,) bool array
         The usable rows of the log.
-    felt_by : Felt
+    measured : MeasuredForce
     block : int
         Rows of a block.
     """
 
     number: int
-    felt: np.ndarray
+    force: np.ndarray
     hull: np.ndarray
     wind: np.ndarray
     rest: np.ndarray
     positive: np.ndarray
     size: float
     rows: np.ndarray
-    felt_by: Felt
+    measured: MeasuredForce
     block: int
 
     @property
@@ -100,12 +100,13 @@ class Axis:
 
     def smoothed(self, loads: np.ndarray) -> np.ndarray:
         """Loads on all rows, (3, m) array, as this axis has them: (n,)."""
-        return self.felt_by.kernel.smooth(loads[self.number])[self.rows]
+        return self.measured.kernel.smooth(loads[self.number])[self.rows]
 
     def total(self, commanded: Commanded) -> np.ndarray:
         """Commanded force of all thrusters, (n,) array."""
         return sum(
-            (self.smoothed(load) for load in commanded.thrusters.values()), np.zeros(self.felt.size)
+            (self.smoothed(load) for load in commanded.thrusters.values()),
+            np.zeros(self.force.size),
         )
 
     def by_way(self, commanded: Commanded, ahead: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -127,7 +128,7 @@ class Axis:
     def is_driven(self, commanded: Commanded) -> bool:
         """Whether the commanded force on this axis is large enough against the measured force."""
         total = self.total(commanded)
-        return bool(total.std() > LEAST_COMMANDED * max(self.felt.std(), 1e-9))
+        return bool(total.std() > LEAST_COMMANDED * max(self.force.std(), 1e-9))
 
     def explained(self, columns: np.ndarray) -> AxisFit:
         """The measured force explained by some commanded loads, whose gains must not be negative.
@@ -163,24 +164,24 @@ class Axis:
         """
         # Reverse regression: commanded load on measured force and all other loads, whose signs
         # turn.
-        unit = self.felt_unit
-        columns = np.concatenate([self.felt[:, None] / unit, -self.rest], axis=1)
-        found = regressed(total, columns, np.r_[True, self.positive], self.block)
+        unit = self.unit_of_force
+        columns = np.concatenate([self.force[:, None] / unit, -self.rest], axis=1)
+        regression = regressed(total, columns, np.r_[True, self.positive], self.block)
         # The slope is the inverse of the gain; the delta method carries its standard deviation
         # over.
-        slope = found.coefficients[0] / unit
+        slope = regression.coefficients[0] / unit
         if slope <= 0.0:
             return np.inf, np.inf
-        return 1.0 / slope, float(found.std[0] / unit / slope**2)
+        return 1.0 / slope, float(regression.std[0] / unit / slope**2)
 
     def unexplained(self, given: np.ndarray) -> float:
         """Mean square of the measured force that is left beside a given load, (n,) array, and all but the thrusters."""
-        return self._beside(given).squares
+        return self._with_rest(given).squares
 
     @property
-    def felt_unit(self) -> float:
+    def unit_of_force(self) -> float:
         """Root mean square of the measured force."""
-        return root_mean_square(self.felt) + 1e-30
+        return root_mean_square(self.force) + 1e-30
 
     def both_ways(self, ahead: np.ndarray, astern: np.ndarray) -> AxisFit:
         """Fit of the measured force by loads ahead and astern, neither much weaker than the other.
@@ -197,23 +198,23 @@ class Axis:
         # Thrusters' columns without a prior, then all else with the prior of unmodelled forces.
         every = np.concatenate([columns.T, self.rest], axis=1)
         positive = np.r_[np.full(k, one_sign), self.positive]
-        found = regressed(
-            self.felt, every, positive, self.block, np.r_[np.full(k, np.inf), self._prior]
+        regression = regressed(
+            self.force, every, positive, self.block, np.r_[np.full(k, np.inf), self._prior]
         )
         # Log-likelihood ratio of Gaussian residuals, n/2 log(s0/s1), with n the independent
         # residuals: rows are autocorrelated.
         without = self._without
         support = (
             0.5
-            * min(found.independent, without.independent)
-            * np.log(without.squares / found.squares)
+            * min(regression.independent, without.independent)
+            * np.log(without.squares / regression.squares)
         )
-        damping, std = self._water(found, k)
-        gains = found.coefficients[:k]
-        deviations = found.std[:k]
+        damping, std = self._water(regression, k)
+        gains = regression.coefficients[:k]
+        deviations = regression.std[:k]
         # Coefficient of determination about zero.
-        share = 1.0 - found.squares / self.felt_unit**2
-        return AxisFit(gains, deviations, float(support), found.squares, share, damping, std)
+        share = 1.0 - regression.squares / self.unit_of_force**2
+        return AxisFit(gains, deviations, float(support), regression.squares, share, damping, std)
 
     @cached_property
     def _prior(self) -> np.ndarray:
@@ -222,21 +223,21 @@ class Axis:
     @cached_property
     def _without(self) -> Regression:
         """The measured force explained by all but the thrusters."""
-        return self._beside(np.zeros(self.felt.size))
+        return self._with_rest(np.zeros(self.force.size))
 
-    def _beside(self, given: np.ndarray) -> Regression:
+    def _with_rest(self, given: np.ndarray) -> Regression:
         """The measured force less a given load explained by all but the thrusters."""
-        return regressed(self.felt - given, self.rest, self.positive, self.block, self._prior)
+        return regressed(self.force - given, self.rest, self.positive, self.block, self._prior)
 
-    def _water(self, found: Regression, k: int) -> tuple[float, float]:
+    def _water(self, regression: Regression, k: int) -> tuple[float, float]:
         """Size of the water's load as fitted, along the model's, with its standard deviation."""
-        own = slice(k, k + _OF_HULL)
+        of_hull = slice(k, k + _OF_HULL)
         columns = self.rest[:, :_OF_HULL]
         # Project the fitted water load onto the model's: a weighted sum of the coefficients, whose
         # variance follows from their covariance.
         along = columns.T @ self.hull / max(float(self.hull @ self.hull), 1e-30)
-        variance = float(along @ found.covariance[own, own] @ along)
-        return float(along @ found.coefficients[own]), float(np.sqrt(variance))
+        variance = float(along @ regression.covariance[of_hull, of_hull] @ along)
+        return float(along @ regression.coefficients[of_hull]), float(np.sqrt(variance))
 
 
 def prior_of(rest: np.ndarray, positive: np.ndarray, size: float) -> np.ndarray:
@@ -257,12 +258,12 @@ def prior_of(rest: np.ndarray, positive: np.ndarray, size: float) -> np.ndarray:
     return np.where(positive, np.inf, share)
 
 
-def axes_of(felt: Felt, commanded: Commanded, model: ShipModel) -> list[Axis]:
+def axes_of(measured: MeasuredForce, commanded: Commanded, model: ShipModel) -> list[Axis]:
     """The axes of a ship over a log.
 
     Parameters
     ----------
-    felt : Felt
+    measured : MeasuredForce
     commanded : Commanded
         Its thrusters do not matter here.
     model : ShipModel
@@ -271,24 +272,24 @@ def axes_of(felt: Felt, commanded: Commanded, model: ShipModel) -> list[Axis]:
     -------
     list of three Axis
     """
-    kernel = felt.kernel
-    motion = felt.motion
-    rows = felt.usable
+    kernel = measured.kernel
+    motion = measured.motion
+    rows = measured.usable
     # Force that the motion needs: M nu_dot + C_RB(nu) nu, smoothed as all other loads are.
-    force = model.mass_matrix @ felt.rates + kernel.smooth(moving_mass(motion, model))
+    force = model.mass_matrix @ measured.rates + kernel.smooth(moving_mass(motion, model))
     # Blocks longer than the kernel, as smoothing correlates the errors within it, and at most
     # MOST_BLOCKS of them.
     block = max(int(BLOCK_WIDTHS * kernel.width / kernel.step), int(rows.sum() / MOST_BLOCKS), 1)
     thrust = commanded.thrust
-    found = []
+    axes = []
     wind = np.zeros_like(commanded.hull) if commanded.wind is None else commanded.wind
     for i, (listed, sign) in enumerate(rest_of(motion, commanded)):
         # The same kernel on both sides of the equation biases neither.
         rest = kernel.smooth(listed)[:, rows].T
         size = root_mean_square(kernel.smooth(thrust[i])[rows]) + 1e-9
         hull, air = (kernel.smooth(load[i])[rows] for load in (commanded.hull, wind))
-        found.append(Axis(i, force[i][rows], hull, air, rest, sign, size, rows, felt, block))
-    return found
+        axes.append(Axis(i, force[i][rows], hull, air, rest, sign, size, rows, measured, block))
+    return axes
 
 
 def rest_of(motion: Motion, commanded: Commanded) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -306,9 +307,9 @@ def rest_of(motion: Motion, commanded: Commanded) -> list[tuple[np.ndarray, np.n
     """
     # Loads whose coefficient has a known sign: the hull's own, linear and quadratic damping, wind.
     speeds = np.stack([motion.u, motion.v, motion.r])
-    found = []
+    columns = []
     wind = commanded.wind
-    for i, groups in enumerate(_beside(speeds, motion.psi)):
+    for i, groups in enumerate(_other_columns(speeds, motion.psi)):
         drag = [commanded.hull[i], -speeds[i], -speeds[i] * np.abs(speeds[i])]
         positive = [
             *drag,
@@ -317,13 +318,13 @@ def rest_of(motion: Motion, commanded: Commanded) -> list[tuple[np.ndarray, np.n
         ]
         # Coupling and steady force may have any sign.
         listed = [*positive, *groups["coupling"], *groups["steady"]]
-        found.append(
+        columns.append(
             (np.stack(np.broadcast_arrays(*listed)), np.arange(len(listed)) < len(positive))
         )
-    return found
+    return columns
 
 
-def _beside(speeds: np.ndarray, psi: np.ndarray) -> list[Mapping[str, list[np.ndarray]]]:
+def _other_columns(speeds: np.ndarray, psi: np.ndarray) -> list[Mapping[str, list[np.ndarray]]]:
     """Further loads by axis: damping, coupling to other axes, and a steady load."""
     u, v, r = speeds
     # A steady force lies in the earth's frame where the ship turned enough to tell it from one in

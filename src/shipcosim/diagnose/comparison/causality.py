@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from shipcosim.diagnose.comparison.commanded import Commanded
-from shipcosim.diagnose.comparison.measured_force import Felt
+from shipcosim.diagnose.comparison.measured_force import MeasuredForce
 from shipcosim.diagnose.comparison.thresholds import (
     CAUSAL_ORDER,
     CAUSAL_STEP,
@@ -20,7 +20,9 @@ from shipcosim.diagnose.comparison.thresholds import (
 from shipcosim.diagnose.numerics import least_squares, running_sums
 
 
-def causal_support(felt: Felt, commanded: Sequence[Commanded], unit: float) -> np.ndarray:
+def causal_support(
+    measured: MeasuredForce, commanded: Sequence[Commanded], unit: float
+) -> np.ndarray:
     """Log-likelihood that each of several readings of the commands gains by predicting the velocities, over none.
 
     Velocities, averaged over blocks of rows, are regressed on their own past, on what couples and damps them, and on
@@ -30,7 +32,7 @@ def causal_support(felt: Felt, commanded: Sequence[Commanded], unit: float) -> n
 
     Parameters
     ----------
-    felt : Felt
+    measured : MeasuredForce
     commanded : sequence of Commanded
     unit : float
         Root of the ship's length over gravity. [s]
@@ -42,18 +44,19 @@ def causal_support(felt: Felt, commanded: Sequence[Commanded], unit: float) -> n
     """
     # Blocks of a share of the time that the ship needs to respond, so that a command's effect shows
     # in the next one.
-    count = max(1, round(CAUSAL_STEP * unit / felt.kernel.step))
-    motion = felt.motion
+    count = max(1, round(CAUSAL_STEP * unit / measured.kernel.step))
+    motion = measured.motion
     speeds = blocks(np.stack([motion.u, motion.v, motion.r]), count)
     heading = blocks(motion.psi, count)
     # A block counts if all of its rows are usable.
-    usable = blocks(felt.usable.astype(float), count) > 1.0 - 1e-9
+    usable = blocks(measured.usable.astype(float), count) > 1.0 - 1e-9
     # Blocks with a complete past of all lags.
     rows = with_past(usable, CAUSAL_ORDER + 1)
-    found = np.zeros(len(commanded))
+    support = np.zeros(len(commanded))
     # Total commanded load of each interpretation, averaged as the velocities are.
     loads = [
-        blocks(sum(one.thrusters.values(), np.zeros_like(one.hull)), count) for one in commanded
+        blocks(sum(reading.thrusters.values(), np.zeros_like(reading.hull)), count)
+        for reading in commanded
     ]
     for axis in range(3):
         past = _past(axis, speeds, heading, rows)
@@ -69,8 +72,8 @@ def causal_support(felt: Felt, commanded: Sequence[Commanded], unit: float) -> n
             before = np.stack(
                 [load[axis][rows - 1 - lag] for lag in range(COMMANDS_BEFORE)], axis=1
             )
-            found[number] += _gained(left, _without(basis, before))
-    return found
+            support[number] += _gained(left, _without(basis, before))
+    return support
 
 
 def blocks(series: np.ndarray, count: int) -> np.ndarray:
@@ -90,21 +93,21 @@ def with_past(usable: np.ndarray, count: int) -> np.ndarray:
 def _past(axis: int, speeds: np.ndarray, heading: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """Past motion as scaled columns, to predict a velocity."""
     u, v, r = speeds
-    own = speeds[axis]
+    speed = speeds[axis]
     # Past velocities, more lags of the axis itself.
     columns = [
-        speeds[one][rows - 1 - lag]
-        for one in range(3)
-        for lag in range(CAUSAL_ORDER if one == axis else 2)
+        speeds[of_axis][rows - 1 - lag]
+        for of_axis in range(3)
+        for lag in range(CAUSAL_ORDER if of_axis == axis else 2)
     ]
     # Products at the last block: Coriolis coupling, quadratic damping, and forward speed.
-    products = (u * v, u * r, v * r, u * u, r * r, own * np.abs(own), np.abs(u) * own)
+    products = (u * v, u * r, v * r, u * u, r * r, speed * np.abs(speed), np.abs(u) * speed)
     columns += [product[rows - 1] for product in products]
     # A steady force in the ship's frame or the earth's.
     columns += [np.ones(rows.size), np.cos(heading[rows - 1]), np.sin(heading[rows - 1])]
-    found = np.stack(columns, axis=1)
+    past = np.stack(columns, axis=1)
     # Unit root mean square, so that the basis is well conditioned.
-    return found / (np.sqrt((found**2).mean(0)) + 1e-12)
+    return past / (np.sqrt((past**2).mean(0)) + 1e-12)
 
 
 def _without(basis: np.ndarray, columns: np.ndarray) -> np.ndarray:

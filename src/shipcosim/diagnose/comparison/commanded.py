@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shipcosim.diagnose.comparison.measured_force import Felt
+from shipcosim.diagnose.comparison.measured_force import MeasuredForce
 from shipcosim.diagnose.ship.dynamics import loads
 from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.measured_motion import at_rows
@@ -37,13 +37,13 @@ class Commanded:
         return sum(self.thrusters.values(), np.zeros_like(self.hull))
 
 
-def commanded_by(record: Record, felt: Felt, model: ShipModel) -> Commanded:
+def commanded_by(record: Record, measured: MeasuredForce, model: ShipModel) -> Commanded:
     """The loads of a model along what a log shows.
 
     Parameters
     ----------
     record : Record
-    felt : Felt
+    measured : MeasuredForce
         Of the log.
     model : ShipModel
         With surrogates of third-party FMUs.
@@ -54,14 +54,14 @@ def commanded_by(record: Record, felt: Felt, model: ShipModel) -> Commanded:
     """
     inputs = record.inputs(model)
     # Inputs belong to the steps between rows: the motion at their beginning.
-    motion = felt.motion
+    motion = measured.motion
     size = record.time.size
     steps = at_rows(motion, slice(-1))
     # Loads by the model at the measured velocities; only the thrusters and the wind are taken from
     # them.
-    found = {name: _rows(load, size) for name, load in loads(steps, inputs, model).items()}
+    by_part = {name: _rows(load, size) for name, load in loads(steps, inputs, model).items()}
     hull = _rows(hull_loads(motion.u, motion.v, motion.r, hull=model.parts["hull"]), size)
-    return Commanded({name: found[name] for name in model.thrusters}, hull, found.get("wind"))
+    return Commanded({name: by_part[name] for name in model.thrusters}, hull, by_part.get("wind"))
 
 
 def _rows(load: Load, size: int) -> np.ndarray:

@@ -47,46 +47,48 @@ def discrepancies_of(
     list of Discrepancy
     """
     # Wrong signs come first, whatever their size.
-    signs = sorted(_wrong_signs(labels, gains), key=lambda one: -one.share)
-    found = []
+    signs = sorted(_wrong_signs(labels, gains), key=lambda discrepancy: -discrepancy.share)
+    discrepancies = []
     # A ratio common to all axes is one finding; else each axis has its own.
-    off = [one for one in gains if one.is_off and one.is_known]
+    off = [gain for gain in gains if gain.is_off and gain.is_known]
     if ratio is not None and ratio.differs(MENTIONED):
-        share = max((_explained_by_gain(one) for one in off), default=0.0)
+        share = max((_explained_by_gain(gain) for gain in off), default=0.0)
         text = f"thrust over inertia {ratio.ratio:.2f} of the model's"
-        found.append(Discrepancy(text, None, None, ratio.ratio, ratio.std, "1", share))
+        discrepancies.append(Discrepancy(text, None, None, ratio.ratio, ratio.std, "1", share))
     else:
-        found += [
-            one
+        discrepancies += [
+            discrepancy
             for gain in gains
             if gain.is_told and (gain.is_off or gain.differs_by_way)
-            for one in _weak(gain)
+            for discrepancy in _weak(gain)
         ]
-    if all(one.is_common for one in off):  # else what one thruster lacks passes for damping
-        found += [one for gain in off for one in _damping(gain)]
+    if all(gain.is_common for gain in off):  # else what one thruster lacks passes for damping
+        discrepancies += [discrepancy for gain in off for discrepancy in _damping(gain)]
     # Late thrust, by the support that it loses without the delay.
     if labels.used.is_late:
         text = f"thrust acts {labels.used.lag:.2g} s after its command"
-        found.append(
+        discrepancies.append(
             Discrepancy(
                 text, None, None, labels.used.lag, 0.25 * labels.used.lag, "s", _of_lag(labels)
             )
         )
-    found = [*signs, *sorted(found, key=lambda one: -one.share)]
+    discrepancies = [*signs, *sorted(discrepancies, key=lambda discrepancy: -discrepancy.share)]
     # Axes that one of these findings explains already.
-    explained = {one.axis for one in found} | set(
+    explained = {discrepancy.axis for discrepancy in discrepancies} | set(
         ratio.axes if ratio and ratio.differs(MENTIONED) else ()
     )
     # A large difference without any explanation is reported by itself, and its axis is not repeated
     # as a remainder.
-    large = [one for one in missing if one.is_large and one.axis not in explained]
+    large = [load for load in missing if load.is_large and load.axis not in explained]
     rest = [
-        gain for gain in gains if gain.is_off and gain.axis.name not in {one.axis for one in large}
+        gain
+        for gain in gains
+        if gain.is_off and gain.axis.name not in {load.axis for load in large}
     ]
     return [
-        *found,
-        *(one.discrepancy for one in large),
-        *(one for gain in rest if found for one in _rest(gain)),
+        *discrepancies,
+        *(load.discrepancy for load in large),
+        *(discrepancy for gain in rest if discrepancies for discrepancy in _rest(gain)),
     ]
 
 
@@ -95,10 +97,10 @@ def _wrong_signs(labels: Labels, gains: Sequence[AxisGain]) -> Iterator[Discrepa
     # Interpretations that would correct wrong labels: the best, and those that cannot be told from
     # it.
     readings = [labels.best, *labels.rivals] if labels.is_wrong else []
-    why = " or ".join("; ".join(map(in_words, one.changes)) for one in readings)
-    told = False
-    for one in gains:
-        axis = one.axis
+    why = " or ".join("; ".join(map(in_words, reading.changes)) for reading in readings)
+    is_reported = False
+    for axis_gain in gains:
+        axis = axis_gain.axis
         # Gain of the logged commands, of any sign.
         before = axis.total(labels.logged.commanded)
         fit = axis.compared(before[None])
@@ -111,16 +113,16 @@ def _wrong_signs(labels: Labels, gains: Sequence[AxisGain]) -> Iterator[Discrepa
         # Corrected labels account for the sign if they change the commands on this axis.
         because = bool(why) and axis.is_changed(labels.logged.commanded, labels.best.commanded)
         if (
-            one.is_balanced and not because
+            axis_gain.is_balanced and not because
         ):  # a way that is weaker makes the sum of both look reversed
             continue
-        told |= because
+        is_reported |= because
         text = f"{FORCES[axis.name]}: wrong sign" + (f", as with {why}" if because else "")
         # Share of the unexplained mean square that the negative gain removes.
         share = _gone(fit.squares, axis.unexplained(np.zeros(before.size)))
         yield Discrepancy(text, None, axis.name, gain, std, "1", share)
     # Labels that are wrong without a reversed axis are reported once, for the ship as a whole.
-    if why and not told:
+    if why and not is_reported:
         gained = _gone(labels.logged.support, max(labels.best.support, 1e-9))
         yield Discrepancy(
             f"thrust does not go with its command, but with {why}",
@@ -145,57 +147,57 @@ def _gone(left: float, before: float) -> float:
     return float(np.clip(1.0 - left / before, 0.0, 1.0))
 
 
-def _explained_by_gain(one: AxisGain) -> float:
+def _explained_by_gain(gain: AxisGain) -> float:
     """Share of the error that comes from the gain, the water's load as the log has it."""
-    return _gone(one.fit.squares, one.axis.unexplained(one.total))
+    return _gone(gain.fit.squares, gain.axis.unexplained(gain.total))
 
 
-def _weak(one: AxisGain) -> Iterator[Discrepancy]:
+def _weak(gain: AxisGain) -> Iterator[Discrepancy]:
     """Gain on one axis, or the gains of its thrusters if they differ."""
-    if max(one.support_of_each, one.fit.support) < LEAST_SUPPORT:
+    if max(gain.support_of_each, gain.fit.support) < LEAST_SUPPORT:
         return
     # Different gains ahead and astern say more than a mean of the two.
-    share = _explained_by_gain(one)
-    if one.differs_by_way and one.ways is not None:
-        (ahead, std), (astern, other) = one.ways
-        text = f"{FORCES[one.axis.name]} of thrust astern over inertia {astern:.2f} of the model's, ahead {ahead:.2f}"
-        yield Discrepancy(text, None, one.axis.name, astern, other, "1", share)
+    share = _explained_by_gain(gain)
+    if gain.differs_by_way and gain.ways is not None:
+        (ahead, std), (astern, other) = gain.ways
+        text = f"{FORCES[gain.axis.name]} of thrust astern over inertia {astern:.2f} of the model's, ahead {ahead:.2f}"
+        yield Discrepancy(text, None, gain.axis.name, astern, other, "1", share)
         return
     # Gains of single thrusters, where they can be told apart and differ surely from 1.
-    apart = {} if one.is_common or not one.has_thrusters_apart else one.each
+    apart = {} if gain.is_common or not gain.has_thrusters_apart else gain.each
     apart = {
         n: v
         for n, v in apart.items()
-        if v > SURE_OF_GAIN * one.each_std[n]
-        and abs(v - 1.0) > SURE_OF_GAIN * one.each_std[n] + MENTIONED - 1.0
+        if v > SURE_OF_GAIN * gain.each_std[n]
+        and abs(v - 1.0) > SURE_OF_GAIN * gain.each_std[n] + MENTIONED - 1.0
     }
     for name, value in apart.items():
-        text = f"{FORCES[one.axis.name]} of {name} over inertia {value:.2f} of the model's"
-        yield Discrepancy(text, name, one.axis.name, value, one.each_std[name], "1", share)
+        text = f"{FORCES[gain.axis.name]} of {name} over inertia {value:.2f} of the model's"
+        yield Discrepancy(text, name, gain.axis.name, value, gain.each_std[name], "1", share)
     # Otherwise one gain for all thrusters of the axis.
-    if one.is_common and one.is_known and one.differs(MENTIONED):
-        text = f"{FORCES[one.axis.name]} over inertia {one.gain:.2f} of the model's"
-        yield Discrepancy(text, None, one.axis.name, one.gain, one.std, "1", share)
+    if gain.is_common and gain.is_known and gain.differs(MENTIONED):
+        text = f"{FORCES[gain.axis.name]} over inertia {gain.gain:.2f} of the model's"
+        yield Discrepancy(text, None, gain.axis.name, gain.gain, gain.std, "1", share)
 
 
-def _damping(one: AxisGain) -> Iterator[Discrepancy]:
+def _damping(gain: AxisGain) -> Iterator[Discrepancy]:
     """Discrepancy of the resistance, if the log shows it."""
-    axis = one.axis
-    fit = one.fit
+    axis = gain.axis
+    fit = gain.fit
     # Damping can only be compared where thrust has a positive gain and the model a load of the
     # water.
     if fit.gains[0] <= 0.0 or not np.any(axis.hull):
         return
-    scale = max(one.gain, float(fit.gains[0])) / float(
+    scale = max(gain.gain, float(fit.gains[0])) / float(
         fit.gains[0]
     )  # what makes the gain look small does it to both
     # Damping and its standard deviation, scaled like the gain; both share the error of the scale.
     damping = fit.damping * scale
-    std = fit.damping_std * scale + fit.damping * scale * one.std / one.gain
+    std = fit.damping_std * scale + fit.damping * scale * gain.std / gain.gain
     # Alternative fit: the damping of the model as it is, thrust and other forces free.
     left = regressed(
-        axis.felt - axis.hull,
-        np.concatenate([one.total[:, None], axis.rest[:, 3:]], axis=1),
+        axis.force - axis.hull,
+        np.concatenate([gain.total[:, None], axis.rest[:, 3:]], axis=1),
         np.r_[False, axis.positive[3:]],
         axis.block,
     )
@@ -220,10 +222,10 @@ def _of_lag(labels: Labels) -> float:
     )
 
 
-def _rest(one: AxisGain) -> Iterator[Discrepancy]:
+def _rest(gain: AxisGain) -> Iterator[Discrepancy]:
     """Discrepancy that no other finding explains."""
-    left = one.fit.squares / float((one.axis.felt**2).mean())
+    left = gain.fit.squares / float((gain.axis.force**2).mean())
     if left > REMAINS:
-        name = FORCES[one.axis.name]
+        name = FORCES[gain.axis.name]
         text = f"{name}: {100.0 * left:.0f} % of the measured force remains unexplained"
-        yield Discrepancy(text, None, one.axis.name, left, 0.0, "1", 0.0)
+        yield Discrepancy(text, None, gain.axis.name, left, 0.0, "1", 0.0)

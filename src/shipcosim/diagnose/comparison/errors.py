@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from shipcosim.diagnose.comparison.measured_force import Felt
+from shipcosim.diagnose.comparison.measured_force import MeasuredForce
 from shipcosim.diagnose.comparison.thresholds import (
     ANSWER,
     FEWEST_STARTS,
@@ -53,7 +53,7 @@ def horizons_of(model: ShipModel, motion: Motion, span: float, step: float) -> t
     return tuple(float(f"{rounded * share:.3g}") for share in (1.0 / 6.0, 0.5, 1.0))
 
 
-def errors_of(record: Record, felt: Felt, model: ShipModel) -> dict[str, list[float]]:
+def errors_of(record: Record, measured: MeasuredForce, model: ShipModel) -> dict[str, list[float]]:
     """Errors of the simulation of a ship: the entry ``baseline`` of diagnosis.json.
 
     Predictions start all over the log from the measured motion, smoothed without a model, and run with the logged
@@ -62,7 +62,7 @@ def errors_of(record: Record, felt: Felt, model: ShipModel) -> dict[str, list[fl
     Parameters
     ----------
     record : Record
-    felt : Felt
+    measured : MeasuredForce
         Of the log.
     model : ShipModel
 
@@ -73,35 +73,35 @@ def errors_of(record: Record, felt: Felt, model: ShipModel) -> dict[str, list[fl
     """
     span = float(record.time[-1] - record.time[0])
     # Predictions need enough starts: halve the horizons until the log has them.
-    horizons = horizons_of(model, felt.motion, span, record.step)
-    rows = starts_of(record, felt, horizons[-1])
+    horizons = horizons_of(model, measured.motion, span, record.step)
+    rows = starts_of(record, measured, horizons[-1])
     while rows.size < FEWEST_STARTS and horizons[-1] > 6.0 * record.step:
         horizons = tuple(0.5 * horizon for horizon in horizons)
-        rows = starts_of(record, felt, horizons[-1])
+        rows = starts_of(record, measured, horizons[-1])
     # The smoothed measurements serve as initial state and as truth.
-    seen = felt.smooth_motion
+    seen = measured.smooth_motion
     counts = counts_of(horizons, record.step)
     # Errors of the predictions by channel, (horizons, s) arrays.
     logged, ship = replayable(record, model, seen)
     start = true_motion(at_rows(seen, rows), ship)
-    found = predicted(start, rows, logged, ship, counts)
-    off = missing(readings(found, ship), seen, rows + np.array(counts)[:, None])
+    predictions = predicted(start, rows, logged, ship, counts)
+    off = missing(readings(predictions, ship), seen, rows + np.array(counts)[:, None])
     return {
         "horizon_s": [count * record.step for count in counts],
-        "position_error_m": [root_mean_square(one) for one in off["position"]],
-        "heading_error_deg": [root_mean_square(one) for one in off["heading"]],
+        "position_error_m": [root_mean_square(errors) for errors in off["position"]],
+        "heading_error_deg": [root_mean_square(errors) for errors in off["heading"]],
     }
 
 
 def errors_over_none(
-    record: Record, felt: Felt, errors: dict[str, list[float]]
+    record: Record, measured: MeasuredForce, errors: dict[str, list[float]]
 ) -> dict[str, float]:
     """Errors of the simulation over those of no model at all, which keeps surge, sway and yaw rate as they are.
 
     Parameters
     ----------
     record : Record
-    felt : Felt
+    measured : MeasuredForce
     errors : dict
         As from `errors_of`.
 
@@ -111,8 +111,8 @@ def errors_over_none(
         ``position`` and ``heading``: the larger of the two of the longer horizons.
     """
     # The same starts as the simulation's, so that the errors compare.
-    rows = starts_of(record, felt, errors["horizon_s"][-1])
-    seen = felt.smooth_motion
+    rows = starts_of(record, measured, errors["horizon_s"][-1])
+    seen = measured.smooth_motion
     counts = np.array(counts_of(errors["horizon_s"], record.step))[1:, None]
     kept = sailed_steadily(at_rows(seen, rows), counts * record.step)
     # Ratio of root mean squares by horizon; the worst counts.
@@ -145,13 +145,15 @@ def counts_of(horizons: Iterable[float], step: float) -> list[int]:
     return [max(1, round(horizon / step)) for horizon in horizons]
 
 
-def starts_of(record: Record, felt: Felt, horizon: float) -> np.ndarray:
+def starts_of(record: Record, measured: MeasuredForce, horizon: float) -> np.ndarray:
     """Rows from which predictions start, as many as touch no gap; else any from which one can be made."""
     # Starts whose horizon reaches no row with unknown inputs, by cumulative counts.
     reach = round(horizon / record.step)
     rows = np.arange(0, record.time.size - reach)
     lost = running_sums(~record.known)
-    good = rows[(lost[rows + reach] == lost[rows]) & felt.usable[rows] & felt.usable[rows + reach]]
+    good = rows[
+        (lost[rows + reach] == lost[rows]) & measured.usable[rows] & measured.usable[rows + reach]
+    ]
     # Gaps in the motion matter less: they are accepted where there are too few starts.
     good = good if good.size >= FEWEST_STARTS else rows[lost[rows + reach] == lost[rows]]
     # Evenly thinned, to limit the work.

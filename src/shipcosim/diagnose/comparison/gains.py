@@ -1,4 +1,4 @@
-"""How large the commanded force is beside the felt one: on each axis, of each thruster, and as a common ratio."""
+"""How large the commanded force is beside the measured one: on each axis, of each thruster, and as a common ratio."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ def is_beyond(ratio: float, std: float, least: float, deviations: float) -> bool
 
 @dataclass(frozen=True)
 class AxisGain:
-    """The felt over the commanded force on one axis.
+    """Measured over commanded force on one axis.
 
     Attributes
     ----------
@@ -114,12 +114,12 @@ class AxisGain:
         # One way is known surely and both are positive; then the difference must exceed its
         # standard error and the usual spread between thrusters.
         (ahead, std), (astern, other) = self.ways
-        known = (
+        is_known = (
             max(ahead / max(std, 1e-9), astern / max(other, 1e-9)) > SURE_OF_GAIN
             and min(ahead, astern) > 0.0
         )
         near = THRUSTER_SPREAD * max(ahead, astern)
-        return known and abs(ahead - astern) > SURE_OF_GAIN * float(np.hypot(std, other)) + near
+        return is_known and abs(ahead - astern) > SURE_OF_GAIN * float(np.hypot(std, other)) + near
 
     def differs(self, least: float) -> bool:
         """Whether the gain differs from 1 by a factor of more than `least` for sure."""
@@ -165,7 +165,7 @@ def _gain(axis: Axis, commanded: Commanded, ahead: Mapping[str, np.ndarray]) -> 
             std = float(middle * np.sqrt(half**2 + (std / gain) ** 2 + (most_std / most) ** 2))
             gain = middle
     # Force left for the thrusters by the modelled hull and wind loads.
-    other = axis.felt - axis.hull - axis.wind
+    other = axis.force - axis.hull - axis.wind
     error = root_mean_square(other - total) / root_mean_square(total)
     each = dict(zip(names, map(float, apart.gains), strict=True))
     each_std = dict(zip(names, map(float, apart.std), strict=True))
@@ -220,22 +220,24 @@ def common_ratio(gains: Sequence[AxisGain]) -> CommonRatio | None:
     -------
     CommonRatio or None
     """
-    known = [one for one in gains if one.is_known]
-    if not known or not any(one.is_off for one in known):
+    known_gains = [gain for gain in gains if gain.is_known]
+    if not known_gains or not any(gain.is_off for gain in known_gains):
         return None
     # Weighted mean of the logarithms; each axis may differ from the others by COMMON_SPREAD besides
     # its own error.
-    logs = np.log([one.gain for one in known])
-    stds = np.array([one.std / one.gain for one in known])
+    logs = np.log([gain.gain for gain in known_gains])
+    stds = np.array([gain.std / gain.gain for gain in known_gains])
     weights = 1.0 / (stds**2 + COMMON_SPREAD**2)
     mean = float(weights @ logs / weights.sum())
     # No common ratio where an axis lies surely elsewhere, or its thrusters or ways differ.
     apart = np.abs(logs - mean) > SURE_OF_GAIN * stds + 2.0 * COMMON_SPREAD
-    if apart.any() or not all(one.is_common for one in known):
+    if apart.any() or not all(gain.is_common for gain in known_gains):
         return None
     # Standard error of the mean, not less than the observed spread of the axes.
     spread = float(np.sqrt(weights @ (logs - mean) ** 2 / weights.sum()))
     std = max(1.0 / np.sqrt(weights.sum()), spread)
     return CommonRatio(
-        float(np.exp(mean)), float(np.exp(mean) * std), tuple(one.axis.name for one in known)
+        float(np.exp(mean)),
+        float(np.exp(mean) * std),
+        tuple(gain.axis.name for gain in known_gains),
     )

@@ -8,7 +8,7 @@ import numpy as np
 
 from shipcosim.diagnose.comparison.axes import Axis
 from shipcosim.diagnose.comparison.commanded import Commanded, commanded_by, late
-from shipcosim.diagnose.comparison.measured_force import Felt
+from shipcosim.diagnose.comparison.measured_force import MeasuredForce
 from shipcosim.diagnose.comparison.thresholds import (
     CHANGE_COST,
     LAG_COST,
@@ -40,11 +40,11 @@ class LabelError:
     def undo(self, units: ThrusterSeries) -> ThrusterSeries:
         """Inputs of the thrusters, corrected; fixed directions stay."""
         if len(self.thrusters) == 2:
-            one, other = self.thrusters
-            (first, ahead) = units[one]
-            (second, beside) = units[other]
-            ahead, beside = (beside, ahead) if self.turns else (ahead, beside)
-            return units | {one: (second, ahead), other: (first, beside)}
+            thruster, other = self.thrusters
+            (first, ahead) = units[thruster]
+            (second, lateral) = units[other]
+            ahead, lateral = (lateral, ahead) if self.turns else (ahead, lateral)
+            return units | {thruster: (second, ahead), other: (first, lateral)}
         (name,) = self.thrusters
         speed, direction = units[name]
         return units | {name: (-speed, direction)}
@@ -128,7 +128,7 @@ def changes_of(record: Record, model: ShipModel) -> list[tuple[LabelError, ...]]
 def reading(
     changes: tuple[LabelError, ...],
     record: Record,
-    felt: Felt,
+    measured: MeasuredForce,
     axes: Sequence[Axis],
     model: ShipModel,
 ) -> LabelHypothesis:
@@ -139,7 +139,7 @@ def reading(
     changes : tuple of LabelError
     record : Record
         As logged.
-    felt : Felt
+    measured : MeasuredForce
     axes : sequence of Axis
     model : ShipModel
         With surrogates of third-party FMUs.
@@ -152,7 +152,7 @@ def reading(
     units = record.units
     for change in changes:
         units = change.undo(units)
-    commanded = driven(units, record, felt, model)
+    commanded = driven(units, record, measured, model)
     ahead = ahead_of(units)
     # Thrust may act late: each delay has a cost, as a wrong sign can look like a delay.
     tries = []
@@ -168,7 +168,7 @@ def reading(
                 changes, support, float(lag), gained, cost, record.step, moved, ahead, units
             )
         )
-    return max(tries, key=lambda one: one.score)
+    return max(tries, key=lambda attempt: attempt.score)
 
 
 def ahead_of(units: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> dict[str, np.ndarray]:
@@ -176,7 +176,9 @@ def ahead_of(units: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> dict[str, np
     return {name: speed >= 0.0 for name, (speed, _) in units.items()}
 
 
-def driven(units: ThrusterSeries, record: Record, felt: Felt, model: ShipModel) -> Commanded:
+def driven(
+    units: ThrusterSeries, record: Record, measured: MeasuredForce, model: ShipModel
+) -> Commanded:
     """Loads of a model along a log, with thrusters driven under another label.
 
     Parameters
@@ -184,7 +186,7 @@ def driven(units: ThrusterSeries, record: Record, felt: Felt, model: ShipModel) 
     units : dict of str to (n,) arrays
         Speed and direction by thruster.
     record : Record
-    felt : Felt
+    measured : MeasuredForce
     model : ShipModel
 
     Returns
@@ -193,10 +195,10 @@ def driven(units: ThrusterSeries, record: Record, felt: Felt, model: ShipModel) 
     """
     record = replace(record, units=units)
     if any(
-        "rpm" in one.drives for one in model.third_party.values()
+        "rpm" in fmu.drives for fmu in model.third_party.values()
     ):  # one that gets its thrust is linear
-        model = with_surrogates(model, record, felt.motion)
-    return commanded_by(record, felt, model)
+        model = with_surrogates(model, record, measured.motion)
+    return commanded_by(record, measured, model)
 
 
 def support_of(commanded: Commanded, ahead: dict[str, np.ndarray], axes: Sequence[Axis]) -> float:

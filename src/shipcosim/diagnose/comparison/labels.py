@@ -25,7 +25,7 @@ from shipcosim.diagnose.comparison.label_hypotheses import (
     reading,
 )
 from shipcosim.diagnose.comparison.likelihood import Blocks, blocks_of, likelihood_of, smoothed
-from shipcosim.diagnose.comparison.measured_force import Felt
+from shipcosim.diagnose.comparison.measured_force import MeasuredForce
 from shipcosim.diagnose.comparison.thresholds import (
     AGREED,
     ALIKE,
@@ -135,7 +135,9 @@ class _Weighed:
         return bool(np.abs(self.measures + cost - other.measures).max() < ALIKE)
 
 
-def read_labels(record: Record, felt: Felt, axes: Sequence[Axis], model: ShipModel) -> Labels:
+def read_labels(
+    record: Record, measured: MeasuredForce, axes: Sequence[Axis], model: ShipModel
+) -> Labels:
     """The readings of the thrusters' channels.
 
     Other readings than the logged one are only tried where that is in doubt: where on some axis the thrusters together
@@ -145,7 +147,7 @@ def read_labels(record: Record, felt: Felt, axes: Sequence[Axis], model: ShipMod
     Parameters
     ----------
     record : Record
-    felt : Felt
+    measured : MeasuredForce
     axes : sequence of Axis
     model : ShipModel
         With surrogates of third-party FMUs.
@@ -155,18 +157,22 @@ def read_labels(record: Record, felt: Felt, axes: Sequence[Axis], model: ShipMod
     Labels
     """
     # Logged labels that already explain each axis without delay need no alternatives.
-    logged = reading((), record, felt, axes, model)
+    logged = reading((), record, measured, axes, model)
     if not logged.lag and all(_does_as_told(axis, logged.commanded) for axis in axes):
         return Labels(logged, logged)
     # The fit is cheap: evaluate all interpretations, and weigh only the credible ones by the other
     # measures.
-    found = [
+    hypotheses = [
         logged,
-        *(reading(one, record, felt, axes, model) for one in changes_of(record, model)),
+        *(reading(changes, record, measured, axes, model) for changes in changes_of(record, model)),
     ]
-    credible = [one for one in found[1:] if one.score > logged.score - CONTRADICTED]
-    credible = sorted(credible, key=lambda one: -one.score)[:MOST_WEIGHED]
-    weighed = _weighed([logged, *credible], record, felt, model)
+    credible = [
+        hypothesis
+        for hypothesis in hypotheses[1:]
+        if hypothesis.score > logged.score - CONTRADICTED
+    ]
+    credible = sorted(credible, key=lambda hypothesis: -hypothesis.score)[:MOST_WEIGHED]
+    weighed = _weighed([logged, *credible], record, measured, model)
     # Two decisions: by the fit, checked by the others, and by agreement of two measures.
     labels = _by_fit(weighed, axes)
     agreed = _by_agreement(weighed)
@@ -179,59 +185,61 @@ def read_labels(record: Record, felt: Felt, axes: Sequence[Axis], model: ShipMod
 
 
 def _weighed(
-    found: Sequence[LabelHypothesis], record: Record, felt: Felt, model: ShipModel
+    hypotheses: Sequence[LabelHypothesis], record: Record, measured: MeasuredForce, model: ShipModel
 ) -> list[_Weighed]:
     """Readings with what the three measures say, the logged one first."""
     # Likelihood and foresight need the log in blocks, prepared once.
     unit = froude_time(model.length)
-    smooth = smoothed(felt)
-    log = blocks_of(felt, driven(found[0].units, record, smooth, model), model)
-    foresight = causal_support(felt, [one.commanded for one in found], unit)
+    smooth = smoothed(measured)
+    log = blocks_of(measured, driven(hypotheses[0].units, record, smooth, model), model)
+    foresight = causal_support(measured, [hypothesis.commanded for hypothesis in hypotheses], unit)
     weighed = []
-    for one, seen in zip(found, foresight, strict=True):
-        commanded = driven(one.units, record, smooth, model)
+    for candidate, seen in zip(hypotheses, foresight, strict=True):
+        commanded = driven(candidate.units, record, smooth, model)
         # All measures pay for changes; the likelihood has its own delay.
-        cost = CHANGE_COST * len(one.changes)
-        likelihood = max(_likelihoods(log, commanded, one, unit))
-        drives = _drives(one.commanded, felt)
-        weighed.append(_Weighed(one, one.score, float(seen) - cost, likelihood - cost, drives))
+        cost = CHANGE_COST * len(candidate.changes)
+        likelihood = max(_likelihoods(log, commanded, candidate, unit))
+        drives = _drives(candidate.commanded, measured)
+        weighed.append(
+            _Weighed(candidate, candidate.score, float(seen) - cost, likelihood - cost, drives)
+        )
     return weighed
 
 
-def _drives(commanded: Commanded, felt: Felt) -> float:
+def _drives(commanded: Commanded, measured: MeasuredForce) -> float:
     """Correlation, about zero, of commanded load and speed, the lesser of surge and yaw; 0 on an axis at rest.
 
     Sway does not count: a rudder pushes against the drift of a turning ship.
     """
     # Power: load times velocity, normalised, over usable rows.
-    loads = commanded.thrust[:, felt.usable]
-    found = []
-    for load, speed in ((loads[0], felt.motion.u), (loads[2], felt.motion.r)):
-        speed = np.asarray(speed)[felt.usable]
+    loads = commanded.thrust[:, measured.usable]
+    correlations = []
+    for load, speed in ((loads[0], measured.motion.u), (loads[2], measured.motion.r)):
+        speed = np.asarray(speed)[measured.usable]
         most = np.sqrt((load @ load) * (speed @ speed))
-        found.append(float(load @ speed / most) if most > 0.0 else 0.0)
-    return min(found)
+        correlations.append(float(load @ speed / most) if most > 0.0 else 0.0)
+    return min(correlations)
 
 
 def _likelihoods(
-    log: Blocks, commanded: Commanded, one: LabelHypothesis, unit: float
+    log: Blocks, commanded: Commanded, hypothesis: LabelHypothesis, unit: float
 ) -> Iterator[float]:
     """Log-likelihood of a reading for each lag of the thrusters, less the cost of the lag. [nats]"""
     for lag in LIKELIHOOD_LAGS:
         # A longer delay is less likely beforehand.
-        moved = late(commanded, lag * unit / one.step) if lag else commanded
-        yield likelihood_of(log, moved, one.ahead) - (LAG_COST + lag if lag else 0.0)
+        moved = late(commanded, lag * unit / hypothesis.step) if lag else commanded
+        yield likelihood_of(log, moved, hypothesis.ahead) - (LAG_COST + lag if lag else 0.0)
 
 
 def _by_fit(weighed: Sequence[_Weighed], axes: Sequence[Axis]) -> Labels:
     """The reading that fits best, and whether it is certain and nothing contradicts it."""
-    first, ranked = weighed[0], sorted(weighed, key=lambda one: -one.fit)
+    first, ranked = weighed[0], sorted(weighed, key=lambda each: -each.fit)
     best = ranked[0]
     logged = first.reading
     # By the labels as logged the thrusters would brake the craft: readings by which they do, too, are no rivals.
     brakes = first.drives < -BRAKES < BRAKES < best.drives
-    others = [one for one in ranked[1:] if not brakes or one.drives > 0.0]
-    rivals = tuple(one.reading for one in others if one.fit > best.fit - RIVAL)
+    others = [hypothesis for hypothesis in ranked[1:] if not brakes or hypothesis.drives > 0.0]
+    rivals = tuple(hypothesis.reading for hypothesis in others if hypothesis.fit > best.fit - RIVAL)
     # Gain in fit, and whether the logged labels are plainly wrong by it.
     gained = best.fit - first.fit
     plain = _is_contradicted(best.reading, logged, axes) or gained > PLAINLY_WRONG
@@ -252,33 +260,44 @@ def _by_fit(weighed: Sequence[_Weighed], axes: Sequence[Axis]) -> Labels:
         and best.foresight - first.foresight + changes > least
     )
     # The likelihood may not clearly prefer another interpretation.
-    likeliest = max(one.likelihood for one in (best, *others))
+    likeliest = max(hypothesis.likelihood for hypothesis in (best, *others))
     is_wrong &= (
         best.likelihood + changes > first.likelihood - UNLIKELIER
         and best.likelihood > likeliest - UNLIKELIER
     )
     # The log decides if labels are wrong, or if the logged ones beat every different
     # interpretation.
-    is_judged = is_wrong or all(first.beats(one, RIVAL) or one.is_as(first) for one in weighed[1:])
+    is_judged = is_wrong or all(
+        first.beats(hypothesis, RIVAL) or hypothesis.is_as(first) for hypothesis in weighed[1:]
+    )
     return Labels(logged, best.reading, rivals, is_wrong, is_judged, gained)
 
 
 def _by_agreement(weighed: Sequence[_Weighed]) -> Labels | None:
     """The reading that two measures clearly prefer to all others, the logged one included; None if there is none."""
     first = weighed[0]
-    for one in weighed[1:]:
+    for hypothesis in weighed[1:]:
         # Interpretations with the same effect are no competitors.
-        others = [other for other in weighed[1:] if other is not one]
-        twins = [other for other in others if one.is_as(other)]
+        others = [other for other in weighed[1:] if other is not hypothesis]
+        twins = [other for other in others if hypothesis.is_as(other)]
         rest = [other for other in others if other not in twins]
         # Among equivalent ones, fewest changes are preferred; the rest remain rivals.
-        if one.beats(first, AGREED) and all(one.beats(other, RIVAL) for other in rest):
-            fewest = min(len(other.reading.changes) for other in (one, *twins))
-            alike = [
-                other.reading for other in (one, *twins) if len(other.reading.changes) == fewest
+        if hypothesis.beats(first, AGREED) and all(
+            hypothesis.beats(other, RIVAL) for other in rest
+        ):
+            fewest = min(len(other.reading.changes) for other in (hypothesis, *twins))
+            simplest = [
+                other.reading
+                for other in (hypothesis, *twins)
+                if len(other.reading.changes) == fewest
             ]
             return Labels(
-                first.reading, alike[0], tuple(alike[1:]), True, True, float(one.over(first)[1])
+                first.reading,
+                simplest[0],
+                tuple(simplest[1:]),
+                True,
+                True,
+                float(hypothesis.over(first)[1]),
             )
     return None
 

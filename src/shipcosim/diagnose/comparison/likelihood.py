@@ -13,7 +13,7 @@ import numpy as np
 from shipcosim.diagnose.comparison.axes import prior_of, rest_of
 from shipcosim.diagnose.comparison.causality import blocks, with_past
 from shipcosim.diagnose.comparison.commanded import Commanded, moving_mass
-from shipcosim.diagnose.comparison.measured_force import Felt
+from shipcosim.diagnose.comparison.measured_force import MeasuredForce
 from shipcosim.diagnose.comparison.regression import bounded
 from shipcosim.diagnose.comparison.thresholds import (
     CAUSAL_ORDER,
@@ -37,7 +37,7 @@ _LOG_GAINS = np.linspace(np.log(0.05), np.log(8.0), 81)
 class _Axis(NamedTuple):
     """One axis between blocks: measured force (n,), all but the thrusters (n, q), and which of it has one sign (q,)."""
 
-    felt: np.ndarray
+    force: np.ndarray
     rest: np.ndarray
     positive: np.ndarray
 
@@ -80,17 +80,17 @@ class Blocks:
         return _between(blocks(series, self.count))
 
 
-def smoothed(felt: Felt) -> Felt:
+def smoothed(measured: MeasuredForce) -> MeasuredForce:
     """Measured force with loads from smoothed motion, so that they do not correlate with velocity noise."""
-    return replace(felt, motion=felt.smooth_motion)
+    return replace(measured, motion=measured.smooth_motion)
 
 
-def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
+def blocks_of(measured: MeasuredForce, commanded: Commanded, model: ShipModel) -> Blocks:
     """A log in blocks.
 
     Parameters
     ----------
-    felt : Felt
+    measured : MeasuredForce
     commanded : Commanded
         As logged, along the smoothed motion.
     model : ShipModel
@@ -101,14 +101,14 @@ def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
     """
     length = model.length
     # Loads from the smoothed motion, accelerations from block means: their noise is not correlated.
-    motion = felt.smooth_motion
-    count = max(1, round(CAUSAL_STEP * froude_time(length) / felt.kernel.step))
+    motion = measured.smooth_motion
+    count = max(1, round(CAUSAL_STEP * froude_time(length) / measured.kernel.step))
     # Average over blocks of a share of the ship's response time.
-    speeds = blocks(felt.velocity, count)
-    usable = blocks(felt.usable.astype(float), count) > 1.0 - 1e-9
+    speeds = blocks(measured.velocity, count)
+    usable = blocks(measured.usable.astype(float), count) > 1.0 - 1e-9
     rows = with_past(usable[1:] & usable[:-1], CAUSAL_ORDER)
     # Force that the motion needs between two blocks: M nu_dot + C_RB(nu) nu.
-    rates = np.diff(speeds, axis=1) / (count * felt.kernel.step)
+    rates = np.diff(speeds, axis=1) / (count * measured.kernel.step)
     force = model.mass_matrix @ rates + _between(blocks(moving_mass(motion, model), count))
     listed = rest_of(motion, commanded)
     sizes = _sizes(commanded, length)
@@ -116,7 +116,7 @@ def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
     axes = {}
     for i in sizes:
         columns, positive = listed[i]
-        rest = np.stack([_between(blocks(one, count)) for one in columns], axis=1)
+        rest = np.stack([_between(blocks(column, count)) for column in columns], axis=1)
         if rows.size > 4 * (rest.shape[1] + len(commanded.thrusters) + CAUSAL_ORDER):
             axes[i] = _Axis(force[i], rest, positive)
     empty = Blocks(axes, {}, sizes, rows, count)
@@ -136,8 +136,8 @@ def _sizes(commanded: Commanded, length: float) -> dict[int, float]:
         * np.sqrt(((most[0] + most[1]) ** 2).mean())
     )
     # A yaw moment compares to the force by a share of the ship's length.
-    found = np.sqrt((most**2).mean(1))
-    return {i: float(found[i]) for i in range(3) if found[i] > max(least[i], 1e-9)}
+    sizes = np.sqrt((most**2).mean(1))
+    return {i: float(sizes[i]) for i in range(3) if sizes[i] > max(least[i], 1e-9)}
 
 
 def _between(series: np.ndarray) -> np.ndarray:
@@ -176,9 +176,9 @@ def likelihood_of(log: Blocks, commanded: Commanded, ahead: dict[str, np.ndarray
         # Profile likelihood of the axis' gain, taken as normal about its estimate.
         fit = _fitted(log, i, *_columns(log, i, commanded, ahead))
         std = np.hypot(fit.std, LEAST_GAIN_STD)
-        own = fit.likelihood - log.alone[i].likelihood - 0.5 * ((gains - fit.gain) / std) ** 2
+        gained = fit.likelihood - log.alone[i].likelihood - 0.5 * ((gains - fit.gain) / std) ** 2
         # Integrate the axis' own gain out; the maximum is taken off before exponentials.
-        total += own.max() + np.log(near @ np.exp(own - own.max()) + 1e-300)
+        total += gained.max() + np.log(near @ np.exp(gained - gained.max()) + 1e-300)
     # Integrate the common gain out.
     return float(total.max() + np.log(np.exp(total - total.max()).sum()))
 
@@ -191,7 +191,7 @@ def _columns(log, i, commanded, ahead):
         (load * (ahead[name] - 0.5) for name, load in loads.items()),
         np.zeros(commanded.hull.shape[1]),
     )
-    columns = [log.between(one) for one in (*loads.values(), ways)]
+    columns = [log.between(series) for series in (*loads.values(), ways)]
     # Deviations of thrusters and ways from the common gain have zero mean and a standard deviation
     # of the prior.
     total = sum(columns[:-1], np.zeros_like(columns[-1]))
@@ -222,41 +222,42 @@ def _fitted(
         positive = np.r_[False, positive, np.zeros(widths.size, bool)]
         starts.append(log.alone[i].filter)
     # Series and columns with their lags, for filtering by any autoregression.
-    felt = np.stack([axis.felt[rows - k] for k in range(order + 1)])
+    measured = np.stack([axis.force[rows - k] for k in range(order + 1)])
     late = np.stack([columns[rows - k] for k in range(order + 1)])
     best = max(
-        (_refined(felt, late, positive, prior, start) for start in starts), key=lambda one: one[0]
+        (_refined(measured, late, positive, prior, start) for start in starts),
+        key=lambda fit: fit[0],
     )
-    likelihood, found, filter_, spread = best
+    likelihood, coefficients, filter_, spread = best
     if total is None:
         return _Fit(likelihood, 0.0, 0.0, filter_)
     # Variance of the gain from the information matrix of the whitened columns, coefficients at
     # their bound left out.
     white = np.tensordot(np.r_[1.0, -filter_], late, 1)
-    free = (found != 0.0) | ~positive
+    free = (coefficients != 0.0) | ~positive
     information = white[:, free].T @ white[:, free] / spread**2 + np.diag(prior[free] ** -2.0)
     variance = np.linalg.pinv(information, rcond=1e-12, hermitian=True)[0, 0]
-    return _Fit(likelihood, float(found[0]), float(np.sqrt(max(variance, 0.0))), filter_)
+    return _Fit(likelihood, float(coefficients[0]), float(np.sqrt(max(variance, 0.0))), filter_)
 
 
-def _refined(felt, late, positive, prior, filter_):
+def _refined(measured, late, positive, prior, filter_):
     """Coefficients and autoregression in turn; the best (log-likelihood, coefficients, autoregression, spread)."""
     best = (-np.inf, np.zeros(positive.size), filter_, 1.0)
-    spread = float(np.std(np.r_[1.0, -filter_] @ felt))
+    spread = float(np.std(np.r_[1.0, -filter_] @ measured))
     # Cochrane-Orcutt: coefficients by generalized least squares, then the autoregression of the
     # errors.
     for _ in range(_ROUNDS):
         # Whiten series and columns by the filter 1 - a1 q^-1 - a2 q^-2 - ...
         ahead = np.r_[1.0, -filter_]
-        series = ahead @ felt
+        series = ahead @ measured
         white = np.tensordot(ahead, late, 1)
         # Ridge by the prior, columns scaled to unit length, coefficients within their signs.
         scale = np.sqrt((white**2).sum(0)) + 1e-300
         unit = white / scale
         pull = spread / (prior * scale)
-        found = bounded(unit.T @ unit + np.diag(pull**2), unit.T @ series, positive) / scale
+        coefficients = bounded(unit.T @ unit + np.diag(pull**2), unit.T @ series, positive) / scale
         # Autoregression by least squares on past errors, slightly regularised.
-        errors = felt - late @ found
+        errors = measured - late @ coefficients
         past = errors[1:].T
         products = past.T @ past
         filter_ = np.linalg.solve(
@@ -272,7 +273,7 @@ def _refined(felt, late, positive, prior, filter_):
             + 1e-300
         )
         # Gaussian log-likelihood with the prior of the coefficients; rounds need not improve it.
-        likelihood = float(-left.size * np.log(spread) - 0.5 * ((found / prior) ** 2).sum())
+        likelihood = float(-left.size * np.log(spread) - 0.5 * ((coefficients / prior) ** 2).sum())
         if likelihood > best[0]:
-            best = likelihood, found, filter_, spread
+            best = likelihood, coefficients, filter_, spread
     return best

@@ -12,8 +12,8 @@ from shipcosim.models.core.motion import Motion
 
 
 @dataclass(frozen=True)
-class Felt:
-    """What a log shows of a ship's motion.
+class MeasuredForce:
+    """The motion and the acceleration that a log shows.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class Felt:
         return np.stack([self.motion.u, self.motion.v, self.motion.r])
 
 
-def felt_by(record: Record, length: float) -> Felt:
+def measured_force_of(record: Record, length: float) -> MeasuredForce:
     """The acceleration that a log shows.
 
     Rates of the measured velocities; where those are not measured, of the positions, turned by the heading.
@@ -56,7 +56,7 @@ def felt_by(record: Record, length: float) -> Felt:
 
     Returns
     -------
-    Felt
+    MeasuredForce
     """
     # Kernel in proportion to the ship's time scale, but of some rows at least.
     kernel = Kernel(max(KERNEL * froude_time(length), SHORTEST_KERNEL * record.step), record.step)
@@ -77,4 +77,4 @@ def felt_by(record: Record, length: float) -> Felt:
     # Without yaw rate: second derivative of the heading.
     if not is_measured(record, 5):
         rates[2] = kernel.rate(motion.psi, 2)
-    return Felt(motion, rates, kernel.clear_of(bad | ~record.known), kernel)
+    return MeasuredForce(motion, rates, kernel.clear_of(bad | ~record.known), kernel)

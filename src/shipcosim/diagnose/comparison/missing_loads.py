@@ -7,7 +7,7 @@ import numpy as np
 
 from shipcosim.diagnose.comparison.axes import AXES, Axis
 from shipcosim.diagnose.comparison.commanded import Commanded
-from shipcosim.diagnose.comparison.measured_force import Felt
+from shipcosim.diagnose.comparison.measured_force import MeasuredForce
 from shipcosim.diagnose.comparison.thresholds import (
     ABOVE_NOISE,
     GOES_WITH,
@@ -76,12 +76,12 @@ class MissingLoad:
 
         A load that nobody predicts may be that of waves, which moves the ship to and fro and is no error of the model.
         """
-        beside = (
+        stands_out = (
             self.share > LARGE
             and self.missing > OFF * self.parts
             and self.missing > ABOVE_NOISE * self.noise
         )
-        return beside and (self.is_steady or self.predicted > LARGE)
+        return stands_out and (self.is_steady or self.predicted > LARGE)
 
     @property
     def is_steady(self) -> bool:
@@ -126,7 +126,7 @@ class MissingLoad:
 def missing_loads(
     axes: Sequence[Axis],
     commanded: Commanded,
-    felt: Felt,
+    measured: MeasuredForce,
     model: ShipModel,
     predicted: Mapping[str, float],
 ) -> list[MissingLoad]:
@@ -137,7 +137,7 @@ def missing_loads(
     axes : sequence of Axis
     commanded : Commanded
         With the labels as they are.
-    felt : Felt
+    measured : MeasuredForce
     model : ShipModel
     predicted : mapping of str to float
         As from `errors_over_none`.
@@ -146,29 +146,29 @@ def missing_loads(
     -------
     list of MissingLoad
     """
-    noise = _noise(felt, model)
+    noise = _noise(measured, model)
     by_axis = [predicted["heading" if axis.name == "yaw" else "position"] for axis in axes]
     each = zip(axes, by_axis, strict=True)
-    found = [_missing(axis, commanded, float(noise[axis.number]), off) for axis, off in each]
-    return sorted(found, key=lambda one: -one.share)
+    loads = [_missing(axis, commanded, float(noise[axis.number]), off) for axis, off in each]
+    return sorted(loads, key=lambda load: -load.share)
 
 
 def _missing(axis: Axis, commanded: Commanded, noise: float, predicted: float) -> MissingLoad:
     # Balance of forces: needed less thrust, water and wind by the model.
     thrust = axis.total(commanded)
     given = thrust + axis.hull + axis.wind
-    off = axis.felt - given
+    off = axis.force - given
     # The largest single load: small differences of large loads are within usual model errors.
-    parts = max(root_mean_square(one) for one in (thrust, axis.hull, axis.wind))
+    parts = max(root_mean_square(load) for load in (thrust, axis.hull, axis.wind))
     # Correlation about zero, as a mean force counts too.
-    both = root_mean_square(axis.felt) * root_mean_square(given)
-    correlation = float((axis.felt * given).mean() / both) if both > 0.0 else 0.0
+    both = root_mean_square(axis.force) * root_mean_square(given)
+    correlation = float((axis.force * given).mean() / both) if both > 0.0 else 0.0
     # Relative standard error of a root mean square of n independent values: 1 / sqrt(2 n).
     blocks = max(off.size / axis.block, 1.0)
     missing = root_mean_square(off)
     return MissingLoad(
         AXES[axis.number],
-        root_mean_square(axis.felt),
+        root_mean_square(axis.force),
         root_mean_square(given),
         missing,
         float(off.mean()),
@@ -180,12 +180,12 @@ def _missing(axis: Axis, commanded: Commanded, noise: float, predicted: float) -
     )
 
 
-def _noise(felt: Felt, model: ShipModel) -> np.ndarray:
+def _noise(measured: MeasuredForce, model: ShipModel) -> np.ndarray:
     """Part of the needed load that comes from white noise of the velocities, (3,) array: by their third differences."""
     # White noise from third differences, by the median: their variance is 20 times that of the
     # noise.
-    kernel = felt.kernel
-    third = np.asarray(np.diff(felt.velocity, 3, axis=1), float)
+    kernel = measured.kernel
+    third = np.asarray(np.diff(measured.velocity, 3, axis=1), float)
     white = np.sqrt(np.median(third**2, axis=1) / 0.455 / 20.0)
     # Derivative by a Gaussian kernel of n rows divides white noise by h sqrt(4 sqrt(pi) n^3);
     # inertia turns it into a load.

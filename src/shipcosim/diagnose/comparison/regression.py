@@ -76,8 +76,8 @@ def regressed(
     for _ in range(ROBUST_ROUNDS):
         heavy = unit * (weights**2)[:, None]
         # Ridge by the prior, and coefficients within their signs.
-        found = bounded(unit.T @ heavy + np.diag(pull**2), heavy.T @ series, positive)
-        left = series - unit @ found
+        coefficients = bounded(unit.T @ heavy + np.diag(pull**2), heavy.T @ series, positive)
+        left = series - unit @ coefficients
         # Standard deviation of the residuals without their largest.
         size = np.sort(np.abs(left))[: int(SOUND * left.size)]
         spread = (
@@ -92,12 +92,12 @@ def regressed(
             )
     # Standard errors must allow for correlated residuals; at a bound there is none.
     covariance = _by_blocks(
-        unit, left * weights**2, weights, pull, (found != 0.0) | ~positive, block
+        unit, left * weights**2, weights, pull, (coefficients != 0.0) | ~positive, block
     )
     # Twice Huber's loss, from weight and residual: w r^2 (2 - w) with w the squared weight here.
     squares = float((weights**2 * left**2 * (2.0 - weights**2)).mean())
     return Regression(
-        found / scale,
+        coefficients / scale,
         covariance / np.outer(scale, scale),
         left,
         squares,
@@ -143,9 +143,9 @@ def _by_blocks(unit, errors, weights, pull, free, block):
     inverse = np.linalg.pinv(normal, rcond=1e-10, hermitian=True)
     # Sandwich estimator, with the small-sample factor b / (b - 1).
     bread = inverse @ (sums[:, inside].T @ sums[:, inside]) @ inverse * count / (count - 1.0)
-    found = np.zeros((free.size, free.size))
-    found[np.ix_(inside, inside)] = bread
-    return found
+    covariance = np.zeros((free.size, free.size))
+    covariance[np.ix_(inside, inside)] = bread
+    return covariance
 
 
 def rows_per_independent(left: np.ndarray, block: int) -> float:

@@ -36,25 +36,27 @@ class Normal:
         """Coordinates without each part, and of all rows, (parts + 1, p); numbers that are not free are the file's."""
         free = list(free)
         # Numbers that are not free keep their start values and enter the right-hand side.
-        start = np.array([one.start for one in self.numbers])
+        start = np.array([number.start for number in self.numbers])
         fixed = np.ones(start.size, bool)
         fixed[free] = False
-        positive = [one.sign != 0 and not one.is_factor for one in self.numbers]
-        found = np.tile(start, (len(self.matrix), 1))
+        positive = [number.sign != 0 and not number.is_factor for number in self.numbers]
+        coordinates = np.tile(start, (len(self.matrix), 1))
         if not free:
-            return found
-        for row, matrix, right in zip(found, self.matrix, self.right, strict=True):
+            return coordinates
+        for row, matrix, right in zip(coordinates, self.matrix, self.right, strict=True):
             # Least squares of what is left and of the distance from the file's numbers, which is one for each.
             towards = right + matrix @ self.about - matrix[:, fixed] @ start[fixed]
             inner = matrix[np.ix_(free, free)] + np.eye(len(free))
             row[free] = bounded(inner, (towards + start)[free], np.array(positive)[free])
-        return found
+        return coordinates
 
     def values(self, coordinates: np.ndarray) -> np.ndarray:
         """Values of the numbers by their coordinates, along the last axis."""
         columns = np.moveaxis(coordinates, -1, 0)
-        found = [one.value(column) for one, column in zip(self.numbers, columns, strict=True)]
-        return np.stack(found, axis=-1)
+        values = [
+            number.value(column) for number, column in zip(self.numbers, columns, strict=True)
+        ]
+        return np.stack(values, axis=-1)
 
 
 def normal_about(
@@ -70,10 +72,10 @@ def normal_about(
         # Residuals beyond HUBER standard deviations count less; neighbours that go together count as one.
         size = np.abs(left) / np.sqrt(variance)[:, None]
         weight = np.minimum(1.0, HUBER / np.maximum(size, 1e-12)) / (variance * apart)[:, None]
-        own = set(log.parts)
+        parts = set(log.parts)
         # Normal equations without each part in turn, for the jackknife and for held-out errors.
         for part in range(count + 1):
-            rows = log.trained_without(part) if part in own else log.felt.usable
+            rows = log.trained_without(part) if part in parts else log.measured.usable
             heavy = (slopes * weight)[:, :, rows]
             matrix[part] += np.einsum("iaj,kaj->ik", heavy, slopes[:, :, rows])
             right[part] += np.einsum("iaj,aj->i", heavy, left[:, rows])
@@ -85,10 +87,10 @@ def _noise(logs: Sequence[CraftLog], left: Sequence[np.ndarray]) -> tuple[np.nda
     # Residuals of all logs together, the largest 5 % left out; 1.3 makes up for the part of the
     # variance they carry.
     joined = np.concatenate(
-        [one[:, log.felt.usable] for log, one in zip(logs, left, strict=True)], axis=1
+        [residual[:, log.measured.usable] for log, residual in zip(logs, left, strict=True)], axis=1
     )
     size = np.sort(np.abs(joined), axis=1)[:, : int(0.95 * joined.shape[1])]
-    block = max(4 * logs[0].felt.kernel.reach, logs[0].counts[-1])
+    block = max(4 * logs[0].measured.kernel.reach, logs[0].counts[-1])
     apart = np.array([rows_per_independent(axis, block) for axis in joined])
     return (size**2).mean(1) * 1.3 + 1e-18, apart
 
@@ -101,8 +103,8 @@ def fitted(
 ) -> Normal:
     """Normal equations about the coordinates that fit all rows, searched from those of the file or from near ones."""
     # Gauss-Newton from the file's numbers, with limited steps of numbers that enter as logarithms.
-    about = np.array([one.start for one in numbers]) if near is None else near
-    is_bent = [one.is_factor for one in numbers]
+    about = np.array([number.start for number in numbers]) if near is None else near
+    is_bent = [number.is_factor for number in numbers]
     normal = normal_about(logs, numbers, about)
     for _ in range(STEPS if near is None else 1):
         step = normal.solved(free)[-1] - about

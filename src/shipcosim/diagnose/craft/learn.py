@@ -29,11 +29,11 @@ class _HeldOut:
     squares: np.ndarray
     counts: np.ndarray
 
-    def gain(self, one: int, other: int) -> tuple[float, float]:
+    def gain(self, craft: int, other: int) -> tuple[float, float]:
         """Natural logarithm by which the error of one craft is above another's, and its standard error."""
         # Jackknife: the error without each part, of both crafts; the variance of their difference.
         without = _logs(self.squares, self.counts)
-        each = without[one] - without[other]
+        each = without[craft] - without[other]
         return float(each[-1]), float(_jackknife(each[:-1]))
 
 
@@ -63,15 +63,15 @@ def learn(logs: Sequence[CraftLog]) -> LearnedCraft | None:
     # Forward selection: add the number that lowers the held-out error most, until none does so
     # surely.
     numbers = numbers_of(model, typical)
-    free = [i for i, one in enumerate(numbers) if one.is_of_file]
+    free = [i for i, number in enumerate(numbers) if number.is_of_file]
     near = None
     while True:
         normal = fitted(logs, numbers, free, near)
         near = normal.solved(free)[-1]
         # Sets with one more number.
         tries = [free, *[[*free, i] for i in range(len(numbers)) if i not in free]]
-        found = _held_out(logs, normal, tries)
-        best = _best(found, tries, normal, logs)
+        held_out = _held_out(logs, normal, tries)
+        best = _best(held_out, tries, normal, logs)
         if best is None or len(free) >= MOST_NUMBERS:
             break
         free = best
@@ -84,9 +84,9 @@ def learn(logs: Sequence[CraftLog]) -> LearnedCraft | None:
 def _typical(logs: Sequence[CraftLog]) -> dict[str, np.ndarray]:
     each = [log.typical() for log in logs]
     return {
-        name: np.sqrt(np.mean([np.square(one[name]) for one in each], axis=0))
+        name: np.sqrt(np.mean([np.square(rms[name]) for rms in each], axis=0))
         for name in each[0]
-        if all(name in one for one in each)
+        if all(name in rms for rms in each)
     }
 
 
@@ -123,10 +123,10 @@ def _by_part(logs: Sequence[CraftLog], missed: Sequence[np.ndarray]) -> _HeldOut
     return _HeldOut(np.stack(squares, axis=-1), weights)
 
 
-def _best(found: _HeldOut, tries, normal: Normal, logs) -> list[int] | None:
+def _best(held_out: _HeldOut, tries, normal: Normal, logs) -> list[int] | None:
     """The set with the further number that lowers the error most; None if none lowers it clearly."""
     # Largest gain first; it must exceed its standard error, and the result must be a possible ship.
-    gains = [found.gain(0, k) for k in range(1, len(tries))]
+    gains = [held_out.gain(0, k) for k in range(1, len(tries))]
     order = sorted(range(len(gains)), key=lambda k: -gains[k][0])
     for k in order:
         gain, std = gains[k]
@@ -155,7 +155,7 @@ def _driving_share(logs: Sequence[CraftLog], model: ShipModel) -> float:
     # Power of the hull loads along the logged motion, and at twice its speed.
     for log in logs:
         for factor in (1.0, 2.0):
-            u, v, r = (factor * one[log.felt.usable] for one in log.seen[3:])
+            u, v, r = (factor * series[log.measured.usable] for series in log.seen[3:])
             X, Y, N = hull_loads(u, v, r, hull=model.parts["hull"])
             power = X * u + Y * v + N * r
             given += float(np.maximum(power, 0.0).sum())
@@ -167,9 +167,9 @@ def _without_idle(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> 
     """A set without numbers that gain nothing on parts that were held out: they are the file's."""
     # Drop the number whose absence costs least while that lowers the error.
     while len(free) > 1:
-        tries = [free, *([i for i in free if i != one] for one in free)]
-        found = _held_out(logs, normal, tries)
-        losses = [found.gain(k, 0)[0] for k in range(1, len(tries))]
+        tries = [free, *([i for i in free if i != left_out] for left_out in free)]
+        held_out = _held_out(logs, normal, tries)
+        losses = [held_out.gain(k, 0)[0] for k in range(1, len(tries))]
         least = int(np.argmin(losses))
         if losses[least] > 0.0:
             return free
@@ -181,28 +181,28 @@ def _stated(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> Learne
     """The learned numbers, with the gain of each and of all on held-out parts."""
     numbers = [normal.numbers[i] for i in free]
     # The learned set, the set without each number, and the file's ship.
-    tries = [free, *([i for i in free if i != one] for one in free), []]
-    values = normal.values(np.stack([normal.solved(one) for one in tries]))
+    tries = [free, *([i for i in free if i != left_out] for left_out in free), []]
+    values = normal.values(np.stack([normal.solved(attempt) for attempt in tries]))
     each = values[0]
-    found = _errors(logs, normal.numbers, values)
+    held_out = _errors(logs, normal.numbers, values)
     # Her rival: the file's ship in a steady current, learned alike.
     current = current_numbers()
     rival = fitted(logs, current, range(len(current)))
     in_current = rival.values(rival.solved(range(len(current)))[None])
-    alike = _errors(logs, current, in_current)
+    by_current = _errors(logs, current, in_current)
     steady = _by_part(logs, [log.missed_if_steady() for log in logs])
     # Jackknife standard deviation of each number.
     spread = _jackknife(each[:-1])
-    gains = [float(np.exp(found.gain(k, 0)[0])) for k in range(1, len(tries) - 1)]
+    gains = [float(np.exp(held_out.gain(k, 0)[0])) for k in range(1, len(tries) - 1)]
 
     def craft(values: np.ndarray) -> LearnedCraft:
         learned = [
-            LearnedNumber(one, float(values[i]), float(spread[i]), gain)
-            for one, i, gain in zip(numbers, free, gains, strict=True)
-            if values[i] != one.given
+            LearnedNumber(number, float(values[i]), float(spread[i]), gain)
+            for number, i, gain in zip(numbers, free, gains, strict=True)
+            if values[i] != number.given
         ]
         return learned_craft(
-            logs[0].model, learned, _of_all(found, (alike, steady), logs), len(logs)
+            logs[0].model, learned, _of_all(held_out, (by_current, steady), logs), len(logs)
         )
 
     if len(logs) == 1:
@@ -210,19 +210,24 @@ def _stated(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> Learne
     return replace(craft(each[-1]), each_without=tuple(map(craft, each[:-1])))
 
 
-def _of_all(found: _HeldOut, rivals: Sequence[_HeldOut], logs: Sequence[CraftLog]) -> HeldOutErrors:
+def _of_all(
+    held_out: _HeldOut, rivals: Sequence[_HeldOut], logs: Sequence[CraftLog]
+) -> HeldOutErrors:
     """Errors on held-out parts: of the learned craft, the first; of the given ship, the last; and of two rivals."""
     # Bootstrap over the parts: multinomial counts are draws with repetition.
-    weights = found.counts
+    weights = held_out.counts
     draws = np.random.default_rng(1).multinomial(
         weights.size, np.full(weights.size, 1.0 / weights.size), size=DRAWS
     )
     # Position and heading at the longest horizon: errors, and ratios of errors over the draws.
-    squares = np.concatenate([found.squares[[0, -1]], *(rival.squares for rival in rivals)])
+    squares = np.concatenate([held_out.squares[[0, -1]], *(rival.squares for rival in rivals)])
     sums = squares[:, [1, 3]] * weights
     errors = np.sqrt(sums.sum(-1) / weights.sum())
     drawn = np.sqrt(np.maximum(sums[:, 0] @ draws.T, 1e-30))
-    over = [tuple(map(float, np.quantile(drawn[0] / one, (0.025, 0.975)))) for one in drawn[1:]]
+    over = [
+        tuple(map(float, np.quantile(drawn[0] / rival_error, (0.025, 0.975))))
+        for rival_error in drawn[1:]
+    ]
     after, before, _, steady = ((float(place), float(np.degrees(turn))) for place, turn in errors)
     horizon = logs[0].counts[-1] * logs[0].record.step
     return HeldOutErrors(

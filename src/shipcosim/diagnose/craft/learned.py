@@ -149,11 +149,11 @@ class LearnedCraft:
     def on(self, model: ShipModel) -> ShipModel:
         """The ship with these numbers; their standard deviations are the new tolerances."""
         # The uncertainty of learning adds to the tolerances that the numbers have already.
-        known = {
+        stds = {
             path: float(np.hypot(model.tolerances.get(path, 0.0), std))
             for path, std in self.std.items()
         }
-        return model.with_values(self.after).with_tolerances(known)
+        return model.with_values(self.after).with_tolerances(stds)
 
     def without(self, model: ShipModel) -> ShipModel:
         """A ship with these numbers as her file has her."""
@@ -162,16 +162,16 @@ class LearnedCraft:
     @property
     def thrust(self) -> LearnedNumber | None:
         """Thrust over inertia, where it is learned and differs from the file's for sure."""
-        found = next((one for one in self.numbers if one.number.name == "thrust"), None)
-        if found is None or not is_beyond(found.value, found.std, PLAIN, SURE_OF_RATIO):
+        thrust = next((number for number in self.numbers if number.number.name == "thrust"), None)
+        if thrust is None or not is_beyond(thrust.value, thrust.std, PLAIN, SURE_OF_RATIO):
             return None
-        return found
+        return thrust
 
     def as_json(self) -> dict[str, Any]:
         """The entry ``craft`` of diagnosis.json."""
         errors = asdict(self.errors) if self.errors else None
         return {
-            "numbers": [one.as_json() for one in self.numbers],
+            "numbers": [number.as_json() for number in self.numbers],
             "logs": self.logs,
             "held_out": errors,
         }
@@ -193,19 +193,21 @@ def learned_craft(
     errors : HeldOutErrors, optional
     logs : int
     """
-    paths = dict.fromkeys(path for one in numbers for path in one.number.paths)
-    values = [one.value for one in numbers]
+    paths = dict.fromkeys(
+        path for learned_number in numbers for path in learned_number.number.paths
+    )
+    values = [learned_number.value for learned_number in numbers]
 
     def numbers_at(values: Sequence[float]) -> dict[str, float]:
-        ship = with_numbers(model, [one.number for one in numbers], values)
+        ship = with_numbers(model, [learned_number.number for learned_number in numbers], values)
         return {path: float(ship.get(path)) for path in paths}
 
     after = numbers_at(values)
     # Delta method: move each learned number by its standard deviation, and add the squares of what
     # that moves.
     squares = dict.fromkeys(paths, 0.0)
-    for i, one in enumerate(numbers):
-        moved = numbers_at([*values[:i], one.value + one.std, *values[i + 1 :]])
+    for i, number in enumerate(numbers):
+        moved = numbers_at([*values[:i], number.value + number.std, *values[i + 1 :]])
         squares = {
             path: square + (moved[path] - after[path]) ** 2 for path, square in squares.items()
         }
@@ -222,7 +224,9 @@ def ratio_alone(model: ShipModel, ratio: float, std: float) -> LearnedCraft | No
 
 def ratio_findings(ratio: float, std: float, causes: Mapping[str, Cause]) -> tuple[Finding, ...]:
     """Thrust over inertia as a finding; none if the catalogue lacks the cause."""
-    cause = next((one for one in causes.values() if one.sought_in == "comparison"), None)
+    cause = next(
+        (definition for definition in causes.values() if definition.sought_in == "comparison"), None
+    )
     if cause is None:
         return ()
     parameters = {next(iter(cause.parameters)): ParameterEstimate(ratio, std, "1")}

@@ -9,7 +9,7 @@ import numpy as np
 
 from shipcosim.diagnose.comparison.commanded import commanded_by
 from shipcosim.diagnose.comparison.errors import counts_of, sailed_steadily, starts_of
-from shipcosim.diagnose.comparison.measured_force import Felt, felt_by
+from shipcosim.diagnose.comparison.measured_force import MeasuredForce, measured_force_of
 from shipcosim.diagnose.craft.numbers import CraftNumber, with_numbers
 from shipcosim.diagnose.craft.thresholds import FEWEST_PARTS, MOST_PARTS, MOST_STARTS, PART
 from shipcosim.diagnose.inference.predictions import predicted, replayable
@@ -30,7 +30,7 @@ class CraftLog:
     ----------
     record, model : Record and ShipModel
         As from `replayable`: the ship as her file has her.
-    felt : Felt
+    measured : MeasuredForce
     seen : Motion
         What the instruments show, smoothed, (n,) arrays.
     inputs : Inputs
@@ -43,7 +43,7 @@ class CraftLog:
 
     record: Record
     model: ShipModel
-    felt: Felt
+    measured: MeasuredForce
     seen: Motion
     inputs: Inputs
     parts: np.ndarray
@@ -58,15 +58,15 @@ class CraftLog:
     def trained_without(self, part: int) -> np.ndarray:
         """Rows that are learned from where a part is held out: none whose smoothing touches it."""
         held_out = self.parts == part
-        near = np.convolve(held_out, np.ones(2 * self.felt.kernel.reach + 1), "same") > 0.5
-        return self.felt.usable & ~near
+        near = np.convolve(held_out, np.ones(2 * self.measured.kernel.reach + 1), "same") > 0.5
+        return self.measured.usable & ~near
 
     def left(self, model: ShipModel) -> np.ndarray:
         """Acceleration that a ship does not explain, smoothed, (..., 3, n) array."""
         # Modelled accelerations, smoothed with the measured ones' kernel.
-        rates = motion_rates(self.felt.motion, self.inputs, model)
-        told = np.stack(np.broadcast_arrays(rates.u, rates.v, rates.r), axis=-2)
-        return self.felt.rates - self.felt.kernel.smooth(told)
+        rates = motion_rates(self.measured.motion, self.inputs, model)
+        explained = np.stack(np.broadcast_arrays(rates.u, rates.v, rates.r), axis=-2)
+        return self.measured.rates - self.measured.kernel.smooth(explained)
 
     def slopes(
         self, numbers: Sequence[CraftNumber], at: np.ndarray
@@ -74,9 +74,11 @@ class CraftLog:
         """Unexplained acceleration at some coordinates of the numbers, (3, n), and what one of each explains, (p, 3, n)."""
         # Forward differences in every coordinate, all ships evaluated at once.
         tries = at + np.concatenate([np.zeros((1, at.size)), _DIFFERENCE * np.eye(at.size)])
-        values = [one.value(column)[:, None] for one, column in zip(numbers, tries.T, strict=True)]
-        found = self.left(with_numbers(self.model, numbers, values))
-        return found[0], (found[0] - found[1:]) / _DIFFERENCE
+        values = [
+            number.value(column)[:, None] for number, column in zip(numbers, tries.T, strict=True)
+        ]
+        unexplained = self.left(with_numbers(self.model, numbers, values))
+        return unexplained[0], (unexplained[0] - unexplained[1:]) / _DIFFERENCE
 
     def missed(self, numbers: Sequence[CraftNumber], values: np.ndarray) -> np.ndarray:
         """Errors of predictions, each with the values learned without its part.
@@ -105,25 +107,29 @@ class CraftLog:
         time = self.record.step * np.array(self.counts)[:, None, None]
         return self._off(sailed_steadily(start, time))
 
-    def _off(self, found: Motion) -> np.ndarray:
+    def _off(self, predicted: Motion) -> np.ndarray:
         """Predicted less seen place and heading after each horizon, (k, 3, h, s), of (h, k, s) arrays."""
         ends = (self.rows + np.array(self.counts)[:, None])[:, None]
         # Error of heading wrapped to half a turn, positions north and east.
-        turned = np.angle(np.exp(1j * (found.psi - self.seen.psi[ends])))
-        off = np.stack([found.x - self.seen.x[ends], found.y - self.seen.y[ends], turned])
+        turned = np.angle(np.exp(1j * (predicted.psi - self.seen.psi[ends])))
+        off = np.stack([predicted.x - self.seen.x[ends], predicted.y - self.seen.y[ends], turned])
         return np.moveaxis(off, 2, 0)
 
     def typical(self) -> dict[str, np.ndarray]:
         """Root mean squares of the velocities and of the commanded force, and of the wind where it is logged."""
-        usable = self.felt.usable
-        motion = self.felt.velocity[:, usable]
-        told = commanded_by(self.record, self.felt, self.model)
-        total = told.thrust[:, usable]
+        usable = self.measured.usable
+        motion = self.measured.velocity[:, usable]
+        commanded = commanded_by(self.record, self.measured, self.model)
+        total = commanded.thrust[:, usable]
         # The larger of commanded and needed load: thrusters may be idle or too weak.
-        needed = np.diag(self.model.mass_matrix)[:, None] * self.felt.rates[:, usable]
+        needed = np.diag(self.model.mass_matrix)[:, None] * self.measured.rates[:, usable]
         loads = np.sqrt((np.maximum(np.abs(total), np.abs(needed)) ** 2).mean(1))
-        found = {"motion": np.sqrt((motion**2).mean(1)), "loads": loads}
-        return found if told.wind is None else found | {"wind": np.sqrt((told.wind**2).mean(1))}
+        typical = {"motion": np.sqrt((motion**2).mean(1)), "loads": loads}
+        return (
+            typical
+            if commanded.wind is None
+            else typical | {"wind": np.sqrt((commanded.wind**2).mean(1))}
+        )
 
 
 def craft_log(
@@ -149,8 +155,8 @@ def craft_log(
         All of it is one part, as where there are other logs to learn from.
     """
     # Parts long enough for predictions within each; too few parts cannot be held out.
-    felt = felt_by(record, model.length)
-    seen = felt.smooth_motion
+    measured = measured_force_of(record, model.length)
+    seen = measured.smooth_motion
     counts = counts_of(horizons, record.step)
     size = record.time.size
     count = int(min(MOST_PARTS, size // (PART * counts[-1])))
@@ -160,7 +166,7 @@ def craft_log(
         return None
     parts = first_part + np.arange(size) * count // size
     # Predictions that stay within one part.
-    rows = starts_of(record, felt, horizons[-1])
+    rows = starts_of(record, measured, horizons[-1])
     rows = rows[parts[rows] == parts[rows + counts[-1]]]
     rows = rows[:: max(1, -(-rows.size // MOST_STARTS))]
     if np.unique(parts[rows]).size < count:
@@ -168,4 +174,4 @@ def craft_log(
     # Without delay and with the wind over ground, what is logged in a row acts in that row.
     logged, neutral = replayable(record, model, seen)
     inputs = Inputs(record.time, logged.units, *(logged.wind or (None, None)))
-    return CraftLog(logged, neutral, felt, seen, inputs, parts, rows, counts)
+    return CraftLog(logged, neutral, measured, seen, inputs, parts, rows, counts)

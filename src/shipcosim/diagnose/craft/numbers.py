@@ -113,46 +113,46 @@ def numbers_of(model: ShipModel, typical: dict[str, np.ndarray]) -> list[CraftNu
     """
     # Numbers of the file first: thrust, inertia, damping, and the hull's derivatives as groups.
     thrust = thrust_of(model)
-    found = [thrust] if thrust else []
+    numbers = [thrust] if thrust else []
     vessel = model.vessel
-    found.append(_factor("inertia in yaw", "yaw", (f"{vessel}.inertia_yaw", f"{vessel}.A66")))
+    numbers.append(_factor("inertia in yaw", "yaw", (f"{vessel}.inertia_yaw", f"{vessel}.A66")))
     for axis in AXES:
         for name, words in zip(
             DAMPING[axis], ("with the velocity", "with its square"), strict=True
         ):
             text = f"damping in {axis} {words}"
-            found.append(_coefficient(text, axis, name, -1, model, typical))
+            numbers.append(_coefficient(text, axis, name, -1, model, typical))
     for name, words in (
         ("cross_flow_drag", "drag across the hull"),
         ("lift", "side force by lift"),
     ):
         if model.get(f"{vessel}.{name}"):
-            found.append(_factor(words, "sway", (f"{vessel}.{name}",)))
+            numbers.append(_factor(words, "sway", (f"{vessel}.{name}",)))
     for letter, axis in zip("XYN", AXES, strict=True):
         paths = tuple(path for path in model.numbers if path.startswith(f"{vessel}.mmg_{letter}_"))
         paths = tuple(path for path in paths if model.get(path))
         if paths:
-            found.append(_factor(f"derivatives of {axis} (MMG)", axis, paths))
+            numbers.append(_factor(f"derivatives of {axis} (MMG)", axis, paths))
     # Coefficients that couple the axes, of either sign.
-    found += [
+    numbers += [
         _coefficient(f"{axis} by {_product(name)}", axis, name, 0, model, typical)
         for axis in AXES
         for name in COUPLINGS[axis]
     ]
     if model.get(f"{vessel}.A22") > 0.0:
-        found.append(_factor("added mass in sway", "sway", (f"{vessel}.A22",), is_of_file=False))
+        numbers.append(_factor("added mass in sway", "sway", (f"{vessel}.A22",), is_of_file=False))
     if "wind" in typical:
-        found.append(_factor("wind load", "", (f"{vessel}.wind_load_scale",), is_of_file=False))
+        numbers.append(_factor("wind load", "", (f"{vessel}.wind_load_scale",), is_of_file=False))
     # One thruster against the others, and thrust astern against that ahead.
     if thrust and len(thrust.paths) > 1:
-        found += [
+        numbers += [
             _factor(f"thrust of {path.rpartition('.')[0]}", "", (path,), is_of_file=False)
             for path in thrust.paths
         ]
     astern = astern_numbers(model)
     if astern:
-        found.append(_factor("thrust astern", "", astern, is_of_file=False))
-    return sorted(found, key=lambda one: not one.is_of_file)
+        numbers.append(_factor("thrust astern", "", astern, is_of_file=False))
+    return sorted(numbers, key=lambda number: not number.is_of_file)
 
 
 def current_numbers() -> list[CraftNumber]:
@@ -181,8 +181,8 @@ def _product(name: str) -> str:
     product = name.partition("_")[2]
     if not product.startswith("mod"):
         return " ".join(product)
-    one, other = product.removeprefix("mod")
-    return f"{other} |{one}|"
+    first, other = product.removeprefix("mod")
+    return f"{other} |{first}|"
 
 
 def _coefficient(
@@ -191,7 +191,7 @@ def _coefficient(
     """A coefficient of the hull, by her file or of a size that would matter."""
     # Size at which the coefficient's load equals a typical commanded load at typical speeds.
     speeds = dict(zip("uvr", typical["motion"], strict=True))
-    basis = np.prod([speeds[one] for one in name.partition("_")[2].removeprefix("mod")])
+    basis = np.prod([speeds[factor] for factor in name.partition("_")[2].removeprefix("mod")])
     size = float(typical["loads"][AXES.index(axis)] / max(basis, 1e-12))
     path = f"{model.vessel}.{name}"
     given = model.get(path)

@@ -112,7 +112,9 @@ class Separation:
         return {pair: nats for pair, nats in self.nats.items() if pair in wanted and nats >= CLEAR}
 
 
-def prescribed(found: Sequence[Separation], sets: Sequence[Any]) -> tuple[ExperimentDesign, ...]:
+def prescribed(
+    separations: Sequence[Separation], sets: Sequence[Any]
+) -> tuple[ExperimentDesign, ...]:
     """The fewest manoeuvres to sail next: each clearly separates the most of the pairs that are left.
 
     Among those of equal use one that is sought in logs comes first. Then one of the shortest is taken: among
@@ -120,7 +122,7 @@ def prescribed(found: Sequence[Separation], sets: Sequence[Any]) -> tuple[Experi
 
     Parameters
     ----------
-    found : sequence of Separation
+    separations : sequence of Separation
     sets : sequence
         Sets of causes, with their `hypotheses`, as they were compared.
 
@@ -129,23 +131,25 @@ def prescribed(found: Sequence[Separation], sets: Sequence[Any]) -> tuple[Experi
     tuple of ExperimentDesign
         Empty where no manoeuvre separates any pair.
     """
-    left = set(found[0].nats) if found else set()
+    left = set(separations[0].nats) if separations else set()
     chosen = []
     while left:
         # Greedy cover: those that separate most of the pairs that remain.
-        most = max(len(one.clear(left)) for one in found)
+        most = max(len(separation.clear(left)) for separation in separations)
         if not most:
             break
-        able = [one for one in found if len(one.clear(left)) == most]
-        able = [one for one in able if one.read] or able
+        able = [separation for separation in separations if len(separation.clear(left)) == most]
+        able = [separation for separation in able if separation.read] or able
         # Of the shortest the one with most evidence per minute.
-        longest = _ABOUT * min(one.minutes for one in able)
-        short = [one for one in able if one.minutes <= longest]
-        best = max(short, key=lambda one: min(one.clear(left).values()) / one.minutes)
-        told = best.clear(left)
-        separates = tuple(differing(sets[a], sets[b]) for a, b in told)
+        longest = _ABOUT * min(separation.minutes for separation in able)
+        short = [separation for separation in able if separation.minutes <= longest]
+        best = max(
+            short, key=lambda separation: min(separation.clear(left).values()) / separation.minutes
+        )
+        separated = best.clear(left)
+        separates = tuple(differing(sets[a], sets[b]) for a, b in separated)
         chosen.append(ExperimentDesign(best.manoeuvre, best.minutes, separates))
-        left = left - told.keys()
+        left = left - separated.keys()
     return tuple(chosen)
 
 
@@ -179,20 +183,20 @@ def design_experiment(
     )
     with threadpool_limits(1):
         apart = separations(problem, fits, manoeuvres)
-    found = [
+    computed = [
         Separation(
-            one.name,
-            round(float(one.minutes), 1),
+            manoeuvre.name,
+            round(float(manoeuvre.minutes), 1),
             {pair: float(nats[i]) for pair, nats in apart.items()},
         )
-        for i, one in enumerate(manoeuvres)
+        for i, manoeuvre in enumerate(manoeuvres)
     ]
-    return next(iter(prescribed(found, fits)), None)
+    return next(iter(prescribed(computed, fits)), None)
 
 
-def differing(one: Any, other: Any) -> tuple[str, str]:
+def differing(first: Any, other: Any) -> tuple[str, str]:
     """Causes that two sets, with their `hypotheses`, do not share."""
-    a, b = ([hypothesis.label for hypothesis in fit.hypotheses] for fit in (one, other))
+    a, b = ([hypothesis.label for hypothesis in fit.hypotheses] for fit in (first, other))
     only_a, only_b = (
         " + ".join(x for x in mine if x not in yours) for mine, yours in ((a, b), (b, a))
     )
@@ -205,8 +209,8 @@ def manoeuvre_of(
     """The manoeuvre of the library that a design prescribes, step by step."""
     if design is None:
         return None
-    known = library(problem.model, cannot_turn(problem.record, problem.model))
-    return next((one for one in known if one.name == design.manoeuvre), None)
+    manoeuvres = library(problem.model, cannot_turn(problem.record, problem.model))
+    return next((manoeuvre for manoeuvre in manoeuvres if manoeuvre.name == design.manoeuvre), None)
 
 
 def separations(
@@ -237,25 +241,31 @@ def separations(
     ]
     motions, records, through = _simulated(problem, models, manoeuvres)
     noise = sized(problem.noise, step_for(problem.model) / problem.record.step)
-    known = _shared_columns(fits)
-    ends = [rows_of(one, records[0].step) for one in manoeuvres]
-    found = {pair: np.full(len(manoeuvres), np.inf) for pair in combinations(range(len(fits)), 2)}
+    shared = _shared_columns(fits)
+    ends = [rows_of(manoeuvre, records[0].step) for manoeuvre in manoeuvres]
+    gains_by_pair = {
+        pair: np.full(len(manoeuvres), np.inf) for pair in combinations(range(len(fits)), 2)
+    }
     for a, (motion, record) in enumerate(zip(motions, records, strict=True)):
         # The instruments show the true motion without noise, as expected values are wanted.
         measured = np.moveaxis(rows_first(readings(motion, models[a])), 0, -2)
         record = replace(record, measured=measured)
         right = linearise(motion, record, models[a], [])
-        tolerated = linearise(motion, record, _in_true_wind(problem.model), known)
+        tolerated = linearise(motion, record, _in_true_wind(problem.model), shared)
         # Innovations of each other fit on this truth, filtered with its columns.
         for b in range(len(fits)):
             if b != a:
-                there = _beside(fits[b], models[b], motion, record, right, tolerated, known)
+                there = _linear_problem(
+                    fits[b], models[b], motion, record, right, tolerated, shared
+                )
                 white = innovations(there, noise, record).white
                 pair = min(a, b), max(a, b)
                 # The evidence that it loses; the smaller of both being true counts.
                 gains = [_missed(white[:end, i], fits[b].covariance) for i, end in enumerate(ends)]
-                found[pair] = np.minimum(found[pair], np.where(through[a], gains, np.nan))
-    return found
+                gains_by_pair[pair] = np.minimum(
+                    gains_by_pair[pair], np.where(through[a], gains, np.nan)
+                )
+    return gains_by_pair
 
 
 def _in_true_wind(model: ShipModel) -> ShipModel:
@@ -265,28 +275,30 @@ def _in_true_wind(model: ShipModel) -> ShipModel:
 
 def _shared_columns(fits):
     """Columns of known numbers of all fits, each once."""
-    found = {}
+    columns = {}
     for fit in fits:
         for column in fit.columns:
-            found.setdefault(column.key, column)
-    own = set()
+            columns.setdefault(column.key, column)
+    of_causes = set()
     for fit in fits:
         turned = paths_of(fit.hypotheses)
-        turned |= {path for one in fit.hypotheses for path in one.definition.companions}
-        own |= {column.key for column in fit.columns if column.gives_way(turned)}
-    return [column for key, column in found.items() if key not in own]
+        turned |= {
+            path for hypothesis in fit.hypotheses for path in hypothesis.definition.companions
+        }
+        of_causes |= {column.key for column in fit.columns if column.gives_way(turned)}
+    return [column for key, column in columns.items() if key not in of_causes]
 
 
-def _beside(fit, model, motion, record, right, tolerated, known):
+def _linear_problem(fit, model, motion, record, right, tolerated, common):
     """The problem of a fit on a motion by another truth: what it misses more than the truth, and all its columns."""
-    shared = [column.key for column in known]
-    own = [column for column in fit.columns if column.key not in shared]
+    shared = [column.key for column in common]
+    of_fit = [column for column in fit.columns if column.key not in shared]
     # Difference of what both models miss: only what the wrong model adds.
-    mine = linearise(motion, record, model, own)
+    mine = linearise(motion, record, model, of_fit)
     mine.driven[..., 0] -= right.driven[..., 0]
     mine.seen[..., 0] -= right.seen[..., 0]
     both = beside(mine, tolerated)  # missed, own, all known
-    order = {column.key: i for i, column in enumerate([*own, *known], start=1)}
+    order = {column.key: i for i, column in enumerate([*of_fit, *common], start=1)}
     return both.chosen([order[column.key] for column in fit.columns])
 
 
@@ -361,12 +373,12 @@ def keeps_track(
 ) -> np.ndarray:
     """Whether the ship keeps near her track, and in the area where she drifts or is pushed. (c,)"""
     length = dp.model.length
-    found = []
+    keeps = []
     # Distance off the track and from the start, in ship lengths.
     off = np.hypot(motion.x - track.x, motion.y - track.y) / length
     far = np.hypot(motion.x - track.x[:, :1], motion.y - track.y[:, :1]) / length
-    for i, one in enumerate(manoeuvres):
-        rows = slice(0, rows_of(one, dp.h))
-        near = _ROOM if one.free or one.pushes else _ASTRAY
-        found.append((off[i, rows] < near).all() and (far[i, rows] < _ROOM).all())
-    return np.array(found)
+    for i, manoeuvre in enumerate(manoeuvres):
+        rows = slice(0, rows_of(manoeuvre, dp.h))
+        near = _ROOM if manoeuvre.free or manoeuvre.pushes else _ASTRAY
+        keeps.append((off[i, rows] < near).all() and (far[i, rows] < _ROOM).all())
+    return np.array(keeps)

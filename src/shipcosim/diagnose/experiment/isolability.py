@@ -51,42 +51,44 @@ def isolability(excitation: Excitation) -> tuple[Isolability, ...]:
     # Information on all columns, the log's own residual left out.
     information = excitation.products[1:, 1:]
     # Laws that turn over time are left out: the steady ones stand for them.
-    groups = [one for one in excitation.groups if one[0].definition.law != "turning"]
+    groups = [group for group in excitation.groups if group[0].definition.law != "turning"]
     ours = {place for _, places in excitation.groups for place in places}
-    found: dict[str, Isolability] = {}
+    best: dict[str, Isolability] = {}
     for cause, places in groups:
         # Known numbers are free within their tolerances, except those that the cause itself stands for.
         taken = {path for place in places for path in excitation.columns[place].changes}
-        known = [
+        of_ship = [
             place
             for place, column in enumerate(excitation.columns)
             if place not in ours and column.prior > 0.0 and not column.gives_way(taken)
         ]
-        left = _without(information, known, [excitation.columns[place].prior for place in known])
+        left = _without(
+            information, of_ship, [excitation.columns[place].prior for place in of_ship]
+        )
         # Of a vector that direction counts which shows most.
         shown = max(places, key=lambda place: left[place, place])
         gain = 0.5 * left[shown, shown]
         # Of one cause in several directions the nearest counts.
-        alike: dict[str, float] = {}
+        similar: dict[str, float] = {}
         for other, others in groups:
             if other.label != cause.label:
                 remaining = 0.5 * _unexplained(left, shown, others)
                 if remaining < min(APART, gain):
-                    alike[other.label] = min(remaining, alike.get(other.label, np.inf))
+                    similar[other.label] = min(remaining, similar.get(other.label, np.inf))
         # A cause that does not show cannot be told from others either.
         is_seen = expected_gain(2.0 * gain) >= excitation.least
-        names = tuple(sorted(alike, key=alike.__getitem__)) if is_seen else ()
-        one = Isolability(cause.label, float(gain), is_seen, names)
+        names = tuple(sorted(similar, key=similar.__getitem__)) if is_seen else ()
+        isolable = Isolability(cause.label, float(gain), is_seen, names)
         # A cause that is sought in several directions: the one that shows least stands for it.
-        if cause.label not in found or gain < found[cause.label].gain:
-            found[cause.label] = one
-    return tuple(found.values())
+        if cause.label not in best or gain < best[cause.label].gain:
+            best[cause.label] = isolable
+    return tuple(best.values())
 
 
-def _without(information, known, priors):
+def _without(information, of_ship, priors):
     """Information on all columns while known numbers may be off: the Schur complement of theirs."""
-    among = information[np.ix_(known, known)] + np.diag(1.0 / np.square(priors))
-    across = information[known]
+    among = information[np.ix_(of_ship, of_ship)] + np.diag(1.0 / np.square(priors))
+    across = information[of_ship]
     return information - across.T @ np.linalg.solve(among, across)
 
 

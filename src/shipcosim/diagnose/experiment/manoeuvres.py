@@ -99,7 +99,7 @@ def library(model: ShipModel, fixed: Collection[str] = ()) -> list[Manoeuvre]:
     mass = model.parts["hull"].mass
     turn = 0.5 * np.pi
     corners = [(1.5, side, 0.0), (1.5, side, side), (1.5, 0.0, side), (1.5, 0.0, 0.0)]
-    found = [
+    manoeuvres = [
         Manoeuvre(
             "turn by 90 deg and hold", _legs(T, (0.5, 0, 0, 0), (1.5, 0, 0, turn), (2, 0, 0, turn))
         ),
@@ -125,7 +125,7 @@ def library(model: ShipModel, fixed: Collection[str] = ()) -> list[Manoeuvre]:
         ),
     ]
     if model.azimuths:
-        found.append(
+        manoeuvres.append(
             _pulses(
                 "reversal of each azimuth thruster",
                 T,
@@ -133,7 +133,7 @@ def library(model: ShipModel, fixed: Collection[str] = ()) -> list[Manoeuvre]:
             )
         )
     sweeps = _sweeps(model, T, [name for name in model.azimuths if name not in fixed], mass * _PUSH)
-    return [one for one in (*found, *sweeps) if one.minutes <= LONGEST]
+    return [manoeuvre for manoeuvre in (*manoeuvres, *sweeps) if manoeuvre.minutes <= LONGEST]
 
 
 def _legs(
@@ -230,17 +230,20 @@ def planned(
     tuple of Motion, Record, dict of str to (c, n) bool array
         (c, n) arrays; by thruster, where it does as planned. The shorter end with keeping the place.
     """
-    rows = max(rows_of(one, dp.h) for one in manoeuvres)
+    rows = max(rows_of(manoeuvre, dp.h) for manoeuvre in manoeuvres)
     time = dp.h * np.arange(rows)
     # Tracks of all manoeuvres on the same times, with mean wind throughout.
     track = Motion(
-        *(np.stack(s) for s in zip(*(_track(one, time, start) for one in manoeuvres), strict=True))
+        *(
+            np.stack(s)
+            for s in zip(*(_track(manoeuvre, time, start) for manoeuvre in manoeuvres), strict=True)
+        )
     )
     shape = len(manoeuvres), rows
     series = None if wind is None else (np.full(shape, wind[0]), np.full(shape, wind[1]))
     plans = [
-        _thrusters(one, time, at_rows(track, i), start, wind, dp)
-        for i, one in enumerate(manoeuvres)
+        _thrusters(manoeuvre, time, at_rows(track, i), start, wind, dp)
+        for i, manoeuvre in enumerate(manoeuvres)
     ]
     units = {
         name: (np.stack([p[name][0] for p in plans]), np.stack([p[name][1] for p in plans]))
@@ -248,7 +251,9 @@ def planned(
     }
     blank = np.full((len(manoeuvres), rows, 6), np.nan)
     record = Record(start[0] + time, blank, units, series, np.ones(rows, bool))
-    held = {name: np.stack([_held(one, name, time) for one in manoeuvres]) for name in units}
+    held = {
+        name: np.stack([_held(manoeuvre, name, time) for manoeuvre in manoeuvres]) for name in units
+    }
     return track, record, held
 
 
@@ -267,11 +272,11 @@ def _track(manoeuvre, time, start):
     """The track by smooth legs: at rest at both ends, without a step in acceleration."""
     at = 0.0
     place = np.zeros(3)
-    found = np.zeros((3, time.size))
+    way = np.zeros((3, time.size))
     # Quintic from rest to rest, 10 s^3 - 15 s^4 + 6 s^5, added leg by leg.
     for duration, *where in manoeuvre.legs:
         share = np.clip((time - at) / duration, 0.0, 1.0)
-        found += (
+        way += (
             (np.array(where) - place)[:, None] * share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
         )
         at = at + duration
@@ -280,9 +285,9 @@ def _track(manoeuvre, time, start):
     _, north, east, heading = start
     c = np.cos(heading)
     s = np.sin(heading)
-    x = north + c * found[0] - s * found[1]
-    y = east + s * found[0] + c * found[1]
-    psi = heading + found[2]
+    x = north + c * way[0] - s * way[1]
+    y = east + s * way[0] + c * way[1]
+    psi = heading + way[2]
     x_dot, y_dot, r = (np.gradient(value, time) for value in (x, y, psi))
     return Motion(x, y, psi, *to_body(psi, x_dot, y_dot), r)
 
@@ -350,10 +355,10 @@ def _load_of(name, force, azimuth, model):
 def _opposed_forces(dp):
     """Forces of the azimuth thrusters against each other, slipstreams outwards, that leave no load on the ship."""
     model = dp.model
-    found = {name: np.zeros(2) for name in dp.model.thrusters}
+    forces = {name: np.zeros(2) for name in dp.model.thrusters}
     able = [name for name in model.azimuths if name not in dp.fixed]
     if len(able) < 2:
-        return found
+        return forces
     # Wish to pull inwards, less the part that leaves a net load: projection on the null space of B.
     places = np.array([[model.parts[name].x, model.parts[name].y] for name in able])
     inwards = places.mean(0) - places
@@ -361,7 +366,7 @@ def _opposed_forces(dp):
     B = np.hstack([[[1.0, 0.0], [0.0, 1.0], [-y, x]] for x, y in places])
     wish = inwards.ravel() - np.linalg.pinv(B) @ (B @ inwards.ravel())
     size = _OPPOSED * model.parts["hull"].mass
-    return found | {
+    return forces | {
         name: size * force for name, force in zip(able, wish.reshape(-1, 2), strict=True)
     }
 

@@ -54,11 +54,11 @@ class Excitation:
         blank = self.products.copy()
         blank[0, :] = blank[:, 0] = 0.0
         # Known numbers are free within tolerances; causes are switched on one at a time.
-        known = np.array([column.prior for column in self.columns])
+        tolerance = np.array([column.prior for column in self.columns])
         for _, places in self.groups:
-            known[places] = 0.0
+            tolerance[places] = 0.0
         for hypothesis, places in self.groups:
-            prior = known.copy()
+            prior = tolerance.copy()
             prior[places] = 1.0
             # Known numbers that the cause changes itself have no tolerance of their own beside it.
             taken = {path for i in places for path in self.columns[i].changes}
@@ -75,9 +75,11 @@ def excitation_of(log: JudgedLog) -> Excitation:
     """Information of a log on each cause that can be sought in it."""
     problem = log.problem
     # Known numbers and first columns of all causes, about the ship without one.
-    known = without_causes(log.fits).columns
-    columns = [*known, *regressors_of(problem.hypotheses)]
-    groups = [(one, places) for one, _, places in placed(problem.hypotheses, len(known))]
+    of_ship = without_causes(log.fits).columns
+    columns = [*of_ship, *regressors_of(problem.hypotheses)]
+    groups = [
+        (hypothesis, places) for hypothesis, _, places in placed(problem.hypotheses, len(of_ship))
+    ]
     products = problem.gram(problem.base_of(columns)).products
     without_wind = NULL_GAIN_WITHOUT_WIND if problem.record.wind is None else 0.0
     least = TESTABLE + usual_gain(problem.model) + without_wind
@@ -92,16 +94,18 @@ def untestable_causes(log: JudgedLog, excitation: Excitation) -> tuple[str, ...]
     All causes where something keeps the log from telling any.
     """
     problem = log.problem
-    found = log.explained.identification
+    identification = log.explained.identification
     # Faults of the thrusters' labels, where a log does not tell whether it has them.
     judged = (
-        found.comparison is None
-        or found.comparison.labels is None
-        or found.comparison.labels.is_judged
+        identification.comparison is None
+        or identification.comparison.labels is None
+        or identification.comparison.labels.is_judged
     )
     of_log = (*(() if is_testable(problem) else ("clock",)), *(() if judged else THRUSTER_LABELS))
-    everywhere = {hypothesis.cause for hypothesis in hypotheses_of(found.causes, problem.model)}
-    if found.comparison.obstacles:
+    everywhere = {
+        hypothesis.cause for hypothesis in hypotheses_of(identification.causes, problem.model)
+    }
+    if identification.comparison.obstacles:
         return tuple(sorted({*of_log, *everywhere}))
     identifiable = {hypothesis.cause for hypothesis in problem.hypotheses}
     return tuple(sorted({*not_testable(excitation), *of_log, *(everywhere - identifiable)}))
@@ -112,8 +116,8 @@ def hidden_by_form(log: JudgedLog, excitation: Excitation) -> tuple[str, ...]:
     model = log.problem.model
     if not model.form_scale or model.directions:
         return ()
-    known = [_as_known(column, model) for column in excitation.columns]
-    of_known_form = replace(excitation, columns=known, least=TESTABLE)
+    of_model_form = [_as_known(column, model) for column in excitation.columns]
+    of_known_form = replace(excitation, columns=of_model_form, least=TESTABLE)
     return tuple(sorted({*not_testable(excitation)} - {*not_testable(of_known_form)}))
 
 
@@ -180,11 +184,11 @@ def visible_sizes(excitation: Excitation) -> tuple[VisibleSize, ...]:
             of_evidence = spread * np.sqrt(2.0 * wanted * (1.0 + spread**2))
             least = max(of_evidence, hypothesis.definition.least, DEVIATIONS * spread)
             path = next(iter(excitation.columns[place].changes))
-            parameter = next(one for one in hypothesis.parameters if path in one.paths)
+            parameter = next(of for of in hypothesis.parameters if path in of.paths)
             # The estimate varies by the log's noise, and the well ship's own number within its tolerance.
             varies = np.hypot(spread, parameter.tolerance / parameter.typical)
             size = least + NINE_OF_TEN * MORE_THAN_NOISE * varies
-            found = VisibleSize(
+            visible = VisibleSize(
                 hypothesis.cause,
                 hypothesis.component,
                 "" if is_vector else parameter.name,
@@ -192,9 +196,9 @@ def visible_sizes(excitation: Excitation) -> tuple[VisibleSize, ...]:
                 parameter.unit,
             )
             # A vector is sought in several directions: the one that shows least counts.
-            key = hypothesis.label, found.parameter
-            if key not in sizes or found.size > sizes[key].size:
-                sizes[key] = found
+            key = hypothesis.label, visible.parameter
+            if key not in sizes or visible.size > sizes[key].size:
+                sizes[key] = visible
     return tuple(sizes.values())
 
 

@@ -110,20 +110,24 @@ def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
         As given, or with the course and of the rows in which the cause acts.
     """
     # Nothing is sought where the log cannot tell causes or a label is still open.
-    found = given.identification
-    if found.comparison.obstacles or any(fault.alternatives for fault in found.faults):
+    identification = given.identification
+    if identification.comparison.obstacles or any(
+        fault.alternatives for fault in identification.faults
+    ):
         return given
     # Log-evidence of steady causes, less the cost of another form: the score to beat.
     steady = given.fits[0].score - _cost(given)
     # The same search with other noise or form, as the result must not hang on these.
-    sought = [(one, _clear_tries(one)) for one in (given, *_otherwise(given, plain))]
+    sought = [(log, _clear_tries(log)) for log in (given, *_otherwise(given, plain))]
     enough = [pair for pair in sought if _worth(pair) >= steady + COURSE_GAIN]
-    one, tries = max(sought, key=_worth)
-    if tries and not enough and max(found.problem.noise.walk[:2]) > EXPLAINED_WALK:
+    chosen, tries = max(sought, key=_worth)
+    if tries and not enough and max(identification.problem.noise.walk[:2]) > EXPLAINED_WALK:
         # Noise that was tuned without the course hides it: each side is weighed beside its own noise.
-        tuned = _with_noise(one, tuned_noise(one.identification.problem, tries[0]))
+        tuned = _with_noise(chosen, tuned_noise(chosen.identification.problem, tries[0]))
         first = given.fits[0]
-        rival = _with_noise(given, tuned_noise(found.problem, first)).identification.problem
+        rival = _with_noise(
+            given, tuned_noise(identification.problem, first)
+        ).identification.problem
         again = fitted(rival, first.hypotheses, first.values)
         steady = max(steady, again.score - _cost(given))
         pair = tuned, _clear_tries(tuned)
@@ -134,9 +138,9 @@ def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
     problem = explained.identification.problem
     # Fewer causes are preferred where they explain the log nearly as well.
     best = next(
-        one
-        for one in sorted(tries, key=lambda one: len(one.of.base.hypotheses))
-        if one.score > tries[0].score - ENOUGH * len(tries[0].of.base.hypotheses) - APART
+        attempt
+        for attempt in sorted(tries, key=lambda each: len(each.of.base.hypotheses))
+        if attempt.score > tries[0].score - ENOUGH * len(tries[0].of.base.hypotheses) - APART
     )
     chance, rivals = _rivals(best, tries, [others[0] for _, others in enough])
     hypothesis = best.of.hypothesis
@@ -168,21 +172,21 @@ def _rivals(
     the name depends on is not known.
     """
     weights = {best.of.hypothesis.label: 1.0}
-    known = {best.of.hypothesis.label: best.of.hypothesis}
-    near = [(one, float(np.exp(one.score - best.score))) for one in tries]
+    by_label = {best.of.hypothesis.label: best.of.hypothesis}
+    near = [(attempt, float(np.exp(attempt.score - best.score))) for attempt in tries]
     # Weights by log-evidence; the best alternatives from other noise or form count in full.
-    for one, weight in [*((one, 1.0) for one in others), *near]:
-        hypothesis = one.of.hypothesis
+    for fit, weight in [*((rival, 1.0) for rival in others), *near]:
+        hypothesis = fit.of.hypothesis
         if weight > np.exp(-APART) and hypothesis.label not in weights:
             weights[hypothesis.label] = weight
-            known[hypothesis.label] = hypothesis
+            by_label[hypothesis.label] = hypothesis
     # Posterior probabilities with equal odds beforehand.
     total = sum(weights.values())
     chance, *rest = (min(weight / total, 0.99) for weight in weights.values())
-    _, *hypotheses = known.values()
+    _, *hypotheses = by_label.values()
     return chance, tuple(
-        Candidate(one.cause, one.component, share)
-        for one, share in zip(hypotheses, rest, strict=True)
+        Candidate(hypothesis.cause, hypothesis.component, share)
+        for hypothesis, share in zip(hypotheses, rest, strict=True)
     )
 
 
@@ -193,9 +197,9 @@ def _clear_tries(explained: ExplainedLog) -> list[_Fitted]:
     for base in _bases(explained):
         # All columns of the base once, for every cause beside it.
         linear = base.linear
-        tried += [_fitted(problem, one, linear) for one in _tries(problem, base, linear)]
+        tried += [_fitted(problem, attempt, linear) for attempt in _tries(problem, base, linear)]
     return sorted(
-        (one for one in tried if one is not None and _is_clear(one)), key=lambda one: -one.score
+        (fit for fit in tried if fit is not None and _is_clear(fit)), key=lambda fit: -fit.score
     )
 
 
@@ -203,11 +207,11 @@ def _otherwise(given: ExplainedLog, plain: Identification) -> Iterator[Explained
     """The log without a cause as it is sought besides: by the model's form, and with a force that wanders no faster
     than on healthy ships, as noise that was tuned without the course grows to cover it.
     """
-    found = given.identification
-    if found.faults != plain.faults:  # labels were corrected since
+    identification = given.identification
+    if identification.faults != plain.faults:  # labels were corrected since
         return
     # The plain form, where another one was learnt.
-    if found.problem.model.form_scale:
+    if identification.problem.model.form_scale:
         yield replace(given, identification=plain, fits=(fitted(plain.problem),))
     # Tuned noise may have grown to cover the cause: bound the random walk by that of healthy ships.
     walk = np.minimum(plain.problem.noise.walk, CALM_WALK * np.array([1.0, 1.0, WALK_IN_YAW]))
@@ -218,10 +222,10 @@ def _otherwise(given: ExplainedLog, plain: Identification) -> Iterator[Explained
 
 def _with_noise(explained: ExplainedLog, noise: Noise) -> ExplainedLog:
     """The log with another noise, without a cause."""
-    found = explained.identification
-    problem = prepared(replace(found.problem, noise=noise), rounds=1)
+    identification = explained.identification
+    problem = prepared(replace(identification.problem, noise=noise), rounds=1)
     return replace(
-        explained, identification=replace(found, problem=problem), fits=(fitted(problem),)
+        explained, identification=replace(identification, problem=problem), fits=(fitted(problem),)
     )
 
 
@@ -242,42 +246,50 @@ def _bases(explained: ExplainedLog) -> list[Fit]:
 
 def _tries(problem: IdentificationProblem, base: Fit, linear: InParts) -> list[_Try]:
     """The likeliest courses of the likeliest causes beside a fit, each by the evidence of its own columns."""
-    known = {hypothesis.label for hypothesis in base.hypotheses}
+    in_base = {hypothesis.label for hypothesis in base.hypotheses}
     # A cause whose vector turns already varies over the log.
     wanted = [
-        one
-        for one in problem.hypotheses
-        if one.label not in known and one.definition.law != "turning"
+        hypothesis
+        for hypothesis in problem.hypotheses
+        if hypothesis.label not in in_base and hypothesis.definition.law != "turning"
     ]
     if not wanted:
         return []
     # Coarse search: all courses by sums over blocks of the log; the likeliest causes go on.
     blocks = _blocks(problem, base, linear, wanted)
-    first = sorted(_first_sight(blocks, wanted), key=lambda one: -one.score)
-    labels = list(dict.fromkeys(one.hypothesis.label for one in first))[: 2 * LIKELIEST_COURSES]
-    chosen = [one for one in first if one.hypothesis.label in labels]
+    first = sorted(_first_sight(blocks, wanted), key=lambda attempt: -attempt.score)
+    labels = list(dict.fromkeys(attempt.hypothesis.label for attempt in first))[
+        : 2 * LIKELIEST_COURSES
+    ]
+    chosen = [attempt for attempt in first if attempt.hypothesis.label in labels]
     time = problem.record.time
     # Filter the columns of the chosen courses row by row, all in one pass.
-    for one in chosen:
-        linear = beside(linear, _shaped(problem.base_of(one.group), one.course.at(time)))
+    for candidate in chosen:
+        linear = beside(
+            linear, _shaped(problem.base_of(candidate.group), candidate.course.at(time))
+        )
     products = problem.gram(linear).products
-    found: dict[str, _Try] = {}
+    best: dict[str, _Try] = {}
     place = len(base.columns)
     # Evidence of each course, with what the search over its times costs; the best course of each
     # cause.
-    for one in chosen:
-        own = range(place, place + len(one.group))
-        place += len(one.group)
+    for candidate in chosen:
+        own = range(place, place + len(candidate.group))
+        place += len(candidate.group)
         gain, theta, _ = _weighed(products, base, own)
-        scored = one._replace(score=gain + one.occam, values=_values(problem, one.group, theta))
-        label = one.hypothesis.label
-        if label not in found or scored.score > found[label].score:
-            found[label] = scored
-    likely = sorted(found.values(), key=lambda one: -one.score)[:LIKELIEST_COURSES]
+        scored = candidate._replace(
+            score=gain + candidate.occam, values=_values(problem, candidate.group, theta)
+        )
+        label = candidate.hypothesis.label
+        if label not in best or scored.score > best[label].score:
+            best[label] = scored
+    likely = sorted(best.values(), key=lambda attempt: -attempt.score)[:LIKELIEST_COURSES]
     # Further spells are found at first sight, and fitted beside the course without them.
-    further = (_with_further_spells(blocks, one) for one in likely)
+    further = (_with_further_spells(blocks, attempt) for attempt in likely)
     changed = [
-        one for one, other in zip(further, likely, strict=True) if one.course != other.course
+        longer
+        for longer, other in zip(further, likely, strict=True)
+        if longer.course != other.course
     ]
     return [*likely, *changed]
 
@@ -287,41 +299,45 @@ def _values(problem, group, theta) -> dict[str, float]:
     return moved(group, theta, problem.model.get)
 
 
-def _fitted(problem: IdentificationProblem, one: _Try, linear: InParts) -> _Fitted | None:
+def _fitted(problem: IdentificationProblem, attempt: _Try, linear: InParts) -> _Fitted | None:
     """A cause with a course, linearised about its size while it acts and about zero otherwise.
 
     None where the ship's loads are no numbers along the log.
     """
-    base = one.base
+    base = attempt.base
     count = len(base.columns)
-    own = own_columns(problem, (one.hypothesis,))
+    cause_columns = own_columns(problem, (attempt.hypothesis,))
     # Columns about the ship without the cause, where its share is 0.
-    shares = one.course.at(problem.record.time)
-    plain = beside(linear, linearised_by_parts(base.about, base.record, base.model, own))
-    prior = np.array([column.prior for column in (*base.columns, *own)])
-    values = bounded((one.hypothesis,), one.values)
+    shares = attempt.course.at(problem.record.time)
+    plain = beside(linear, linearised_by_parts(base.about, base.record, base.model, cause_columns))
+    prior = np.array([column.prior for column in (*base.columns, *cause_columns)])
+    values = bounded((attempt.hypothesis,), attempt.values)
     # Gauss-Newton: columns about the present size too, as causes need not be linear; both are mixed
     # by the course.
     for _ in range(ROUNDS_OF_COURSE):
         model = base.model.with_values(values)
-        there = linearised_by_parts(base.about, base.record, model, own)
+        there = linearised_by_parts(base.about, base.record, model, cause_columns)
         mixed = _mixed(plain, there, shares, count)
         filtered = problem.gram(mixed)
         if not np.isfinite(filtered.products).all():
             return None
         # The base stays at its own point of linearisation, the cause at its present values.
-        centre = np.concatenate([base.centre, [theta_of(column, model, problem) for column in own]])
+        centre = np.concatenate(
+            [base.centre, [theta_of(column, model, problem) for column in cause_columns]]
+        )
         score, theta, covariance = evidence(filtered.products, prior, centre)
-        values = bounded((one.hypothesis,), values | _values(problem, own, theta[count:]))
+        values = bounded(
+            (attempt.hypothesis,), values | _values(problem, cause_columns, theta[count:])
+        )
     # Log-evidence with the cost of the search over times.
-    total = score + float(filtered.free) + one.occam
-    hypotheses = (*base.hypotheses, one.hypothesis)
+    total = score + float(filtered.free) + attempt.occam
+    hypotheses = (*base.hypotheses, attempt.hypothesis)
     values = base.values | values
-    columns = [*base.columns, *own]
+    columns = [*base.columns, *cause_columns]
     posterior = (columns, filtered, theta, covariance, centre)
     about = (model, base.about, base.motion, base.record)
-    spread = base.std | deviations((one.hypothesis,), covariance)
-    return _Fitted(hypotheses, values, spread, total, *posterior, *about, one, mixed)
+    spread = base.std | deviations((attempt.hypothesis,), covariance)
+    return _Fitted(hypotheses, values, spread, total, *posterior, *about, attempt, mixed)
 
 
 def _mixed(plain: InParts, there: InParts, shares: np.ndarray, count: int) -> InParts:
@@ -341,8 +357,8 @@ def _mixed(plain: InParts, there: InParts, shares: np.ndarray, count: int) -> In
             by = share[: len(a), None, None]
             log = a[..., :1] + by * (b[..., :1] - a[..., :1])
             # Derivative with respect to the size: the share times the slope at that share.
-            own = by * (a[..., 1 + count :] + by * (b[..., 1:] - a[..., 1 + count :]))
-            mixed[name] = np.concatenate([log, a[..., 1 : 1 + count], own], axis=-1)
+            of_cause = by * (a[..., 1 + count :] + by * (b[..., 1:] - a[..., 1 + count :]))
+            mixed[name] = np.concatenate([log, a[..., 1 : 1 + count], of_cause], axis=-1)
         for name in ("transition", "output"):
             a, b = getattr(without, name), getattr(within, name)
             mixed[name] = a + share[: len(a), None, None] * (b - a)
@@ -355,23 +371,23 @@ def _shaped(plain: InParts, shares: np.ndarray) -> InParts:
     """Columns of a cause times its share of its size in each row."""
 
     def part(rows):
-        own = plain.part(rows)
+        of_part = plain.part(rows)
         share = shares[rows]
-        return own._replace(
-            driven=own.driven * share[: len(own.driven), None, None],
-            seen=own.seen * share[:, None, None],
+        return of_part._replace(
+            driven=of_part.driven * share[: len(of_part.driven), None, None],
+            seen=of_part.seen * share[:, None, None],
         )
 
     return InParts(plain.rows, plain.columns, part)
 
 
-def _weighed(products, base, own) -> tuple[float, np.ndarray, np.ndarray]:
+def _weighed(products, base, cause_places) -> tuple[float, np.ndarray, np.ndarray]:
     """Score of own columns beside those of a fit [nats], their θ and its covariance."""
     count = len(base.columns)
-    chosen = [0, *range(1, count + 1), *(1 + place for place in own)]
+    chosen = [0, *range(1, count + 1), *(1 + place for place in cause_places)]
     # A course leaves the numbers' own tolerances in place: they are of all rows.
-    prior = np.concatenate([[column.prior for column in base.columns], np.ones(len(own))])
-    centre = np.concatenate([base.centre, np.zeros(len(own))])
+    prior = np.concatenate([[column.prior for column in base.columns], np.ones(len(cause_places))])
+    centre = np.concatenate([base.centre, np.zeros(len(cause_places))])
     score, theta, covariance = evidence(products[np.ix_(chosen, chosen)], prior, centre)
     return score, theta[count:], covariance[count:, count:]
 
@@ -399,23 +415,23 @@ class _Blocks:
         # Posterior covariance of the base's columns without the cause, S (I + S G S)^-1 S in scaled
         # form.
         count = len(self.base.columns)
-        known = slice(1, count + 1)
+        of_fit = slice(1, count + 1)
         prior = np.array([column.prior for column in self.base.columns])
         scale = prior[:, None] * prior
         total = self.parts.sum(0)
         # The gradient is taken about θ = 0 rather than the point of linearisation.
-        inverse = np.linalg.inv(np.eye(count) + scale * total[known, known]) * scale
-        return inverse, total[known, 0] + total[known, known] @ self.base.centre
+        inverse = np.linalg.inv(np.eye(count) + scale * total[of_fit, of_fit]) * scale
+        return inverse, total[of_fit, 0] + total[of_fit, of_fit] @ self.base.centre
 
-    def gains(self, own: slice, shares: np.ndarray) -> np.ndarray:
+    def gains(self, place: slice, shares: np.ndarray) -> np.ndarray:
         """Gain of a cause for each course, (c,) array; `shares` is its size in each block, (c, b). [nats]"""
         # Products of the cause's columns times the course: linear in the share with others,
         # quadratic with themselves.
-        known = slice(1, len(self.base.columns) + 1)
+        of_fit = slice(1, len(self.base.columns) + 1)
         inverse, log = self.known
-        across = np.tensordot(shares, self.parts[:, known, own], 1)
-        within = np.tensordot(shares**2, self.parts[:, own, own], 1)
-        pull = shares @ self.parts[:, own, 0] + np.swapaxes(across, 1, 2) @ self.base.centre
+        across = np.tensordot(shares, self.parts[:, of_fit, place], 1)
+        within = np.tensordot(shares**2, self.parts[:, place, place], 1)
+        pull = shares @ self.parts[:, place, 0] + np.swapaxes(across, 1, 2) @ self.base.centre
         # What the known numbers explain, within their tolerances, is taken out.
         explained = np.swapaxes(across, 1, 2) @ inverse
         within = within - explained @ across
@@ -445,25 +461,27 @@ def _first_sight(blocks: _Blocks, wanted) -> list[_Try]:
     # The share of each course in the middle of each block.
     courses = list(_courses(blocks.edges))
     shares = np.stack([course.at(blocks.middle) for course in courses])
-    of_kind = {kind: [i for i, one in enumerate(courses) if one.kind == kind] for kind in KINDS}
-    found = []
+    of_kind = {
+        kind: [i for i, course in enumerate(courses) if course.kind == kind] for kind in KINDS
+    }
+    tries = []
     for hypothesis in wanted:
         best: dict[str, _Try] = {}
         groups = screening_regressors(hypothesis)
         # Screen every regressor group with every course at once.
-        for group, own in zip(groups, blocks.places[hypothesis.label], strict=True):
-            gains = blocks.gains(own, shares)
+        for group, place in zip(groups, blocks.places[hypothesis.label], strict=True):
+            gains = blocks.gains(place, shares)
             for kind, places in of_kind.items():
                 top = places[int(gains[places].argmax())]
                 # Evidence averaged over the kind's times, as each is equally likely: relative to
                 # the best it is a cost.
                 occam = float(np.log(np.exp(gains[places] - gains[top]).mean()))
                 gain = float(gains[top]) + occam
-                one = _Try(blocks.base, hypothesis, group, courses[top], gain, occam, {})
+                attempt = _Try(blocks.base, hypothesis, group, courses[top], gain, occam, {})
                 if kind not in best or gain > best[kind].score:
-                    best[kind] = one
-        found += best.values()
-    return found
+                    best[kind] = attempt
+        tries += best.values()
+    return tries
 
 
 def _courses(edges: np.ndarray) -> Iterator[Course]:
@@ -482,19 +500,19 @@ def _courses(edges: np.ndarray) -> Iterator[Course]:
             yield Course(SPELL, ((times[first], times[after]),))
 
 
-def _with_further_spells(blocks: _Blocks, one: _Try) -> _Try:
+def _with_further_spells(blocks: _Blocks, attempt: _Try) -> _Try:
     """A spell or step with further ones; each must gain more than the cost of its search."""
-    groups = screening_regressors(one.hypothesis)
+    groups = screening_regressors(attempt.hypothesis)
     # Sums by block let further spells be tried without filtering again.
-    own = blocks.places[one.hypothesis.label][groups.index(one.group)]
+    place = blocks.places[attempt.hypothesis.label][groups.index(attempt.group)]
     spells = [course for course in _courses(blocks.edges) if course.kind != RAMP]
     each = np.stack([course.at(blocks.middle) for course in spells])
-    course = one.course
+    course = attempt.course
     if course.kind == RAMP:
-        return one
-    occam = one.occam
+        return attempt
+    occam = attempt.occam
     share = course.at(blocks.middle)
-    gain = blocks.gains(own, share[None])[0]
+    gain = blocks.gains(place, share[None])[0]
     # Greedy search: the best further spell or hole is kept while it gains enough.
     while True:
         # Spells that neither overlap with those that are there nor touch them, or holes in one of them.
@@ -504,7 +522,7 @@ def _with_further_spells(blocks: _Blocks, one: _Try) -> _Try:
         tried = tried[apart | inside]
         if not len(tried):
             break
-        gains = blocks.gains(own, tried)
+        gains = blocks.gains(place, tried)
         # Each spell was chosen among many: the logarithm of their number is paid.
         paid = float(np.log(len(tried)))
         if gains.max() - paid < gain + ENOUGH:
@@ -513,16 +531,16 @@ def _with_further_spells(blocks: _Blocks, one: _Try) -> _Try:
     # Edges of the spells are where the share rises and falls.
     rises = np.diff(np.concatenate([[0.0], share, [0.0]]))
     starts, ends = (blocks.edges[rises == sign] for sign in (1.0, -1.0))
-    found = tuple((float(a), float(b)) for a, b in zip(starts, ends, strict=True))
-    if len(found) == 1:
-        kind = STEP if found[0][1] == blocks.edges[-1] else SPELL
-        return one._replace(course=Course(kind, found), occam=occam)
-    return one._replace(course=Course(SWITCHING, found), occam=occam)
+    parts = tuple((float(a), float(b)) for a, b in zip(starts, ends, strict=True))
+    if len(parts) == 1:
+        kind = STEP if parts[0][1] == blocks.edges[-1] else SPELL
+        return attempt._replace(course=Course(kind, parts), occam=occam)
+    return attempt._replace(course=Course(SWITCHING, parts), occam=occam)
 
 
 def _estimates(hypothesis, columns, theta, covariance) -> dict[str, ParameterEstimate]:
     """The parameters of a cause at some θ of its columns."""
-    found = {}
+    estimates = {}
     for of in hypothesis.parameters:
         # Columns that change this number, by their sizes.
         which = [i for i, column in enumerate(columns) if of.path in column.changes]
@@ -530,41 +548,41 @@ def _estimates(hypothesis, columns, theta, covariance) -> dict[str, ParameterEst
         value = of.neutral + float(sizes @ theta[which])
         # Standard deviation of a linear combination of the columns.
         std = float(np.sqrt(sizes @ covariance[np.ix_(which, which)] @ sizes))
-        found[of.name] = of.estimate(value, std)
-    return found
+        estimates[of.name] = of.estimate(value, std)
+    return estimates
 
 
-def _is_clear(one: _Fitted) -> bool:
+def _is_clear(fit: _Fitted) -> bool:
     """Whether a cause with a course is large enough to matter, clearly off none, within its bounds, and measured.
 
     What is wrong beside a gap pushes the ship where nobody measured her.
     """
-    record = one.of.base.record
+    record = fit.of.base.record
     # Most rows while the cause is present must have been measured.
-    present = one.of.course.at(record.time) > 0.0
+    present = fit.of.course.at(record.time) > 0.0
     if np.isfinite(record.measured[present, :3]).all(-1).mean() < MEASURED_WHILE_PRESENT:
         return False
-    parameters = one.of.hypothesis.parameters
-    own = slice(-len(parameters), None)
+    parameters = fit.of.hypothesis.parameters
+    of_cause = slice(-len(parameters), None)
     # Size in typical units, against the mean standard deviation; it must lie inside all bounds.
-    size = float(np.linalg.norm(one.theta[own]))
-    spread = float(np.sqrt(np.diag(one.covariance)[own].mean()))
+    size = float(np.linalg.norm(fit.theta[of_cause]))
+    spread = float(np.sqrt(np.diag(fit.covariance)[of_cause].mean()))
     within = all(
         of.bounds[0] < of.neutral + share * of.typical < of.bounds[1]
-        for of, share in zip(parameters, one.theta[own], strict=True)
+        for of, share in zip(parameters, fit.theta[of_cause], strict=True)
     )
-    return within and size >= max(one.of.hypothesis.definition.least, DEVIATIONS * spread)
+    return within and size >= max(fit.of.hypothesis.definition.least, DEVIATIONS * spread)
 
 
-def _finding(one: _Fitted, chance: float) -> Finding:
-    hypothesis = one.of.hypothesis
-    course = one.of.course
+def _finding(fit: _Fitted, chance: float) -> Finding:
+    hypothesis = fit.of.hypothesis
+    course = fit.of.course
     return Finding(
         hypothesis.cause,
         hypothesis.component,
         probability=chance,
         parameters=_estimates(
-            hypothesis, one.columns[one.own], one.theta[one.own], one.covariance[one.own, one.own]
+            hypothesis, fit.columns[fit.own], fit.theta[fit.own], fit.covariance[fit.own, fit.own]
         ),
         segments=course.spells,
         onset=course.start,
@@ -572,15 +590,15 @@ def _finding(one: _Fitted, chance: float) -> Finding:
     )
 
 
-def _sizes_over_time(problem, one: _Fitted) -> tuple[SizeOverTime, ...]:
+def _sizes_over_time(problem, fit: _Fitted) -> tuple[SizeOverTime, ...]:
     """The size of a cause in each part of the log by itself, linearised about the ship without it."""
     time = problem.record.time
-    hypothesis = one.of.hypothesis
-    base = one.of.base
+    hypothesis = fit.of.hypothesis
+    base = fit.of.base
     # Equal parts, each with its own copy of the cause's columns.
     edges = np.linspace(time[0], time[-1] + problem.record.step, SIZES_OVER_TIME + 1)
     spells = list(zip(map(float, edges[:-1]), map(float, edges[1:]), strict=True))
-    group = one.columns[one.own]
+    group = fit.columns[fit.own]
     plain = linearised_by_parts(base.about, base.record, base.model, group)
     linear = base.linear
     for spell in spells:
@@ -588,8 +606,8 @@ def _sizes_over_time(problem, one: _Fitted) -> tuple[SizeOverTime, ...]:
     # One joint fit of all parts beside the base, so that their sizes are estimated together.
     products = problem.gram(linear).products
     count = len(base.columns)
-    own = range(count, count + len(group) * len(spells))
-    _, theta, covariance = _weighed(products, base, own)
+    cause_places = range(count, count + len(group) * len(spells))
+    _, theta, covariance = _weighed(products, base, cause_places)
     # Collect the estimates of each parameter over the parts.
     each: dict[str, list[ParameterEstimate]] = {}
     for k in range(len(spells)):
@@ -611,31 +629,33 @@ def _sizes_over_time(problem, one: _Fitted) -> tuple[SizeOverTime, ...]:
 
 def _of_its_rows(explained: ExplainedLog, best: _Try, course: CourseFound) -> ExplainedLog:
     """The log where the cause acts longest, fitted with it and with the steady ones, and without."""
-    found = explained.identification
-    time = found.repaired["time"].values
+    identification = explained.identification
+    time = identification.repaired["time"].values
     # The longest spell is a log of a steady cause: solve it as an identification problem of its
     # own.
     longest = max(best.course.spells, key=lambda spell: spell[1] - spell[0])
-    part = found.repaired.isel(time=slice(*np.searchsorted(time, longest)))
+    part = identification.repaired.isel(time=slice(*np.searchsorted(time, longest)))
     problem = None
     if longest[1] - longest[0] >= SHORTEST_SPELL:
         with suppress(ShipcosimError):  # too few whole rows for a ship of her size
-            problem = identification_problem(part, found.ship, found.causes, found.problem.noise)
+            problem = identification_problem(
+                part, identification.ship, identification.causes, identification.problem.noise
+            )
     if problem is None:
         # Predictions are of the ship without the cause.
         nothing = without_causes(explained.fits)
         return replace(explained, fits=(nothing,), is_healthy=False, course=course)
     # The same hypotheses in the problem of these rows.
     hypotheses = tuple(
-        own
-        for one in (best.hypothesis, *best.base.hypotheses)
-        for own in problem.hypotheses
-        if own.label == one.label
+        hypothesis
+        for refitted in (best.hypothesis, *best.base.hypotheses)
+        for hypothesis in problem.hypotheses
+        if hypothesis.label == refitted.label
     )
     fits = (fitted(problem, hypotheses, best.values), fitted(problem))
     return replace(
         explained,
-        identification=replace(found, repaired=part, problem=problem),
+        identification=replace(identification, repaired=part, problem=problem),
         fits=fits,
         is_healthy=False,
         course=course,

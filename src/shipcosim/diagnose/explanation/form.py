@@ -22,11 +22,13 @@ from shipcosim.diagnose.inference.thresholds import (
 )
 
 
-def with_learnt_form(found: Identification) -> Identification:
+def with_learnt_form(identification: Identification) -> Identification:
     """An identified log whose ship may differ from the model's form as far as the log says."""
-    problem = learnt(found.problem)
+    problem = learnt(identification.problem)
     return replace(
-        found, ship=replace(found.ship, form_scale=problem.model.form_scale), problem=problem
+        identification,
+        ship=replace(identification.ship, form_scale=problem.model.form_scale),
+        problem=problem,
     )
 
 
@@ -65,19 +67,21 @@ def with_settled_form(explained: ExplainedLog) -> ExplainedLog:
 
     At first sight a cause that is not linear, or the second of two, can look like another form.
     """
-    found = explained.identification
+    identification = explained.identification
     best = explained.fits[0]
-    if not found.problem.model.form_scale:
+    if not identification.problem.model.form_scale:
         return explained
     # Fit the causes of the best set on a ship of the model's form.
-    plain = of_scale(found.problem, 0.0, best.hypotheses, best.values)
+    plain = of_scale(identification.problem, 0.0, best.hypotheses, best.values)
     if fitted(plain, best.hypotheses, best.values).score + FORM_COST < best.score:
         return explained
     # A full search with the plain form; keep the learnt form only where it gains its cost.
     fits = tuple(explain(plain))
     if fits[0].score + FORM_COST < best.score:
         return explained
-    again = replace(found, ship=replace(found.ship, form_scale=0.0), problem=plain)
+    again = replace(
+        identification, ship=replace(identification.ship, form_scale=0.0), problem=plain
+    )
     return ExplainedLog(again, fits, is_healthy(plain, fits[0]))
 
 
@@ -102,7 +106,7 @@ def scores_by_scale(problem: IdentificationProblem) -> dict[float, float]:
     form = linearised_by_parts(fit.about, problem.record, fit.model, of_form)
     linear = beside(beside(fit.linear, form), problem.base_of(regressors_of(wanted)))
     products = problem.gram(linear).products
-    found = {}
+    scores = {}
     # The scale only sets the prior of these columns: each is one more evidence from the same
     # products.
     for scale in (0.0, *FORM_SCALES):
@@ -118,8 +122,8 @@ def scores_by_scale(problem: IdentificationProblem) -> dict[float, float]:
             products, prior, np.concatenate([centre, np.zeros(prior.size - centre.size)])
         )[0]
         more = gains(products, columns, centre, wanted, fit.model.get)
-        found[scale] = alone + max(more[0][0] if more else 0.0, 0.0)
-    return found
+        scores[scale] = alone + max(more[0][0] if more else 0.0, 0.0)
+    return scores
 
 
 def of_scale(

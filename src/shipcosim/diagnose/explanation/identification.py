@@ -20,7 +20,7 @@ class Identification(CheckedLog):
     misconnections : tuple of Finding
         Connections of the system that the log contradicts; `ship` has them corrected.
     comparison : LogComparison
-        Of simulated with measured, commanded with felt; empty by default.
+        Of simulated with measured, commanded with measured force; empty by default.
     """
 
     problem: IdentificationProblem
@@ -32,5 +32,5 @@ def identified(checked: ComparedLog) -> Identification:
     """A compared log as an identification problem; its ship gets surrogates of third-party FMUs for this log."""
     problem = identification_problem(checked.repaired, checked.ship, checked.causes)
     ship = replace(checked.ship, third_party=problem.model.third_party)
-    known = (checked.log, ship, checked.causes, checked.faults, checked.repaired, problem)
-    return Identification(*known, comparison=checked.comparison)
+    fields = (checked.log, ship, checked.causes, checked.faults, checked.repaired, problem)
+    return Identification(*fields, comparison=checked.comparison)

@@ -68,11 +68,11 @@ def gains_of_each(
 ) -> dict[str, np.ndarray]:
     """Gain of hypotheses on each of several logs, (m, 1 + p, 1 + p) products: by label, (m,) arrays. [nats]"""
     centre = np.zeros(len(columns))
-    found = {hypothesis.label: [] for hypothesis in wanted}
-    for one in products:
-        for gain, hypothesis, _ in gains(one, columns, centre, wanted, value_of):
-            found[hypothesis.label].append(gain)
-    return {label: np.array(values) for label, values in found.items()}
+    by_label = {hypothesis.label: [] for hypothesis in wanted}
+    for product in products:
+        for gain, hypothesis, _ in gains(product, columns, centre, wanted, value_of):
+            by_label[hypothesis.label].append(gain)
+    return {label: np.array(values) for label, values in by_label.items()}
 
 
 def healthy_products(
@@ -149,10 +149,12 @@ def drawn_within_tolerances(
 ) -> ShipModel:
     """Ships within the tolerances of a ship model, whose numbers are arrays of a shape."""
     # Listed uncertainties, less those that a reference covers by its directions.
-    own = {path: size for path, size in model.uncertainties.items() if path not in model.referenced}
+    tolerances = {
+        path: size for path, size in model.uncertainties.items() if path not in model.referenced
+    }
     directions = [
         *model.directions,
-        *({path: size} for path, size in own.items() if not model.is_of_day(path)),
+        *({path: size} for path, size in tolerances.items() if not model.is_of_day(path)),
     ]
     values = {}
     # One standard normal draw for each direction, which may move several numbers at once.

@@ -46,11 +46,13 @@ class ExplainedLog:
     course: CourseFound | None = None
 
 
-def with_causes(found: Identification) -> ExplainedLog:
+def with_causes(identification: Identification) -> ExplainedLog:
     """An identified log with the sets of causes that explain it, best first; none of a log that cannot tell causes."""
-    cannot_tell = found.comparison.obstacles
-    fits = tuple(explain(found.problem, most=0) if cannot_tell else explain(found.problem))
-    return ExplainedLog(found, fits, is_healthy(found.problem, fits[0]))
+    cannot_tell = identification.comparison.obstacles
+    fits = tuple(
+        explain(identification.problem, most=0) if cannot_tell else explain(identification.problem)
+    )
+    return ExplainedLog(identification, fits, is_healthy(identification.problem, fits[0]))
 
 
 def explain(
@@ -102,7 +104,11 @@ def explain(
                 if key not in fits and key not in wanted:
                     wanted[key] = hypotheses, fit.values | values
         tried = dict(
-            zip(wanted, each(lambda one: fitted(problem, *one), wanted.values()), strict=True)
+            zip(
+                wanted,
+                each(lambda arguments: fitted(problem, *arguments), wanted.values()),
+                strict=True,
+            )
         )
         fits |= tried
         # The two best new sets go on, if they gain enough over all found before.
@@ -120,13 +126,13 @@ def explain(
 def _strained(fit: Fit) -> set[str]:
     """Parameters estimated far outside their tolerances; the linearisation may fail there, as for a lag."""
     off = defaultdict(float)
-    known = defaultdict(float)
+    tolerated = defaultdict(float)
     # Sum the shifts of all columns that move a number, and the variance of their tolerances.
     for column, theta in zip(fit.columns, fit.theta, strict=True):
         for path, size in column.changes.items():
             off[path] += theta * size
-            known[path] += size**2
-    return {path for path, variance in known.items() if off[path] ** 2 > STRAIN**2 * variance}
+            tolerated[path] += size**2
+    return {path for path, variance in tolerated.items() if off[path] ** 2 > STRAIN**2 * variance}
 
 
 def at_first_sight(problem: IdentificationProblem) -> float:
@@ -156,8 +162,8 @@ def _simplify(
         sets = _simpler(problem, best.hypotheses)
         tried = each(lambda some, start=best: fitted(problem, some, _values(some, start)), sets)
         for hypotheses, again in zip(sets, tried, strict=True):
-            known = fits.get(names(hypotheses))
-            if known is None or again.score > known.score + 0.1:
+            simpler = fits.get(names(hypotheses))
+            if simpler is None or again.score > simpler.score + 0.1:
                 fits[names(hypotheses)], new = again, True
         if not new:
             return
@@ -177,7 +183,7 @@ def _values(hypotheses, fit):
 
 def _simpler(problem, hypotheses):
     """Sets without one of the causes, and with the special case of one instead."""
-    found = []
+    sets = []
     # Leave each cause out, or replace it by the special case that it contains.
     for left in hypotheses:
         rest = tuple(hypothesis for hypothesis in hypotheses if hypothesis is not left)
@@ -186,9 +192,9 @@ def _simpler(problem, hypotheses):
             for s in problem.hypotheses
             if s.cause == left.definition.special and s.component == left.component
         ]
-        found += [rest] if rest else []
-        found += [(*rest, one) for one in special if one not in rest]
-    return found
+        sets += [rest] if rest else []
+        sets += [(*rest, simple) for simple in special if simple not in rest]
+    return sets
 
 
 def _value(parameter, hypothesis, fit):

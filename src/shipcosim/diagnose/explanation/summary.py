@@ -151,12 +151,12 @@ def evidence_of(log: JudgedLog) -> Evidence:
     return Evidence(
         tuple(
             SetEvidence(
-                tuple((s.cause, s.component) for s in one.hypotheses),
-                one.score - nothing.score,
-                one is fit,
+                tuple((s.cause, s.component) for s in other.hypotheses),
+                other.score - nothing.score,
+                other is fit,
             )
-            for one in log.fits
-            if one.hypotheses
+            for other in log.fits
+            if other.hypotheses
         ),
         tuple(_sizes(fit)),
         tuple(
@@ -199,16 +199,16 @@ def whiteness(problem: IdentificationProblem, fit: Fit, as_it_is: bool = False) 
     theta = 0.0 * fit.left if as_it_is else fit.left
     white = innovations(explained(fit.linear, theta), problem.noise, problem.record).white[..., 0]
     white = np.where(np.isfinite(problem.record.measured), white, np.nan)
-    found = np.full((LAGS, white.shape[1]), np.nan)
+    autocorrelation = np.full((LAGS, white.shape[1]), np.nan)
     # Normalised autocorrelation by channel, with enough values for all lags.
     for channel, values in enumerate(white.T):
         if np.isfinite(values).sum() > 10 * LAGS:
             values = values - np.nanmean(values)
             power = np.nanmean(values**2)
-            found[:, channel] = [
+            autocorrelation[:, channel] = [
                 np.nanmean(values[k:] * values[:-k]) / power for k in range(1, LAGS + 1)
             ]
-    return found
+    return autocorrelation
 
 
 def load_form(log: JudgedLog) -> LoadForm | None:
@@ -223,7 +223,7 @@ def load_form(log: JudgedLog) -> LoadForm | None:
     sizes = model.form_sizes if model.form_scale else {}
     # Posterior of each number, in units of its column.
     std = np.sqrt(np.diag(fit.covariance))
-    found = []
+    differences = []
     squares = {}
     for column, share, deviation in zip(fit.columns, fit.theta, std, strict=True):
         # Only columns of one lasting number: no causes, no quantities of the day.
@@ -238,15 +238,17 @@ def load_form(log: JudgedLog) -> LoadForm | None:
         least = 1.0 if is_form else STRAINED * column.prior
         if abs(share) > max(least, MOVED * deviation):
             number = _form_number(model, path, size * share, size * deviation)
-            found.append((abs(share) / deviation, number))
-    if not model.form_scale and not found:
+            differences.append((abs(share) / deviation, number))
+    if not model.form_scale and not differences:
         return None
     differs = {
         name: float(np.sqrt(sum(share * squares.get(path, 0.0) for path, share in numbers.items())))
         for name, numbers in (model.form_functions.items() if model.form_scale else ())
     }
     return LoadForm(
-        model.form_scale, differs, tuple(one for _, one in sorted(found, key=lambda pair: -pair[0]))
+        model.form_scale,
+        differs,
+        tuple(number for _, number in sorted(differences, key=lambda pair: -pair[0])),
     )
 
 

@@ -70,7 +70,7 @@ def unmodelled_gains(problem: IdentificationProblem, fit: Fit) -> dict[str, floa
     centre = np.zeros(prior.size)
     centre[:base] = fit.theta - fit.left
     nothing = evidence(products, prior, centre)[0]
-    found = {}
+    gains = {}
     place = base
     # Best of each kind, less the logarithm of how many were tried and less what a reference
     # expects.
@@ -81,10 +81,10 @@ def unmodelled_gains(problem: IdentificationProblem, fit: Fit) -> dict[str, floa
             here[place : place + size] = 1.0
             place += size
             scores.append(evidence(products, here, centre)[0] - nothing)
-        found[kind] = float(
+        gains[kind] = float(
             max(scores) - np.log(len(scores)) - problem.model.ordinary_errors.get(kind, 0.0)
         )
-    return found | errors_of_the_fit(fit)
+    return gains | errors_of_the_fit(fit)
 
 
 def errors_of_the_fit(fit: Fit) -> dict[str, float]:
@@ -106,14 +106,14 @@ def _differs_by_part(fit):
     unlikely = []
     for hypothesis in reversed(fit.hypotheses):
         place -= len(hypothesis.parameters)
-        own = range(place, place + len(hypothesis.parameters))
-        size = np.linalg.norm([fit.theta[i] for i in own])
-        for i in own:
+        places = range(place, place + len(hypothesis.parameters))
+        size = np.linalg.norm([fit.theta[i] for i in places])
+        for i in places:
             # By chance the pull has the variance of the part's information, more where sizes may
             # differ by some share.
-            known = blocks[:, 1 + i, 1 + i]
+            information = blocks[:, 1 + i, 1 + i]
             pull = blocks[:, 1 + i, 0] - blocks[:, 1 + i, 1:] @ fit.left
-            chance = known * (1.0 + (SIZE_FROM_PART_TO_PART * size) ** 2 * known) + 1e-9
+            chance = information * (1.0 + (SIZE_FROM_PART_TO_PART * size) ** 2 * information) + 1e-9
             unlikely.append(log_survival((pull**2 / chance).sum(), len(blocks)))
     # The least likely of several p-values: times their number (Bonferroni).
     return _most_evidence(min(unlikely, default=0.0) + np.log(max(len(unlikely), 1)))
@@ -125,18 +125,18 @@ def _beyond_tolerances(fit):
     In units of the tolerances the posterior mean has, in each direction, the variance that the log took from that of
     the prior; the sum of its squares is taken as a scaled chi-square of the same mean and variance.
     """
-    known = len(fit.columns) - sum(len(hypothesis.parameters) for hypothesis in fit.hypotheses)
+    ship_count = len(fit.columns) - sum(len(hypothesis.parameters) for hypothesis in fit.hypotheses)
     # Share of the prior variance that the log has removed, in each principal direction.
-    prior = np.array([column.prior for column in fit.columns[:known]])
-    told = np.clip(
-        1.0 - np.linalg.eigvalsh(fit.covariance[:known, :known] / prior[:, None] / prior),
+    prior = np.array([column.prior for column in fit.columns[:ship_count]])
+    informed = np.clip(
+        1.0 - np.linalg.eigvalsh(fit.covariance[:ship_count, :ship_count] / prior[:, None] / prior),
         1e-9,
         None,
     )
     # Match mean and variance of the weighted sum by a scaled chi-square (Satterthwaite).
-    mean = told.sum()
-    half_variance = (told**2).sum()
-    squares = ((fit.theta[:known] / prior) ** 2).sum()
+    mean = informed.sum()
+    half_variance = (informed**2).sum()
+    squares = ((fit.theta[:ship_count] / prior) ** 2).sum()
     return _most_evidence(log_survival(squares * mean / half_variance, mean**2 / half_variance))
 
 
@@ -173,10 +173,10 @@ def _bases(problem, fit, rows):
 def _each_axis(shapes):
     """Shapes over time (n, p), on each of surge, sway and yaw: (n, 3, 3 p)."""
     n, p = shapes.shape
-    found = np.zeros((n, 3, 3 * p))
+    columns = np.zeros((n, 3, 3 * p))
     for axis in range(3):
-        found[:, axis, axis * p : (axis + 1) * p] = shapes
-    return found
+        columns[:, axis, axis * p : (axis + 1) * p] = shapes
+    return columns
 
 
 def _channels(problem, shown, rows):
@@ -187,17 +187,17 @@ def _channels(problem, shown, rows):
     every = problem.record.time
     # Time as a share of the log.
     share = (every[rows] - every[0]) / (every[-1] - every[0])
-    found = np.zeros((share.size, 6, 6, _SHAPES))
+    columns = np.zeros((share.size, 6, 6, _SHAPES))
     # Position and heading: slow sines and cosines. Velocities: constant, drift, scale.
     for i, size in enumerate(CHANNEL_SIZES):
         moved = shown[rows, i] - shown[:, i].mean()
         shapes = [np.sin(np.pi * share), np.cos(np.pi * share), np.cos(2 * np.pi * share)]
         if i > 2:
             shapes = [np.ones_like(share), share - 0.5, 0.1 * moved / size]
-        found[:, i, i] = size * np.stack(shapes, axis=-1)
+        columns[:, i, i] = size * np.stack(shapes, axis=-1)
     # A channel error shows only where the channel was measured.
     return (
-        found.reshape(share.size, 6, 6 * _SHAPES)
+        columns.reshape(share.size, 6, 6 * _SHAPES)
         * np.isfinite(problem.record.measured[rows])[..., None]
     )
 

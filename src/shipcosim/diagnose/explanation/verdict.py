@@ -110,14 +110,14 @@ def judged(explained: ExplainedLog) -> JudgedLog:
     # Gain that causes have on healthy logs of such ships, more where the wind is unknown.
     without_wind = problem.record.wind is None
     usual = usual_gain(problem.model) + (NULL_GAIN_WITHOUT_WIND if without_wind else 0.0)
-    found = judge_against_healthy(
+    judgement = judge_against_healthy(
         fits,
         lambda fit: unmodelled_gains(problem, fit),
         lambda fit: null_gains(problem, fit.motion, fit.hypotheses),
         null={hypothesis.label: usual for hypothesis in problem.hypotheses} if usual else {},
         without_wind=without_wind,
     )
-    return JudgedLog(explained, *found)
+    return JudgedLog(explained, *judgement)
 
 
 def _judged_course(explained: ExplainedLog, course: CourseFound) -> JudgedLog:
@@ -125,10 +125,16 @@ def _judged_course(explained: ExplainedLog, course: CourseFound) -> JudgedLog:
     problem = explained.identification.problem
     fit = explained.fits[0]
     # Steady causes that were fitted beside the one with a course.
-    beside = [one for one in fit.hypotheses if one.label != course.finding.label]
-    own = (Candidate(course.finding.cause, course.finding.component, course.finding.probability),)
-    candidates = own + course.rivals
-    steady = tuple(_finding(one, fit, _of_all(course.steady)) for one in beside)
+    steady_causes = [
+        hypothesis for hypothesis in fit.hypotheses if hypothesis.label != course.finding.label
+    ]
+    of_course = (
+        Candidate(course.finding.cause, course.finding.component, course.finding.probability),
+    )
+    candidates = of_course + course.rivals
+    steady = tuple(
+        _finding(hypothesis, fit, _of_all(course.steady)) for hypothesis in steady_causes
+    )
     # Whatever else pushes the ship is looked for as ever; the size of a cause with a course varies by itself.
     others = {kind: gain for kind, gain in course.unmodelled.items() if kind != _BY_PART}
     if problem.record.wind is None:
@@ -210,15 +216,15 @@ def judge_against_healthy(
 
 def with_craft(log: JudgedLog) -> JudgedLog:
     """A judged log, where no cause explains it, with what it teaches of the craft."""
-    found = log.explained.identification
-    comparison = found.comparison
-    unclear = any(fault.alternatives for fault in found.faults)
+    identified = log.explained.identification
+    comparison = identified.comparison
+    unclear = any(fault.alternatives for fault in identified.faults)
     if comparison.obstacles or comparison.craft is not None or unclear:
         return log
     if log.judgement.verdict != "unknown":
         return log
-    known = with_learned_craft(comparison, found.repaired, found.ship)
-    identification = replace(found, comparison=known)
+    learned = with_learned_craft(comparison, identified.repaired, identified.ship)
+    identification = replace(identified, comparison=learned)
     return replace(log, explained=replace(log.explained, identification=identification))
 
 
@@ -293,13 +299,14 @@ def _of_all(fits):
 
 def _with_odds(fit):
     """Log-evidence of a set less what its causes cost: the logarithm of its odds. [nats]"""
-    return fit.score - sum(one.definition.cost for one in fit.hypotheses)
+    return fit.score - sum(hypothesis.definition.cost for hypothesis in fit.hypotheses)
 
 
 def _beside_unknown(candidates):
     """Candidates beside an unexplained error: their gain may belong to it."""
     return tuple(
-        replace(one, probability=round(BESIDE_UNKNOWN * one.probability, 4)) for one in candidates
+        replace(candidate, probability=round(BESIDE_UNKNOWN * candidate.probability, 4))
+        for candidate in candidates
     )
 
 
@@ -358,8 +365,8 @@ def _exceeds_special(hypothesis, fit, fits):
     A steady current beside a model of another form seems to turn a little.
     """
     # The general cause must differ enough between its ends or parts from the special one.
-    fitted = (one for other in fits for one in other.hypotheses)
-    special = next((one for one in fitted if _is_special(one, hypothesis)), None)
+    fitted = (hypothesis for other in fits for hypothesis in other.hypotheses)
+    special = next((cause for cause in fitted if _is_special(cause, hypothesis)), None)
     if special is None:
         return True
     sizes = [fit.values[k.path] / k.typical for k in hypothesis.parameters]
@@ -367,9 +374,9 @@ def _exceeds_special(hypothesis, fit, fits):
     return bool(np.linalg.norm(beyond) >= hypothesis.definition.least)
 
 
-def _is_special(one, general):
+def _is_special(cause, general):
     """Whether a cause is a simpler form of another one."""
-    return one.cause == general.definition.special and one.component == general.component
+    return cause.cause == general.definition.special and cause.component == general.component
 
 
 def _in_shape(hypothesis, fit):
@@ -432,12 +439,12 @@ def _weights(scores):
 def _candidates(chances):
     """Each cause with the probability of all sets that it is in, most likely first."""
     # Marginal probability: sum over the sets that contain the cause.
-    found = {}
+    chances_by_cause = {}
     for fit, chance in chances.items():
         for hypothesis in fit.hypotheses:
             key = hypothesis.cause, hypothesis.component
-            found[key] = found.get(key, 0.0) + float(chance)
-    ranked = sorted(found.items(), key=lambda entry: -entry[1])
+            chances_by_cause[key] = chances_by_cause.get(key, 0.0) + float(chance)
+    ranked = sorted(chances_by_cause.items(), key=lambda entry: -entry[1])
     return tuple(
         Candidate(cause, of, min(chance, 0.99)) for (cause, of), chance in ranked if chance > 1e-3
     )

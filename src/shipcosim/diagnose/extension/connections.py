@@ -38,18 +38,18 @@ def put_on_connections(
             c for c in system.connections if c.source[0] == component and c.target[0] == draft.ship
         ]
         new = [(c, kept * c.factor, kept * c.offset) for c in wanted]
-        told = f"factor {kept:.3f} on the connections of its loads"
+        change = f"factor {kept:.3f} on the connections of its loads"
     else:
         # Error of an order: shift what the connection gives to the thruster's input, in the unit of
         # the input.
         off = rule.sign * converted(estimate, DRIVES[rule.of]).value
-        one = third_party_fmu_of(system, component, draft.ship)
-        links = {link.variable: link for link in one.links if link.quantity == rule.of}
+        fmu = third_party_fmu_of(system, component, draft.ship)
+        links = {link.variable: link for link in fmu.links if link.quantity == rule.of}
         wanted = [
             c for c in system.connections if c.target[0] == component and c.target[1] in links
         ]
         new = [(c, c.factor, c.offset + links[c.target[1]].factor * off) for c in wanted]
-        told = f"offset of {off:.4g} {DRIVES[rule.of]} on the connection of its {rule.of}"
+        change = f"offset of {off:.4g} {DRIVES[rule.of]} on the connection of its {rule.of}"
     # A connection inside a nested system cannot be replaced from here.
     pairs = set(draft.structure.connections)
     if not new or any(_ends(c) not in pairs for c, *_ in new):
@@ -57,9 +57,9 @@ def put_on_connections(
             finding, f"the connections of '{component}' are not in one system, so it is not carried"
         )
         return
-    for one in new:
-        _rejoin(draft.structure, system, *one)
-    draft.remark(finding, f"carried as {told}")
+    for fmu in new:
+        _rejoin(draft.structure, system, *fmu)
+    draft.remark(finding, f"carried as {change}")
 
 
 def _ends(connection: Connection) -> tuple[str, str]:

@@ -134,19 +134,19 @@ class ExtensionDraft:
         names = (
             f"{self.around}{name}{number}" for number in ("", *(f"_{k}" for k in range(2, 100)))
         )
-        full = next(one for one in names if one not in taken)
+        full = next(candidate for candidate in names if candidate not in taken)
         self.structure.add_component(full, path)
         self.inserted.append(full)
         return full
 
     def _fmu(self, name: str) -> Path:
         """File of one of our FMUs: beside those of the system, else built."""
-        beside = [part.fmu.path.parent for part in self.structure.components.values()]
-        found = next(
-            (folder / f"{name}.fmu" for folder in beside if (folder / f"{name}.fmu").is_file()),
+        folders = [part.fmu.path.parent for part in self.structure.components.values()]
+        file = next(
+            (folder / f"{name}.fmu" for folder in folders if (folder / f"{name}.fmu").is_file()),
             None,
         )
-        return found or library.find("fmu", name)
+        return file or library.find("fmu", name)
 
     def load(self, component: str) -> bool:
         """Connect a component's loads to a free input of the ship; return True if there is one."""

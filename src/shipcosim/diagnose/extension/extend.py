@@ -97,7 +97,11 @@ def extend(
     with structure.changes():
         if craft is not None:
             _put_craft(draft, craft)
-            findings = [one for one in findings if catalogue[one.cause].sought_in != "comparison"]
+            findings = [
+                finding
+                for finding in findings
+                if catalogue[finding.cause].sought_in != "comparison"
+            ]
         for finding in findings:
             _carry(draft, finding, catalogue)
     ssp, ssv = written(structure, draft.values.values(), folder)
@@ -139,11 +143,11 @@ def _ship(structure: SystemStructure) -> str:
         if needed <= set(part.variables)
     ]
     if len(ships) != 1:
-        found = f"{len(ships)} components that loads can act on" + (
+        message = f"{len(ships)} components that loads can act on" + (
             f": {', '.join(ships)}." if ships else "."
         )
         remedy = "To extend it, a system needs one vessel, with inputs tau_X_1, tau_Y_1, tau_N_1, current_north, ..."
-        raise error_at(structure.name, found, remedy)
+        raise error_at(structure.name, message, remedy)
     return ships[0]
 
 
@@ -162,12 +166,12 @@ def _carry(draft: ExtensionDraft, finding: Finding, catalogue: Mapping[str, Caus
     numbers = _numbers(draft, finding, cause)
     with_onset = False
     for rule in _rules(cause, numbers):
-        own = {
+        estimates = {
             parameter: numbers.pop(number)
             for number, parameter in rule.parameters.items()
             if number in numbers
         }
-        with_onset |= _insert(draft, finding, rule, own)
+        with_onset |= _insert(draft, finding, rule, estimates)
         if rule.neighbour_inputs:
             places = (number.rpartition(".")[0] for number in numbers)
             connect_neighbours(draft, finding, rule, dict.fromkeys(places))
@@ -196,7 +200,7 @@ def _put_craft(draft: ExtensionDraft, craft: LearnedCraft) -> None:
 
 def _numbers(draft: ExtensionDraft, finding: Finding, cause: Cause) -> dict[str, ParameterEstimate]:
     """Numbers of the ship that a finding has estimates for."""
-    found = {}
+    numbers = {}
     for name, estimate in finding.parameters.items():
         # Some causes state what is lost; the parameter is what remains.
         parameter = cause.parameters.get(name)
@@ -205,17 +209,17 @@ def _numbers(draft: ExtensionDraft, finding: Finding, cause: Cause) -> dict[str,
         for pattern in parameter.of if parameter is not None else ():
             paths = _paths(draft, pattern, finding)
             is_factor = parameter is not None and parameter.factor
-            found |= (
+            numbers |= (
                 _multiplied(draft, paths, estimate) if is_factor else dict.fromkeys(paths, estimate)
             )
-    return found
+    return numbers
 
 
 def _multiplied(
     draft: ExtensionDraft, paths: Iterable[str], factor: ParameterEstimate
 ) -> dict[str, ParameterEstimate]:
     """Numbers of the system times a factor; those that are 0, or that the system does not have, are left out."""
-    found = {}
+    scaled = {}
     for path in paths:
         place, _, name = path.rpartition(".")
         variable = draft.variable(place, name)
@@ -224,15 +228,19 @@ def _multiplied(
         value = draft.structure.components[place].start_value(name)
         if isinstance(value, int | float) and value != 0.0:
             size = factor.estimate * value, factor.std * abs(value)
-            found[path] = ParameterEstimate(*size, variable.unit or "1")
-    return found
+            scaled[path] = ParameterEstimate(*size, variable.unit or "1")
+    return scaled
 
 
 def _rules(cause: Cause, numbers: Mapping[str, ParameterEstimate]) -> list[ExtensionRule]:
     """How the system gets a cause: as its file says, else as causes of ours on the same numbers."""
     if cause.extension is not None:
         return [cause.extension]
-    ours = [one.extension for one in read_catalogue().values() if one.extension is not None]
+    ours = [
+        definition.extension
+        for definition in read_catalogue().values()
+        if definition.extension is not None
+    ]
     return [rule for rule in ours if set(rule.parameters) & set(numbers)]
 
 
@@ -240,18 +248,18 @@ def _insert(
     draft: ExtensionDraft,
     finding: Finding,
     rule: ExtensionRule,
-    own: Mapping[str, ParameterEstimate],
+    estimates: Mapping[str, ParameterEstimate],
 ) -> bool:
     """Put what a rule inserts into the system; whether the onset of the cause went along."""
-    if not own or rule.by in ("parameters", "log"):
+    if not estimates or rule.by in ("parameters", "log"):
         return False
     if rule.by == "instruments":
-        add_instruments(draft, finding, own)
+        add_instruments(draft, finding, estimates)
         return False
     if rule.by == "force":
-        add_force(draft, finding, rule, own)
+        add_force(draft, finding, rule, estimates)
     elif rule.by == "steady current":
-        steady = _vector(own, "north", "east")
+        steady = _vector(estimates, "north", "east")
         add_current(
             draft, finding, *((None, steady) if finding.onset is not None else (steady, None))
         )
@@ -259,7 +267,7 @@ def _insert(
         add_current(
             draft,
             finding,
-            *(_vector(own, f"north_{end}", f"east_{end}") for end in ("start", "end")),
+            *(_vector(estimates, f"north_{end}", f"east_{end}") for end in ("start", "end")),
         )
     return True
 
@@ -292,14 +300,14 @@ def _on_connections(cause: Cause) -> dict[str, OnConnections]:
     """By number of a thruster: how connections carry it, as the cause's file says or one of ours."""
     parameters = [
         parameter
-        for one in (*read_catalogue().values(), cause)
-        for parameter in one.parameters.values()
+        for definition in (*read_catalogue().values(), cause)
+        for parameter in definition.parameters.values()
     ]
     return {
-        of.rpartition(".")[2]: one.on_connections
-        for one in parameters
-        if one.on_connections
-        for of in one.of
+        of.rpartition(".")[2]: parameter.on_connections
+        for parameter in parameters
+        if parameter.on_connections
+        for of in parameter.of
     }
 
 

@@ -127,9 +127,9 @@ def with_extension(given: ExtendedSystem, extend_it: Callable[[], Extension]) ->
         extension = extend_it()
         system = read_system(str(extension.ssp))
     except ShipcosimError as error:
-        said = (f"{p.where}: {p.found} {p.remedy}".rstrip() for p in error.problems)
+        texts = (f"{p.where}: {p.found} {p.remedy}".rstrip() for p in error.problems)
         return replace(
-            given, remarks=tuple(f"The system was not extended: {text}" for text in said)
+            given, remarks=tuple(f"The system was not extended: {text}" for text in texts)
         )
     changes = (
         _change(name, value, given.given, system) for name, value in extension.values.items()
@@ -142,11 +142,11 @@ def _change(name, value, given, extended):
     start = (
         given.components[component].start_value(variable) if component in given.components else None
     )
-    known = (
+    variables = (
         extended.components[component].variables
         if component in extended.components
         else extended.inputs
     )
-    unit = known[variable].unit if variable in known else ""
+    unit = variables[variable].unit if variable in variables else ""
     before = float(start) if isinstance(start, int | float) else None
     return NumberChange(name, before, float(value), "" if unit in (None, "1") else unit)

@@ -39,14 +39,14 @@ def form_numbers(fit: Fit, system: System) -> dict[str, ParameterEstimate]:
     gain = to_rest @ np.linalg.pinv(fit.covariance[np.ix_(~carried, ~carried)])
     mean = fit.left[carried] - gain @ fit.left[~carried]
     std = np.sqrt(np.diag(fit.covariance[np.ix_(carried, carried)] - gain @ to_rest.T))
-    found = {}
+    numbers = {}
     columns = [column for column, is_in in zip(fit.columns, carried, strict=True) if is_in]
     for column, share, deviation in zip(columns, mean, std, strict=True):
         for path, size in column.changes.items():
             value = fit.model.within_bounds(path, float(fit.model.get(path) + size * share))
             unit = fit.model.about(path)["unit"]
-            found[path] = ParameterEstimate(value, float(abs(size) * deviation), unit)
-    return found
+            numbers[path] = ParameterEstimate(value, float(abs(size) * deviation), unit)
+    return numbers
 
 
 def _is_carried(changes: Mapping[str, float], system: System) -> bool:

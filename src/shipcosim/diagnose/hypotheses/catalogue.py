@@ -97,12 +97,12 @@ class Hypothesis:
 
 def parameters_of(hypotheses: Iterable[Hypothesis]) -> list[HypothesisParameter]:
     """Parameters of several hypotheses, in their order."""
-    return [parameter for one in hypotheses for parameter in one.parameters]
+    return [parameter for hypothesis in hypotheses for parameter in hypothesis.parameters]
 
 
 def paths_of(hypotheses: Iterable[Hypothesis]) -> set[str]:
     """Numbers of the ship that several hypotheses change."""
-    return {path for one in hypotheses for path in one.paths}
+    return {path for hypothesis in hypotheses for path in hypothesis.paths}
 
 
 def read_catalogue(folder: AnyPath | None = None) -> dict[str, Cause]:
@@ -122,7 +122,7 @@ def read_catalogue(folder: AnyPath | None = None) -> dict[str, Cause]:
     ShipcosimError
         With everything that is wrong in the files.
     """
-    own: dict[str, Cause] = {}
+    of_folder: dict[str, Cause] = {}
     problems = []
     for path in sorted(Path(folder).iterdir()) if folder else []:
         if not path.name.endswith(".toml"):
@@ -132,13 +132,13 @@ def read_catalogue(folder: AnyPath | None = None) -> dict[str, Cause]:
         except ShipcosimError as error:
             problems += error.problems
             continue
-        if cause.cause in own:
-            found = f"'{cause.cause}' is the cause of another file in this folder too."
-            problems.append(Problem(str(path), found, "Give one of them another name."))
-        own[cause.cause] = cause
+        if cause.cause in of_folder:
+            message = f"'{cause.cause}' is the cause of another file in this folder too."
+            problems.append(Problem(str(path), message, "Give one of them another name."))
+        of_folder[cause.cause] = cause
     if problems:
         raise ShipcosimError(problems)
-    return {**_shipped(), **own}
+    return {**_shipped(), **of_folder}
 
 
 def read_cause(path: Path) -> Cause:
@@ -168,15 +168,15 @@ def read_cause(path: Path) -> Cause:
 @cache
 def read_faults() -> dict[str, Fault]:
     """All kinds of faults of the log and of the connections, by name."""
-    found = (Fault.model_validate(content) for content in _contents("faults"))
-    return {fault.fault: fault for fault in found}
+    faults = (Fault.model_validate(content) for content in _contents("faults"))
+    return {fault.fault: fault for fault in faults}
 
 
 @cache
 def _shipped() -> dict[str, Cause]:
     """Our own causes by name."""
-    found = (Cause.model_validate(content) for content in _contents("causes"))
-    return {cause.cause: cause for cause in found}
+    causes = (Cause.model_validate(content) for content in _contents("causes"))
+    return {cause.cause: cause for cause in causes}
 
 
 def _contents(folder: str) -> Iterator[dict]:
@@ -208,14 +208,18 @@ def hypotheses_of(
     """
     places = {"ship": [None], "thruster": model.thrusters, "azimuth": model.azimuths}
     causes = [cause for cause in catalogue.values() if cause.sought_in in ("every log", sought_in)]
-    found = [_on(cause, place, model) for cause in causes for place in places[cause.for_each]]
-    hypotheses = [hypothesis for hypothesis in found if hypothesis]
-    alone = {path for one in hypotheses if one.component for path in one.paths}
+    placed = [_on(cause, place, model) for cause in causes for place in places[cause.for_each]]
+    hypotheses = [hypothesis for hypothesis in placed if hypothesis]
+    alone = {path for hypothesis in hypotheses if hypothesis.component for path in hypothesis.paths}
     # Whether a cause of all azimuth thrusters together is that of the only one.
     return [
-        one
-        for one in hypotheses
-        if not (one.component is None and len(one.paths) == 1 and one.paths <= alone)
+        hypothesis
+        for hypothesis in hypotheses
+        if not (
+            hypothesis.component is None
+            and len(hypothesis.paths) == 1
+            and hypothesis.paths <= alone
+        )
     ]
 
 
@@ -245,8 +249,8 @@ def _paths(pattern: str, component: str | None, model: ShipModel) -> list[str]:
             for name in model.thrusters
             if name in model.azimuths or isinstance(model.parts[name], AzimuthParameters)
         ]
-        found = (pattern.replace("{azimuths}", name) for name in turning)
-        return [path for path in found if model.has(path)]
+        paths = (pattern.replace("{azimuths}", name) for name in turning)
+        return [path for path in paths if model.has(path)]
     return [pattern.replace("{thruster}", component or "")]
 
 

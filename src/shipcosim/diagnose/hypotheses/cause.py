@@ -205,13 +205,13 @@ class Cause(_Strict):
             "next_step": {"component"},
             "why_not_testable": set(FACTS),
         }
-        for key, known in fills.items():
+        for key, allowed in fills.items():
             wanted = {
                 name for field in placeholders(getattr(self, key)) for name in field.split("+")
             }
-            if wanted - known:
+            if wanted - allowed:
                 raise ValueError(
-                    f"{key}: there is no {sorted(wanted - known)} to fill in, but {sorted(known)}"
+                    f"{key}: there is no {sorted(wanted - allowed)} to fill in, but {sorted(allowed)}"
                 )
         if self.law == "turning" and (len(self.sought_by), len(self.parameters)) != (4, 4):
             raise ValueError("law 'turning' takes four parameters, and four numbers in sought_by")

@@ -88,17 +88,17 @@ class IdentificationProblem:
         taken |= {path for hypothesis in everyone for path in hypothesis.definition.companions}
         # Directions of a reference's covariance stay whatever the causes; single numbers of it do
         # not count a second time.
-        found = [Regressor(direction, beside=True) for direction in self.model.directions]
+        columns = [Regressor(direction, beside=True) for direction in self.model.directions]
         taken |= self.model.referenced
         sizes = self.model.uncertainties
-        found += [Regressor({path: size}) for path, size in sizes.items() if path not in taken]
+        columns += [Regressor({path: size}) for path, size in sizes.items() if path not in taken]
         # Parameters of linear causes with a tolerance that no listed uncertainty covers already.
         for hypothesis in everyone:
             for parameter in hypothesis.parameters if hypothesis.definition.law == "linear" else ():
                 listed = all(path in sizes for path in parameter.paths)
                 if parameter.tolerance > 0.0 and not listed and not taken & set(parameter.paths):
-                    found.append(Regressor(dict.fromkeys(parameter.paths, parameter.tolerance)))
-        return found
+                    columns.append(Regressor(dict.fromkeys(parameter.paths, parameter.tolerance)))
+        return columns
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,15 +183,15 @@ def _smoothed(
     jolt = np.maximum(misfit, 1.0)[..., None] * np.asarray(problem.noise.jolt)
     noise = replace(problem.noise, jolt=jolt, walk=np.broadcast_to(problem.noise.walk, jolt.shape))
     # Iterated smoothing may diverge with a wrong model: then the motion before is kept.
-    found = smoothed(linear, noise, problem.record, motion)[0]
+    smooth = smoothed(linear, noise, problem.record, motion)[0]
     # Whether a smoothed motion is a number throughout, and no velocity of it far beyond that of the one before.
-    fastest = [np.abs(velocity).max() for velocity in found[3:]]
+    fastest = [np.abs(velocity).max() for velocity in smooth[3:]]
     before = [np.abs(velocity).max() for velocity in motion[3:]]
     follows = bool(
-        np.isfinite(np.stack(found)).all()
+        np.isfinite(np.stack(smooth)).all()
         and np.all(np.less(fastest, _RUNS_AWAY * np.array(before) + 0.1))
     )
-    return found if follows else motion
+    return smooth if follows else motion
 
 
 def fitted(
@@ -216,10 +216,14 @@ def fitted(
     Fit
         The same one where the same has been asked for before.
     """
-    asked = tuple(one.label for one in hypotheses), tuple(sorted((values or {}).items())), rounds
-    if asked not in problem.fits:
-        problem.fits[asked] = _fitted(problem, hypotheses, values, rounds)
-    return problem.fits[asked]
+    key = (
+        tuple(hypothesis.label for hypothesis in hypotheses),
+        tuple(sorted((values or {}).items())),
+        rounds,
+    )
+    if key not in problem.fits:
+        problem.fits[key] = _fitted(problem, hypotheses, values, rounds)
+    return problem.fits[key]
 
 
 def _fitted(problem, hypotheses, values, rounds):
@@ -287,12 +291,12 @@ def own_columns(
     """Columns of hypotheses, what is only known within a tolerance about them first."""
     # Companions go first; the parameters' columns must be the last ones.
     about = [path for hypothesis in hypotheses for path in hypothesis.definition.companions]
-    found = [Regressor({path: problem.model.tolerances[path]}) for path in about]
+    columns = [Regressor({path: problem.model.tolerances[path]}) for path in about]
     # The regressor of a parameter of a hypothesis.
-    return found + [
-        Regressor(dict.fromkeys(of.paths, of.typical), vector=one.vector_of(of))
-        for one in hypotheses
-        for of in one.parameters
+    return columns + [
+        Regressor(dict.fromkeys(of.paths, of.typical), vector=hypothesis.vector_of(of))
+        for hypothesis in hypotheses
+        for of in hypothesis.parameters
     ]
 
 
@@ -369,25 +373,25 @@ def deviations(hypotheses: Sequence[Hypothesis], covariance: np.ndarray) -> dict
     """Standard deviation of each parameter of some hypotheses, whose columns are the last."""
     parameters = parameters_of(hypotheses)
     # The parameters' columns are the last of the covariance.
-    found = np.sqrt(np.diag(covariance))[len(covariance) - len(parameters) :]
+    stds = np.sqrt(np.diag(covariance))[len(covariance) - len(parameters) :]
     return {
-        one.path: float(deviation * one.typical)
-        for one, deviation in zip(parameters, found, strict=True)
+        parameter.path: float(deviation * parameter.typical)
+        for parameter, deviation in zip(parameters, stds, strict=True)
     }
 
 
 def next_values(fit: Fit) -> dict[str, float]:
     """Values of the numbers at the posterior's mean, within their bounds."""
     parameters = parameters_of(fit.hypotheses)
-    found = dict(fit.values)
+    values = dict(fit.values)
     # θ counts from neutral in typical sizes.
     for parameter, theta in zip(
         parameters, fit.theta[fit.theta.size - len(parameters) :], strict=True
     ):
-        found.update(
+        values.update(
             dict.fromkeys(parameter.paths, float(parameter.neutral + theta * parameter.typical))
         )
-    return bounded(fit.hypotheses, found)
+    return bounded(fit.hypotheses, values)
 
 
 def bounded(hypotheses: Sequence[Hypothesis], values: Mapping[str, float]) -> dict[str, float]:
@@ -410,9 +414,9 @@ def tolerated(fit: Fit) -> dict[str, float]:
     wanted = NONLINEAR | {
         path for hypothesis in fit.hypotheses for path in hypothesis.definition.companions
     }
-    found = {}
+    values = {}
     # Clipped, as a linearisation several tolerances away says nothing.
     for column, theta, centre in zip(fit.columns, fit.theta, fit.centre, strict=True):
         for path, size in column.changes.items() if wanted & set(column.changes) else ():
-            found[path] = fit.model.get(path) + size * float(np.clip(theta, -_FAR, _FAR) - centre)
-    return found
+            values[path] = fit.model.get(path) + size * float(np.clip(theta, -_FAR, _FAR) - centre)
+    return values

@@ -83,7 +83,7 @@ def innovations(linear: Linear | InParts, noise: Noise, record: Record) -> Innov
     -------
     Innovations
     """
-    parts = [found for _, found in _by_parts(linear, noise, record)]
+    parts = [part for _, part in _by_parts(linear, noise, record)]
     return Innovations(*(np.concatenate(fields) for fields in zip(*parts, strict=True)))
 
 
@@ -109,10 +109,12 @@ def _by_parts(linear, noise, record):
     """First row and innovations of each part of a log, in order."""
     passing = _Filter(in_parts(linear), noise, record)
     for rows in passing.linear.slices():
-        found = passing.over(rows)
+        passed = passing.over(rows)
         yield (
             rows.start,
-            Innovations(*map(passing.by_log, (found.white, found.log_determinant, found.states))),
+            Innovations(
+                *map(passing.by_log, (passed.white, passed.log_determinant, passed.states))
+            ),
         )
 
 
@@ -145,20 +147,26 @@ def smoothed(
             passing.over(rows)
     # Backward pass over the parts: each is filtered again with covariances, then smoothed by the
     # adjoint variable that comes from the part behind it.
-    found = []
+    states_of_parts = []
     pull = None
     for rows, state in zip(reversed(slices), reversed(begun), strict=True):
         passing.state = state
-        one = passing.over(rows, keep=True)
-        pull = np.zeros(one.states.shape[1:]) if pull is None else pull
-        of_filter = one.gain, one.root, one.states, one.covariances, record.is_last[rows]
-        found.append(
+        passed = passing.over(rows, keep=True)
+        pull = np.zeros(passed.states.shape[1:]) if pull is None else pull
+        of_filter = (
+            passed.gain,
+            passed.root,
+            passed.states,
+            passed.covariances,
+            record.is_last[rows],
+        )
+        states_of_parts.append(
             kalman.smoothed(
-                one.A, passing.steady, one.H, one.white[..., 0].copy(), *of_filter, pull
+                passed.A, passing.steady, passed.H, passed.white[..., 0].copy(), *of_filter, pull
             )
         )
     # Smoothed deviations are added to the motion that was linearised about.
-    states = np.moveaxis(passing.by_log(np.concatenate(found[::-1])), 0, -2)
+    states = np.moveaxis(passing.by_log(np.concatenate(states_of_parts[::-1])), 0, -2)
     return Motion(*(value + states[..., i] for i, value in enumerate(motion))), states[..., 6:]
 
 
@@ -207,17 +215,27 @@ class _Filter:
         white = np.asarray(noise.white).reshape(1, -1, 6)
         R = np.where(_by_log(linear.whole, self.lead, 1), white**2, np.inf)
         R = np.require(np.broadcast_to(R, (len(R), len(C), 6)), requirements=["C", "W"])
-        known = np.asarray(record.known)[rows]
+        with_value = np.asarray(record.known)[rows]
         is_last = record.is_last[rows]
         # Gains and covariances do not depend on the columns: computed once, they filter the log and
         # all regressors.
         weights = kalman.weights(
-            A, self.steady, H, R, self.process, C, known, _lost(), is_last, self.uncertain, keep
+            A,
+            self.steady,
+            H,
+            R,
+            self.process,
+            C,
+            with_value,
+            _lost(),
+            is_last,
+            self.uncertain,
+            keep,
         )
         gain, root, log_determinant, covariances = weights
-        found = kalman.whitened(A, self.steady, B, H, Z, gain, root, is_last, x)
+        filtered = kalman.whitened(A, self.steady, B, H, Z, gain, root, is_last, x)
         self.state = C, x
-        return _Passed(A, H, gain, root, log_determinant, covariances, *found)
+        return _Passed(A, H, gain, root, log_determinant, covariances, *filtered)
 
     def _begun(self, linear):
         """Shape of the logs, and the state before the first row."""
@@ -264,9 +282,9 @@ def _by_log(values: np.ndarray, lead: tuple[int, ...], tail: int) -> np.ndarray:
     """(n, ..., *tail) array, whose middle axes broadcast to those of the logs, as (n, m or 1, *tail) array."""
     # Logs that share values keep one copy; others are broadcast to all logs.
     shape = values.shape[values.ndim - tail :]
-    own = values.shape[1 : values.ndim - tail]
-    if own != lead and np.prod(own) > 1:
-        values = values.reshape(len(values), *(1,) * (len(lead) - len(own)), *own, *shape)
+    middle = values.shape[1 : values.ndim - tail]
+    if middle != lead and np.prod(middle) > 1:
+        values = values.reshape(len(values), *(1,) * (len(lead) - len(middle)), *middle, *shape)
         values = np.broadcast_to(values, (len(values), *lead, *shape))
     logs = int(np.prod(values.shape[1 : values.ndim - tail]))
     return np.require(values, requirements=["C", "W"]).reshape(len(values), logs, *shape)
@@ -382,12 +400,12 @@ class Gram:
         return -0.5 * (self.products[..., 0, 0] + self.log_determinant)
 
 
-def gram(found: Iterable[tuple[int, Innovations]], rows: int, parts: int = 8) -> Gram:
+def gram(stretches: Iterable[tuple[int, Innovations]], rows: int, parts: int = 8) -> Gram:
     """Inner products of innovations.
 
     Parameters
     ----------
-    found : iterable of tuple of int and Innovations
+    stretches : iterable of tuple of int and Innovations
         First row and innovations of consecutive stretches of a log.
     rows : int
         Of the log.
@@ -402,7 +420,7 @@ def gram(found: Iterable[tuple[int, Innovations]], rows: int, parts: int = 8) ->
     edges = np.linspace(0, rows, parts + 1).astype(int)
     blocks = [np.zeros(())] * parts
     log_determinant = np.zeros(())
-    for first, stretch in found:
+    for first, stretch in stretches:
         log_determinant = log_determinant + stretch.log_determinant.sum(0)
         # Rows of this part that fall into each block.
         places = np.clip(edges - first, 0, len(stretch.white))

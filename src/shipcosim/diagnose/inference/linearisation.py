@@ -69,11 +69,11 @@ def moved(
     columns: Iterable[Regressor], shares: Iterable[float], get: Callable[[str], float]
 ) -> dict[str, float]:
     """Numbers of the ship where columns move them to, each by its share of its changes."""
-    found: dict[str, float] = {}
+    numbers: dict[str, float] = {}
     for column, share in zip(columns, shares, strict=True):
         for path, size in column.changes.items():
-            found[path] = found.get(path, get(path)) + float(share) * size
-    return found
+            numbers[path] = numbers.get(path, get(path)) + float(share) * size
+    return numbers
 
 
 class Linear(NamedTuple):
@@ -275,9 +275,9 @@ def _step_share(regressor: Regressor, model: ShipModel) -> float:
     return min(_SHARE, max(_SHARE * length / size, 1e-4))
 
 
-def _apart(one: Motion, other: Motion) -> Motion:
+def _apart(first: Motion, other: Motion) -> Motion:
     """One motion minus another."""
-    return Motion(*(a - b for a, b in zip(one, other, strict=True)))
+    return Motion(*(a - b for a, b in zip(first, other, strict=True)))
 
 
 def rows_first(motion: Motion) -> np.ndarray:

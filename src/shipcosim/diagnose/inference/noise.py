@@ -178,16 +178,16 @@ def waves_of(
     # Start from the stationary distribution.
     velocity = rng.standard_normal((m, 3)) * noise.wave
     where = rng.standard_normal((m, 3)) * noise.wave / noise.wave_frequency
-    found = np.empty((n, m, 6))
+    motion = np.empty((n, m, 6))
     # Transition of the oscillator with its correlated increments.
     for k in range(n):
-        found[k] = np.concatenate([where, velocity], axis=-1)
+        motion[k] = np.concatenate([where, velocity], axis=-1)
         first, second = kicks[:, k]
         where, velocity = (
             a * where + b * velocity + first,
             c * where + d * velocity + along * first + second,
         )
-    return found
+    return motion
 
 
 def _scaled(noise: Noise, steps: np.ndarray) -> Noise:

@@ -154,7 +154,7 @@ def explained(linear: Linear | InParts, theta: np.ndarray) -> InParts:
     whole = in_parts(linear)
 
     def part(rows):
-        own = whole.part(rows)
-        return own._replace(driven=own.driven @ weights, seen=own.seen @ weights)
+        of_part = whole.part(rows)
+        return of_part._replace(driven=of_part.driven @ weights, seen=of_part.seen @ weights)
 
     return InParts(whole.rows, 0, part)

@@ -183,13 +183,16 @@ def observed(
         Of (k, n, ...) arrays.
     """
     # Filtered deviations of all observers in one pass.
-    found = np.moveaxis(innovations(stacked(problems), noise, record).filtered, 0, 1)
+    filtered = np.moveaxis(innovations(stacked(problems), noise, record).filtered, 0, 1)
     # Add them to the motions they deviate from; unexplained acceleration times mass is force.
     about = np.stack([np.stack(motion, axis=-1) for motion in motions])
     force = np.stack(
-        [one[:, _FORCE] @ model.mass_matrix.T for one, model in zip(found, models, strict=True)]
+        [
+            state[:, _FORCE] @ model.mass_matrix.T
+            for state, model in zip(filtered, models, strict=True)
+        ]
     )
-    return Known(Motion(*np.moveaxis(about + found[..., :6], -1, 0)), force)
+    return Known(Motion(*np.moveaxis(about + filtered[..., :6], -1, 0)), force)
 
 
 def predicted(
@@ -237,7 +240,7 @@ def predicted(
     # All predictions go on together, one row after the other; only the wanted horizons are stored.
     for k in range(horizons[-1]):
         for i in range(parts):
-            during = [one.at(rows + k) for one in inputs[2 * i : 2 * i + 3]]
+            during = [series.at(rows + k) for series in inputs[2 * i : 2 * i + 3]]
             loads = [load(k * record.step + (i + share) * h) for share in (0.0, 0.5, 1.0)]
             motion = _bounded(runge_kutta(motion, h, during, model, loads))
         if k + 1 in horizons:
@@ -267,12 +270,12 @@ def _bounded(motion):
     return motion._replace(u=u, v=v, r=np.clip(motion.r, -FASTEST_TURN, FASTEST_TURN))
 
 
-def missing(found: Motion, seen: Motion, rows: np.ndarray) -> dict[str, np.ndarray]:
+def missing(predicted_motion: Motion, seen: Motion, rows: np.ndarray) -> dict[str, np.ndarray]:
     """Errors of predictions.
 
     Parameters
     ----------
-    found : Motion
+    predicted_motion : Motion
         Predicted, as instruments show it; arrays to which the shape of rows can be broadcast.
     seen : Motion
         What they showed, (n,) arrays.
@@ -285,7 +288,9 @@ def missing(found: Motion, seen: Motion, rows: np.ndarray) -> dict[str, np.ndarr
     """
     # Prediction less what the instruments showed; the heading's difference is wrapped to a half
     # turn.
-    off = Motion(*(value - series[rows] for value, series in zip(found, seen, strict=True)))
+    off = Motion(
+        *(value - series[rows] for value, series in zip(predicted_motion, seen, strict=True))
+    )
     return {
         "position": np.hypot(off.x, off.y),
         "heading": np.degrees(np.angle(np.exp(1j * off.psi))),

@@ -13,19 +13,24 @@ DIRECTIONS = 12
 
 def regressors_of(hypotheses: Iterable[Hypothesis]) -> list[Regressor]:
     """All regressors for the first search over several hypotheses."""
-    return [column for one in hypotheses for group in screening_regressors(one) for column in group]
+    return [
+        column
+        for hypothesis in hypotheses
+        for group in screening_regressors(hypothesis)
+        for column in group
+    ]
 
 
 def placed(
     hypotheses: Iterable[Hypothesis], first: int
 ) -> list[tuple[Hypothesis, list[Regressor], list[int]]]:
     """Each group of `regressors_of`, with its hypothesis and its places in a row of columns from `first` on."""
-    found = []
+    groups = []
     for hypothesis in hypotheses:
         for group in screening_regressors(hypothesis):
-            found.append((hypothesis, group, list(range(first, first + len(group)))))
+            groups.append((hypothesis, group, list(range(first, first + len(group)))))
             first += len(group)
-    return found
+    return groups
 
 
 def screening_regressors(hypothesis: Hypothesis) -> list[list[Regressor]]:

@@ -74,7 +74,7 @@ def gains(
     # Evidence of the fit by itself: gains count from here.
     nothing = evidence(products, prior, centre)[0]
     place = base
-    found = []
+    gained = []
     for hypothesis in wanted:
         # Each group switches its own columns on, with unit prior.
         tries = []
@@ -92,8 +92,8 @@ def gains(
             tries.append((score - nothing, values))
             place += len(group)
         gain, values = _together(tries, hypothesis)
-        found.append((gain, hypothesis, values))
-    return sorted(found, key=lambda entry: -entry[0])
+        gained.append((gain, hypothesis, values))
+    return sorted(gained, key=lambda entry: -entry[0])
 
 
 def _together(

@@ -143,9 +143,9 @@ def _together(path, names):
         yield Problem(
             str(path), "says no column for time.", 'It should have, say, time = {column = "t"}.'
         )
-    for one, other in (("north", "east"), ("latitude", "longitude")):
-        if (one in names) != (other in names):
-            there, missing = (one, other) if one in names else (other, one)
+    for first, other in (("north", "east"), ("latitude", "longitude")):
+        if (first in names) != (other in names):
+            there, missing = (first, other) if first in names else (other, first)
             yield Problem(str(path), f"has {there} without {missing}.", "A position needs both.")
     if "north" in names and "latitude" in names:
         yield Problem(

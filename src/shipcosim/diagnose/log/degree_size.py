@@ -35,8 +35,8 @@ def local_plane(latitude: np.ndarray, longitude: np.ndarray) -> tuple[np.ndarray
     latitude, longitude : (n,) array
         [deg]
     """
-    known = np.flatnonzero(np.isfinite(latitude) & np.isfinite(longitude))
-    first = int(known[0]) if len(known) else 0
+    fixes = np.flatnonzero(np.isfinite(latitude) & np.isfinite(longitude))
+    first = int(fixes[0]) if len(fixes) else 0
     meridian, parallel = metres_per_degree(float(latitude[first]))
     # The longitude is wrapped, for tracks over the date line.
     east = parallel * wrap_series(longitude - longitude[first])

@@ -86,10 +86,10 @@ def exchanged(pairs: Sequence[tuple[str, str]]) -> Mislabel:
     return Mislabel("channel_swap", channels, f"{names} are swapped", undo)
 
 
-def swap_of(one: str, other: str) -> Mislabel:
+def swap_of(first: str, other: str) -> Mislabel:
     """Two channels exchanged."""
-    undo = partial(_swapped, [(one, other)])
-    return Mislabel("channel_swap", (one, other), f"{one} and {other} are swapped", undo)
+    undo = partial(_swapped, [(first, other)])
+    return Mislabel("channel_swap", (first, other), f"{first} and {other} are swapped", undo)
 
 
 def _swapped(pairs, log):
@@ -125,8 +125,8 @@ def _turned_to_body(roles, north, east, heading):
 
 def velocity_frame(first: str, second: str) -> Mislabel:
     """Velocities over the earth in the columns of the ship's: the first is towards north, or towards east."""
-    said = f"surge and sway are the velocity towards {first} and {second}"
-    return Mislabel("frame", VELOCITY, said, partial(_from_earth, first, second))
+    message = f"surge and sway are the velocity towards {first} and {second}"
+    return Mislabel("frame", VELOCITY, message, partial(_from_earth, first, second))
 
 
 def _from_earth(first, second, log):
@@ -158,8 +158,8 @@ def _turned_back(roles, angle, log):
 def late(channels: tuple[str, ...], others: tuple[str, ...], seconds: float) -> Mislabel:
     """Channels that come some seconds later than others."""
     verb = "come" if len(channels) > 1 else "comes"
-    said = f"{' and '.join(channels)} {verb} {seconds:.1f} s later than {' and '.join(others)}"
-    return Mislabel("channel_lag", channels, said, partial(_earlier, channels, seconds))
+    message = f"{' and '.join(channels)} {verb} {seconds:.1f} s later than {' and '.join(others)}"
+    return Mislabel("channel_lag", channels, message, partial(_earlier, channels, seconds))
 
 
 def _earlier(roles, seconds, log):
@@ -167,10 +167,10 @@ def _earlier(roles, seconds, log):
     time = log["time"]
     moved = {}
     for role in roles:
-        known = np.isfinite(log[role])
-        values = log[role][known]
+        has_value = np.isfinite(log[role])
+        values = log[role][has_value]
         values = np.unwrap(values, period=360.0) if role in ANGLES else values
-        values = np.interp(time + seconds, time[known], values, right=np.nan)
+        values = np.interp(time + seconds, time[has_value], values, right=np.nan)
         moved[role] = np.mod(values, 360.0) if role in ANGLES else values
     return moved
 
@@ -243,8 +243,8 @@ def possible(labels: Iterable[Mislabel], log: Container[str]) -> list[Mislabel]:
 def finding_of(mislabel: Mislabel, probability: float, segment: Segment | None = None) -> Finding:
     """The finding that a log has a mislabel, in a segment (from, to) [s] or throughout."""
     segments = (segment,) if segment else ()
-    found = log_fault(mislabel.cause, mislabel.channels, mislabel.sentence, segments, probability)
-    return replace(found, mislabel=mislabel)
+    fault = log_fault(mislabel.cause, mislabel.channels, mislabel.sentence, segments, probability)
+    return replace(fault, mislabel=mislabel)
 
 
 def undone(

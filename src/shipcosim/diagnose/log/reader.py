@@ -89,7 +89,7 @@ def read_log(
         mapping = given.channels
     is_asked = given is not None and bool(given.channels)
     # Convert each channel to the unit of its role, and keep what is stated and what is not used.
-    signals, said = _signals(columns, mapping, form, is_asked)
+    signals, remarks = _signals(columns, mapping, form, is_asked)
     stated = {name: _stated(channel, name, columns) for name, channel in mapping.items()}
     used = {name for channel in mapping.values() for name in channel.columns}
     unused = [name for name in columns.values if name not in used and not _is_unnamed(name)]
@@ -99,14 +99,14 @@ def read_log(
     _check_time(columns.source, time)
     time, signals, more = brought_together(time, signals, columns.joined)
     _check_restart(columns.source, time, [values for values, _ in signals.values()])
-    said += more + _over_the_earth(signals)
+    remarks += more + _over_the_earth(signals)
     if LARGEST.keys() <= signals.keys():
-        attributes |= _local_position(columns.source, signals, said)
-    said += _without_value(columns.source, signals)
+        attributes |= _local_position(columns.source, signals, remarks)
+    remarks += _without_value(columns.source, signals)
     attributes["column_remarks"] = [
         *columns.remarks,
-        *said,
-        *(_told(proposal) if proposal else _not_named(unused)),
+        *remarks,
+        *(_proposal_text(proposal) if proposal else _not_named(unused)),
     ]
     table = make_table(
         time, [(n, v, unit, _meaning(n)) for n, (v, unit) in signals.items()], attributes
@@ -127,7 +127,7 @@ def columns_of(log: str | os.PathLike, form: FileLayout | None = None) -> LogCol
     log : path
         A file, or a folder of tables that are joined by their times.
     form : FileLayout, optional
-        What was said of the file.
+        What the file states of itself.
     """
     path = Path(log)
     form = form or FileLayout()
@@ -196,10 +196,10 @@ def _sure(columns: LogColumns, proposal: Proposal) -> dict[str, Channel]:
     # Without a time, or with nothing but a time, there is no log.
     if "time" not in mapping:
         guess = next((g for g in proposal.used if g.role == "time"), None)
-        found = f"has no column 'time', only {_shown(columns)}."
+        message = f"has no column 'time', only {_shown(columns)}."
         if guess:
-            found = f"'{guess.column}' may be the time, but {guess.why}."
-        problems.append(Problem(source, found, help_))
+            message = f"'{guess.column}' may be the time, but {guess.why}."
+        problems.append(Problem(source, message, help_))
     elif len(mapping) < 2:
         problems.append(
             Problem(source, f"no column but time has a role: {_shown(columns)}.", help_)
@@ -219,18 +219,18 @@ def _signals(columns, mapping, form, is_asked):
     """
     problems = []
     signals = {}
-    said = []
+    remarks = []
     if "time" not in mapping:
         problems.append(Problem(columns.source, f"has no column 'time', only {_shown(columns)}."))
     for name, channel in mapping.items():
         try:
             values, unit, more = values_of(channel, name, columns, form)
             signals[name] = values, unit
-            said += more
+            remarks += more
             problems += _beyond(f"{columns.source}, {name}", values)
         except ShipcosimError as error:
             if isinstance(error, WrongUnit) and not is_asked and name not in NAVIGATION:
-                said.append(f"'{name}' is not used: {error.problems[0].found}")
+                remarks.append(f"'{name}' is not used: {error.problems[0].found}")
                 continue
             problems += [
                 Problem(f"{columns.source}, {name}", p.found, p.remedy) for p in error.problems
@@ -244,7 +244,7 @@ def _signals(columns, mapping, form, is_asked):
         ]
     if problems:
         raise ShipcosimError(problems)
-    return signals, said
+    return signals, remarks
 
 
 def _beyond(where, values):
@@ -257,48 +257,48 @@ def _beyond(where, values):
 
 def _check_time(source, time):
     # Counts since 1970 in another unit, or times beyond any date, are errors of the unit.
-    known = finite(time)
-    if (epoch := epoch_unit(known)) not in (None, "s"):
-        found = f"begins at {known[0]:.4g} s: are these {epoch} since 1970?"
+    times = finite(time)
+    if (epoch := epoch_unit(times)) not in (None, "s"):
+        message = f"begins at {times[0]:.4g} s: are these {epoch} since 1970?"
         remedy = f'Say the unit in a channel file: time = {{column = "...", unit = "{epoch}"}}.'
-        raise error_at(f"{source}, time", found, remedy)
+        raise error_at(f"{source}, time", message, remedy)
     beyond = np.flatnonzero(np.isfinite(time) & (np.abs(time) > LATEST))
     if len(beyond):
-        found = f"is {time[beyond[0]]:g} s in row {beyond[0] + 2}: is the unit right?"
+        message = f"is {time[beyond[0]]:g} s in row {beyond[0] + 2}: is the unit right?"
         remedy = f"Times are at most {LATEST:g} s, the year 9999 counted from 1970."
-        raise error_at(f"{source}, time", found, remedy)
+        raise error_at(f"{source}, time", message, remedy)
     # What follows takes as many rows as an even series of this step has, so a wrong unit would fill the memory.
-    step = usual_rise(known, np.inf)
+    step = usual_rise(times, np.inf)
     if step < SHORTEST_STEP:
-        found = f"its rows are {step:.2g} s apart: is the unit right?"
+        message = f"its rows are {step:.2g} s apart: is the unit right?"
         remedy = 'Say it in a channel file: time = {column = "...", unit = "s"}.'
-        raise error_at(f"{source}, time", found, remedy)
+        raise error_at(f"{source}, time", message, remedy)
 
 
 def _check_restart(source, time, signals):
     """Raise where there is one time only, or the clock starts again: sorted, rows of two parts would be mixed."""
     rows = np.flatnonzero(np.isfinite(time))
-    known = time[rows]
-    if len(np.unique(known)) < 2:
+    times = time[rows]
+    if len(np.unique(times)) < 2:
         raise error_at(
             f"{source}, time", "has fewer than two different times.", "A log has many rows."
         )
-    back = np.flatnonzero(np.diff(known) < -_RESTART * usual_rise(known, np.inf)) + 1
+    back = np.flatnonzero(np.diff(times) < -_RESTART * usual_rise(times, np.inf)) + 1
     if not len(back):
         return
     # Rows of different parts beside each other; the same row twice mixes nothing.
-    part = np.searchsorted(back, np.arange(len(known)), side="right")
-    order = np.argsort(known, kind="stable")
+    part = np.searchsorted(back, np.arange(len(times)), side="right")
+    order = np.argsort(times, kind="stable")
     is_mixed = np.diff(part[order]) != 0
-    is_same = np.diff(known[order]) == 0.0
+    is_same = np.diff(times[order]) == 0.0
     for values in signals:
         cells = values[rows][order]
         is_same &= (cells[1:] == cells[:-1]) | ~np.isfinite(cells[1:] + cells[:-1])
     if np.sum(is_mixed & ~is_same) > _MOST_MIXED * (len(back) + 1):
         row = int(rows[back[0]])
-        found = f"goes back from {known[back[0] - 1]:g} to {time[row]:g} s in row {row + 2}, over times that were there."
+        message = f"goes back from {times[back[0] - 1]:g} to {time[row]:g} s in row {row + 2}, over times that were there."
         remedy = "Cut the log there: rows of both parts would be mixed."
-        raise error_at(f"{source}, time", found, remedy)
+        raise error_at(f"{source}, time", message, remedy)
 
 
 _RESTART = 10.0  # usual steps back that are no disorder of single rows. Assumed.
@@ -343,23 +343,23 @@ def _over_the_earth(signals):
     return [f"Surge and sway come from {of} and the heading."]
 
 
-def _local_position(source, signals, said):
+def _local_position(source, signals, remarks):
     """Turn latitude and longitude into north and east in a plane about the first fix; say where that is."""
     degrees = {name: signals.pop(name)[0] for name in LARGEST}
     # Single impossible fixes are left out, but if most are impossible the unit is wrong.
     for name, values in degrees.items():
         limit = _FARTHEST[name]
-        known = np.isfinite(values)
+        has_value = np.isfinite(values)
         beyond = np.abs(values) > limit
-        if not known.any():
+        if not has_value.any():
             raise error_at(
                 f"{source}, {name}", "has no value in any row.", "Leave the channel out."
             )
-        if beyond.sum() > 0.5 * known.sum():
+        if beyond.sum() > 0.5 * has_value.sum():
             row = int(np.flatnonzero(beyond)[0])
-            found = f"is {values[row]:g} in row {row + 2}, beyond {limit:g} deg, in {int(beyond.sum())} rows."
+            message = f"is {values[row]:g} in row {row + 2}, beyond {limit:g} deg, in {int(beyond.sum())} rows."
             remedy = 'A unit can be said: unit = "ddmm.mmmm", "rad" or "1e-7 deg".'
-            raise error_at(f"{source}, {name}", found, remedy)
+            raise error_at(f"{source}, {name}", message, remedy)
     # A receiver without a fix may report 0, 0. A log that is there throughout is kept.
     lost = np.any([np.abs(v) > _FARTHEST[n] for n, v in degrees.items()], axis=0)
     nowhere = (degrees["latitude"] == 0.0) & (degrees["longitude"] == 0.0)
@@ -370,7 +370,7 @@ def _local_position(source, signals, said):
         (nowhere, "the position 0, 0, which is no fix"),
     ):
         if rows.any():
-            said.append(f"{counted(rows.sum(), 'row')} with {why}: left empty.")
+            remarks.append(f"{counted(rows.sum(), 'row')} with {why}: left empty.")
     values = [np.where(lost | nowhere, np.nan, degrees[name]) for name in LARGEST]
     # Local plane about the first fix; east by the length of a degree at its latitude.
     north, east, first = local_plane(*values)
@@ -385,17 +385,21 @@ def _without_value(source, signals):
     """Takes away channels without any value, and says so."""
     empty = [name for name, (values, _) in signals.items() if not np.isfinite(values).any()]
     if empty and len(empty) == len(signals):
-        found = f"no row has a value of {shortened(empty, MOST_NAMED)}."
-        raise error_at(source, found, "A log has numbers beside its times.")
+        message = f"no row has a value of {shortened(empty, MOST_NAMED)}."
+        raise error_at(source, message, "A log has numbers beside its times.")
     for name in empty:
         del signals[name]
     return [f"{name}: no row has a value, so it is not used." for name in empty]
 
 
-def _told(proposal):
+def _proposal_text(proposal):
     """Remarks on columns with other names than their roles, and on unused columns with the reason."""
     named = [g for g in proposal.used if g.rank < 2]
-    other = [f"{g.role} from '{g.column}'{_said(g)}" for g in named if g.column != g.role or g.said]
+    other = [
+        f"{g.role} from '{g.column}'{_guess_text(g)}"
+        for g in named
+        if g.column != g.role or g.notes
+    ]
     if other:
         yield f"Columns used: {'; '.join(other)}."
     for guess in proposal.used:
@@ -420,6 +424,6 @@ def _not_named(unused):
     )
 
 
-def _said(guess):
+def _guess_text(guess):
     unit = f" [{guess.channel.unit}]" if guess.channel.unit else ""
-    return f"{unit}{' (' + '; '.join(guess.said) + ')' if guess.said else ''}"
+    return f"{unit}{' (' + '; '.join(guess.notes) + ')' if guess.notes else ''}"

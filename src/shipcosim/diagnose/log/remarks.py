@@ -19,40 +19,44 @@ def remarks(log: xarray.Dataset) -> list[str]:
         As from `read_log`.
     """
     time = log["time"].values
-    known = finite(time)
-    said = []
-    if len(known) < len(time):
-        said.append(f"{counted(len(time) - len(known), 'row')} without a time: left out.")
-    if (back := known[1:][np.diff(known) < 0.0]).size:
-        said.append(
+    times = finite(time)
+    sentences = []
+    if len(times) < len(time):
+        sentences.append(f"{counted(len(time) - len(times), 'row')} without a time: left out.")
+    if (back := times[1:][np.diff(times) < 0.0]).size:
+        sentences.append(
             f"{counted(back.size, 'row')} earlier than the one before, the first at {back[0]:g} s: sorted by time."
         )
-    ordered = np.sort(known)
+    ordered = np.sort(times)
     if (again := ordered[1:][np.diff(ordered) == 0.0]).size:
-        said.append(
+        sentences.append(
             f"{counted(again.size, 'row')} with a time that was there, the first at {again[0]:g} s: the first is kept."
         )
     rows = usable_rows(time)
-    said += _steps(time[rows])
+    sentences += _steps(time[rows])
     for name, variable in log.data_vars.items():
         if empty := int(np.sum(~np.isfinite(variable.values[rows]))):
-            said.append(f"{name}: {counted(empty, 'row')} without a number.")
+            sentences.append(f"{name}: {counted(empty, 'row')} without a number.")
     far = outliers(arrays_of(log.isel(time=rows)))
-    said += [
+    sentences += [
         f"{role}: {counted(bad.sum(), 'row')} far off both neighbours: left out."
         for role, bad in far.items()
         if bad.any()
     ]
-    return said
+    return sentences
 
 
 def handled(log: xarray.Dataset) -> list[str]:
     """Remarks on ordinary things, and how the file was read: which column is what, and which is not used and why."""
-    told = log.attrs.get("column_remarks", ())
+    of_columns = log.attrs.get("column_remarks", ())
     unused = ", ".join(map(str, log.attrs.get("unused_columns", ())))
     plain = [f"Columns without a role are not used: {unused}."] if unused else []
-    said = list(map(str, told))
-    return [*remarks(log), *said, *([] if any("not used" in one for one in said) else plain)]
+    sentences = list(map(str, of_columns))
+    return [
+        *remarks(log),
+        *sentences,
+        *([] if any("not used" in sentence for sentence in sentences) else plain),
+    ]
 
 
 def _steps(time):

@@ -80,11 +80,11 @@ def _check_span(time, step):
     """A stamp far off all others would make a log of years."""
     if time[-1] - time[0] > LONGEST_SPAN * step * len(time):
         row = int(np.argmax(np.diff(time)))
-        found = (
+        message = (
             f"{time[row]:g} s is followed by {time[row + 1]:g} s, with a usual step of {step:g} s."
         )
         raise error_at(
-            "time", found, "Leave out the rows whose times are wrong, or cut the log there."
+            "time", message, "Leave out the rows whose times are wrong, or cut the log there."
         )
 
 
@@ -110,8 +110,8 @@ def read_anew(log: dict, findings: Sequence[Finding]) -> dict:
 
 def _labels_throughout(findings):
     """The heading first: velocities are turned by it."""
-    found = [f.mislabel for f in findings if f.mislabel is not None and not f.segments]
-    return sorted(found, key=lambda mislabel: mislabel.channels != ("heading",))
+    labels = [f.mislabel for f in findings if f.mislabel is not None and not f.segments]
+    return sorted(labels, key=lambda mislabel: mislabel.channels != ("heading",))
 
 
 def _true_time(logged, base, findings, step):

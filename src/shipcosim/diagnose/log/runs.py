@@ -75,22 +75,24 @@ def run_as_log(log: LogSource, ship: str, thrusters: Collection[str]) -> LogSour
         return log
     if missing := [role for role in _NEEDED if role not in channels]:
         there = sorted({name.rpartition(".")[0] for name in signals if "." in name})
-        found = f"this is the table of a run, and it has no {', '.join(_SHIP[role][0] for role in missing)} of '{ship}'."
+        message = f"this is the table of a run, and it has no {', '.join(_SHIP[role][0] for role in missing)} of '{ship}'."
         remedy = f"Its components: {', '.join(there)}. Name the system that made it: --system SSP."
-        raise error_at(file.get("source", "log"), found, remedy)
+        raise error_at(file.get("source", "log"), message, remedy)
     # Inputs of the system that are named as roles go before what its components show.
     inputs = {
         name: _channel(name, name)
         for name in signals
         if name.endswith(("_rpm", "_azimuth", "_thrust")) and "." not in name
     }
-    named = {role: one for role, one in channels.items() if role in _SHIP or role not in signals}
+    named = {
+        role: channel for role, channel in channels.items() if role in _SHIP or role not in signals
+    }
     named |= inputs
     # Damaged cells make a column of texts.
     with reading(file.get("source", "log")):
         table = make_table(
             np.asarray(signals["time"], float),
-            [_column(role, one, signals, units) for role, one in named.items()],
+            [_column(role, signal, signals, units) for role, signal in named.items()],
         )
     table.encoding |= file
     return table

@@ -74,7 +74,7 @@ def values_of(
     log : LogColumns
         Columns of the file.
     form : FileLayout
-        What was said of the file.
+        What the file states of itself.
 
     Raises
     ------
@@ -83,16 +83,16 @@ def values_of(
     """
     # An attitude as a quaternion has four columns and needs no unit.
     if channel.quaternion is not None:
-        parts = [_numbers(log, _found(log, column)) for column in channel.quaternion]
+        parts = [_numbers(log, _content_of(log, column)) for column in channel.quaternion]
         return heading_of_quaternion(np.array(parts), channel.frame), "deg", []
-    column = _found(log, channel.column)
+    column = _content_of(log, channel.column)
     stated = channel.unit or log.units[column]
     if name == "time":
-        values, said = _time(channel, column, stated, log, form)
-        return channel.sign * values + (channel.offset or -0.0), "s", said
+        values, remarks = _time(channel, column, stated, log, form)
+        return channel.sign * values + (channel.offset or -0.0), "s", remarks
     # Positions as text, in minutes or with a hemisphere.
-    if name in LARGEST and (found := _position(channel, column, stated, name, log)) is not None:
-        return found[0], "deg", found[1]
+    if name in LARGEST and (message := _position(channel, column, stated, name, log)) is not None:
+        return message[0], "deg", message[1]
     # Plain numbers: a map replaces unit and factor;
     # otherwise convert from the stated unit to the role's.
     values = _numbers(log, column)
@@ -105,17 +105,17 @@ def values_of(
     try:
         factor, zero = conversion(unit_for(unit, target) if role else unit, target)
     except ShipcosimError as error:
-        found = f"its unit '{unit}' is none that converts to {target}."
-        raise WrongUnit(Problem("", found, "Correct it, or say it in a channel file.")) from error
-    values, said = _without_placeholders(values, name, column)
+        message = f"its unit '{unit}' is none that converts to {target}."
+        raise WrongUnit(Problem("", message, "Correct it, or say it in a channel file.")) from error
+    values, remarks = _without_placeholders(values, name, column)
     if channel.hemisphere is not None:
         values = np.abs(values) * _signs(channel, name, log)
     # -0.0 + 0.0 is 0.0, and the sign of a zero is all that is left of a rate in too large a unit
     values = factor * (channel.sign * values + (channel.offset or -0.0)) + (zero or -0.0)
     if role and role.is_angle and name not in LARGEST:
         values, more = _without_leaps(values, column)
-        said += more
-    return values, target, said
+        remarks += more
+    return values, target, remarks
 
 
 def _without_leaps(values, column):
@@ -129,17 +129,18 @@ def _without_leaps(values, column):
         return values, []
     rows = size > max(_MOST_TURNED, _USUALLY_TURNED * np.median(finite(size)))
     left = np.where(rows, np.nan, values)
-    known = finite(left)
-    is_leaping = rows.sum() < len(far) and np.abs(np.diff(known)).max() > 360.0
-    if is_leaping or rows.mean() > _FEW_IMPOSSIBLE or abs(known[0]) > _MOST_TURNED:
-        found = f"column '{column}' is {size[far[0]]:g} deg in row {far[0] + 2}, which is no direction: is the unit right?"
+    directions = finite(left)
+    is_leaping = rows.sum() < len(far) and np.abs(np.diff(directions)).max() > 360.0
+    if is_leaping or rows.mean() > _FEW_IMPOSSIBLE or abs(directions[0]) > _MOST_TURNED:
+        row = far[0]
+        message = f"column '{column}' is {size[row]:g} deg in row {row + 2}, which is no direction: is the unit right?"
         remedy = (
             "In a channel file map = [[0, 0], [36000, 360]] reads hundredths of a degree, "
             "and offset = -3600 takes off ten turns."
         )
-        raise error_at("", found, remedy)
-    said = f"'{column}' is {size[far[0]]:g} deg in row {far[0] + 2} or more, which is no direction: left out."
-    return left, [said] if rows.any() else []
+        raise error_at("", message, remedy)
+    remark = f"'{column}' is {size[far[0]]:g} deg in row {far[0] + 2} or more, which is no direction: left out."
+    return left, [remark] if rows.any() else []
 
 
 def _without_placeholders(values, name, column):
@@ -149,8 +150,8 @@ def _without_placeholders(values, name, column):
         return values, []
     count = int(rows.sum())
     number = f"{NOT_AVAILABLE[name]:g}"
-    said = f"'{column}' is {number} in {count} of its rows, by which AIS says that there is none: left out."
-    return np.where(rows, np.nan, values), [said]
+    message = f"'{column}' is {number} in {count} of its rows, by which AIS says that there is none: left out."
+    return np.where(rows, np.nan, values), [message]
 
 
 class WrongUnit(ShipcosimError):
@@ -183,7 +184,7 @@ def heading_of_quaternion(parts: np.ndarray, frame: str) -> np.ndarray:
     return np.mod(yaw if frame == "NED" else 90.0 - yaw, 360.0)
 
 
-def _found(log: LogColumns, name: str) -> str:
+def _content_of(log: LogColumns, name: str) -> str:
     """Name of a column in the log, also if it was written with a unit."""
     if name in log.values:
         return name
@@ -201,8 +202,8 @@ def _numbers(log: LogColumns, column: str) -> np.ndarray:
         row = next(
             (i for i, value in enumerate(values) if value is not None and not _is_number(value)), 0
         )
-        found = f"column '{column}' holds '{values[row]}' in row {row + 2}, not only numbers."
-        raise error_at("", found, "A missing value is an empty field or nan.")
+        message = f"column '{column}' holds '{values[row]}' in row {row + 2}, not only numbers."
+        raise error_at("", message, "A missing value is an empty field or nan.")
     return values
 
 
@@ -222,29 +223,33 @@ def _time(channel, column, stated, log, form):
         values = np.array([None if np.isnat(v) else str(v) for v in values], object)
     if values.dtype.kind == "O":
         if channel.date is not None:
-            values = _joined(log, _found(log, channel.date), values)
+            values = _joined(log, _content_of(log, channel.date), values)
         read = seconds_of(values, form.dates, stated)
         if read is not None:
-            times, said = _without_summer_time(read[0], values)
+            times, remarks = _without_summer_time(read[0], values)
             if channel.milliseconds is not None:
-                times = times + 1e-3 * _numbers(log, _found(log, channel.milliseconds))
-            return times, [*read[1], *said]
+                times = times + 1e-3 * _numbers(log, _content_of(log, channel.milliseconds))
+            return times, [*read[1], *remarks]
     # Numbers: clock times as hhmmss, seconds with nanoseconds, counts since 1970, or a plain unit.
     numbers = _numbers(log, column)
     if stated.lower() == CLOCK_NUMBER:
         return seconds_of_clock(_of_clock(numbers))
     if channel.nanoseconds is not None:
-        return numbers + 1e-9 * _numbers(log, _found(log, channel.nanoseconds)), []
+        return numbers + 1e-9 * _numbers(log, _content_of(log, channel.nanoseconds)), []
     unit = unit_for(stated, "s") if stated else ""
-    known = finite(numbers)
+    finite_numbers = finite(numbers)
     # Seconds of some minutes come by 60 to 99, which no clock shows.
-    is_long = len(known) and np.ptp(known) > 200.0 and usual_rise(known, 1e9) < 40.0
-    if not unit and is_long and is_clock_number(known):
-        times, said = seconds_of_clock(_of_clock(numbers))
-        return times, [*said, f"Numbers in '{column}' are clock times: 123519 is 12:35:19."]
+    is_long = (
+        len(finite_numbers)
+        and np.ptp(finite_numbers) > 200.0
+        and usual_rise(finite_numbers, 1e9) < 40.0
+    )
+    if not unit and is_long and is_clock_number(finite_numbers):
+        times, remarks = seconds_of_clock(_of_clock(numbers))
+        return times, [*remarks, f"Numbers in '{column}' are clock times: 123519 is 12:35:19."]
     if unit in ("", "date") and (epoch := epoch_unit(numbers)) is not None:
-        said = [f"Times in '{column}' are {epoch} since 1970."] if epoch != "s" or unit else []
-        return numbers / EPOCHS[epoch], said
+        remarks = [f"Times in '{column}' are {epoch} since 1970."] if epoch != "s" or unit else []
+        return numbers / EPOCHS[epoch], remarks
     factor, zero = conversion(unit or "s", "s")
     times = factor * numbers + (zero or -0.0)
     # A guessed unit is checked by the distance of rows, and one of days or longer;
@@ -266,23 +271,23 @@ def _check_steps(column, times, factor, stated):
     unit = plausible[0] if plausible else "d" if step < _STEPS[0] else "ns"
     name = _NAMES[unit]
     question = "is the unit right" if stated else f"are these {name}"
-    found = f"its rows are {step:.2g} s apart: {question}? As {name} they are {steps[unit]:.3g} s apart."
+    message = f"its rows are {step:.2g} s apart: {question}? As {name} they are {steps[unit]:.3g} s apart."
     remedy = f'Say the unit: time = {{column = "{column}", unit = "{unit}"}}'
-    raise error_at("", found, f"{remedy}." if stated else f'{remedy}, or "s".')
+    raise error_at("", message, f"{remedy}." if stated else f'{remedy}, or "s".')
 
 
 def _without_summer_time(times, texts):
     """Stamps of a clock that is once put back or on by an hour, which go on, and remarks."""
     # One step back of nearly an hour, and no other, is the end of summer time.
-    known = np.flatnonzero(np.isfinite(times))
-    steps = np.diff(times[known])
+    stamped = np.flatnonzero(np.isfinite(times))
+    steps = np.diff(times[stamped])
     falls = np.flatnonzero(steps < 0.0)
     turns = falls if len(falls) else np.flatnonzero(steps > _HOUR)
     if len(turns) != 1:
         return times, []
     hour = float(np.copysign(_HOUR, steps[turns[0]]))
-    row = int(known[turns[0] + 1])
-    usual = usual_rise(times[known], 0.0)
+    row = int(stamped[turns[0] + 1])
+    usual = usual_rise(times[stamped], 0.0)
     # An hour that is left out may be lost, unless it is the one that summer time leaves out.
     if not 0.0 <= steps[turns[0]] - hour <= 3.0 * usual or (
         hour > 0.0 and not _begins_summer(str(texts[row]))
@@ -307,12 +312,12 @@ def _past_the_end(times):
     """Seconds of the day, or of the week of GPS, that go on past its end, and remarks."""
     # The clock must fall by nearly a whole period, from
     # near its end to near its start, at each fall.
-    known = finite(times)
+    seconds = finite(times)
     for period, name in _PERIODS.items():
-        falls = np.flatnonzero(np.diff(known) < -0.9 * period)
-        if not len(falls) or known.min() < 0.0 or known.max() >= period:
+        falls = np.flatnonzero(np.diff(seconds) < -0.9 * period)
+        if not len(falls) or seconds.min() < 0.0 or seconds.max() >= period:
             continue
-        if (known[falls] > period - _NEAR_END).all() and (known[falls + 1] < _NEAR_END).all():
+        if (seconds[falls] > period - _NEAR_END).all() and (seconds[falls + 1] < _NEAR_END).all():
             return seconds_of_clock(times, period)[0], [
                 f"Seconds of the {name} pass its end: they go on."
             ]
@@ -348,7 +353,7 @@ def _position(channel, column, stated, name, log):
     # Formats by precedence: texts, whole numbers of autopilots,
     # degrees and minutes, plain degrees with a hemisphere.
     values = log.values[column]
-    said = []
+    remarks = []
     if values.dtype.kind == "O":
         degrees = degrees_of_texts(values, LARGEST[name])
         if degrees is None:
@@ -357,7 +362,7 @@ def _position(channel, column, stated, name, log):
         degrees = 1e-7 * values
     elif stated.lower() == MINUTES or (not stated and _in_minutes(values, name, log)):
         degrees = degrees_of_minutes(values)
-        said = (
+        remarks = (
             []
             if stated
             else [
@@ -372,16 +377,16 @@ def _position(channel, column, stated, name, log):
     # The hemisphere gives the sign; a sign in the numbers would count twice.
     if channel.hemisphere is not None:
         degrees = np.abs(degrees) * _signs(channel, name, log)
-    return channel.sign * degrees + channel.offset, said
+    return channel.sign * degrees + channel.offset, remarks
 
 
 def _signs(channel, name, log):
     """Signs by the column of sides of a channel."""
-    hemisphere = _found(log, channel.hemisphere)
+    hemisphere = _content_of(log, channel.hemisphere)
     signs = hemisphere_signs(log.values[hemisphere], name)
     if signs is None:
-        found = f"column '{hemisphere}' does not hold hemispheres or sides of {name}."
-        raise error_at("", found, "It should hold N and S, E and W, or S and P.")
+        message = f"column '{hemisphere}' does not hold hemispheres or sides of {name}."
+        raise error_at("", message, "It should hold N and S, E and W, or S and P.")
     return signs
 
 
@@ -401,11 +406,11 @@ def _mapped(values, channel, column):
     """Values by a map, straight between its pairs."""
     given, wanted = np.array(channel.map).T
     # Outside its first and last pair a map is not extrapolated.
-    known = np.isfinite(values)
-    if (beyond := known & ((values < given[0]) | (values > given[-1]))).any():
+    has_value = np.isfinite(values)
+    if (beyond := has_value & ((values < given[0]) | (values > given[-1]))).any():
         row = int(np.flatnonzero(beyond)[0])
-        found = f"column '{column}' holds {values[row]:g} in row {row + 2}, beyond its map."
-        raise error_at("", found, f"The map goes from {given[0]:g} to {given[-1]:g}.")
+        message = f"column '{column}' holds {values[row]:g} in row {row + 2}, beyond its map."
+        raise error_at("", message, f"The map goes from {given[0]:g} to {given[-1]:g}.")
     return (
         channel.sign * np.interp(values, given, wanted, left=np.nan, right=np.nan) + channel.offset
     )

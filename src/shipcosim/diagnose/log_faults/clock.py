@@ -65,26 +65,26 @@ def clock_by_response(problem: IdentificationProblem) -> Finding | None:
     Finding or None
     """
     # Evidence for a wrong clock, with the uncertain parameters of the model integrated out.
-    known = problem.known(())
+    of_ship = problem.known(())
     edges = _edges(problem)
-    gain, finding = _most_likely(_blocks(problem, edges, known))
+    gain, finding = _most_likely(_blocks(problem, edges, of_ship))
     if finding is None:
         return None
     # The likeliest single cause is the rival. The clock must explain
     # more, and all aspects of the motion must agree on its rate.
     rival, hypothesis, values = screened(problem, fitted(problem))[0]
-    if gain < rival + OVER_CAUSE or not _all_aspects_agree(problem, finding, known):
+    if gain < rival + OVER_CAUSE or not _all_aspects_agree(problem, finding, of_ship):
         return None
     # If a cause explains something too, the clock must still be found beside the fitted cause.
     if rival > 0.0:
         fit = fitted(problem, (hypothesis,), values)
-        beside = prepared(replace(problem, model=fit.model, motion=fit.motion))
-        if _most_likely(_blocks(beside, edges, known))[1] is None:
+        with_cause = prepared(replace(problem, model=fit.model, motion=fit.motion))
+        if _most_likely(_blocks(with_cause, edges, of_ship))[1] is None:
             return None
     return finding
 
 
-def _all_aspects_agree(problem, finding, known):
+def _all_aspects_agree(problem, finding, of_ship):
     """Whether distance, speed, heading and turning agree with one rate.
 
     A compass can be wrong alone, and so can a force: it changes the speed, but how far the ship comes at her speed
@@ -97,7 +97,7 @@ def _all_aspects_agree(problem, finding, known):
     for aspect, states in enumerate(ASPECTS):
         aspects[states, aspect] = 1.0
     match, inner = _left(
-        problem, known, len(ASPECTS), lambda steps: -moved[steps, :, None] * aspects
+        problem, of_ship, len(ASPECTS), lambda steps: -moved[steps, :, None] * aspects
     )
     # Rate of each aspect by least squares, with its covariance.
     covariance = np.linalg.pinv(inner)
@@ -127,9 +127,9 @@ def with_rate(problem: IdentificationProblem, finding: Finding, log: xarray.Data
     blocks = _blocks(problem, np.r_[time[0], inner, time[-1]], problem.known(()))
     # The blocks inside the segments, every second one, give
     # the remaining rate error by regularised least squares.
-    own = np.arange(1, len(inner), 2)
-    energy = blocks.gram[np.ix_(own, own)].sum()
-    _, more, _ = evidence_of_rate(blocks.match[own].sum(), energy)
+    odd_places = np.arange(1, len(inner), 2)
+    energy = blocks.gram[np.ix_(odd_places, odd_places)].sum()
+    _, more, _ = evidence_of_rate(blocks.match[odd_places].sum(), energy)
     rate = finding.parameters["rate"]
     return replace(
         finding, parameters={"rate": replace(rate, estimate=float(rate.estimate * (1.0 + more)))}
@@ -253,8 +253,8 @@ def _left(problem, columns, count, driven):
     # Inner products of the whitened log and regressors; the first row belongs to the log.
     products = problem.gram(linear, parts=1).products
     theirs = slice(1, 1 + others)
-    own = slice(1 + others, None)
+    further = slice(1 + others, None)
     # Integrate the parameters out: the Schur complement, with their prior precisions.
     inner = products[theirs, theirs] + np.diag([column.prior**-2 for column in columns])
     left = products - products[:, theirs] @ np.linalg.solve(inner, products[theirs, :])
-    return left[own, 0], left[own, own]
+    return left[further, 0], left[further, further]

@@ -46,58 +46,62 @@ from shipcosim.diagnose.ship.stretches import in_stretches
 from shipcosim.diagnose.ship.wiring import put_right
 
 
-def corrected(found: Identification) -> Identification:
+def corrected(identification: Identification) -> Identification:
     """A log with navigation, clock and wind, and a system with connections, as the ship's response says."""
-    navigation = with_right_navigation(found)
+    navigation = with_right_navigation(identification)
     clock = with_right_clock(navigation)
     wind = with_right_wind(clock)
     return with_right_connections(with_measured_inputs(wind))
 
 
-def with_measured_inputs(found: Identification) -> Identification:
+def with_measured_inputs(identification: Identification) -> Identification:
     """The log without rows in which a channel of thrusters or wind keeps a value that the ship contradicts."""
     # A channel that is held can look like a wrong label of it: first without labels of inputs.
     navigation = {"time", *NAVIGATION}
     others = tuple(
         fault
-        for fault in found.faults
+        for fault in identification.faults
         if fault.mislabel is None or set(fault.channels) & navigation
     )
-    is_labelled = len(others) < len(found.faults)
-    held = held_inputs(_without(found, others), found.ship) if is_labelled else []
+    is_labelled = len(others) < len(identification.faults)
+    held = held_inputs(_without(identification, others), identification.ship) if is_labelled else []
     if held:
-        plain = _repaired(found, others)
+        plain = _repaired(identification, others)
         cut = _without_held_inputs(plain, held)
         if cut is not plain:
             return cut
-    return _without_held_inputs(found, held_inputs(found.repaired, found.ship))
+    return _without_held_inputs(
+        identification, held_inputs(identification.repaired, identification.ship)
+    )
 
 
-def _without_held_inputs(found, held):
+def _without_held_inputs(identification, held):
     """The log without held channels that the ship contradicts; itself where she is explained without that."""
-    logged = learnt(found.problem) if held else found.problem
+    logged = learnt(identification.problem) if held else identification.problem
     if not held or is_healthy(logged, explain(logged, most=1)[0]):
-        return found
+        return identification
     for gap in held:
-        cut = _repaired(found, (*found.faults, gap))
+        cut = _repaired(identification, (*identification.faults, gap))
         # A wind that never changes while she sails is no apparent wind, and leaves no other rows.
-        if gap.note == LIFELESS or is_contradicted(gap, found.repaired, learnt(cut.problem)):
-            found = cut
-    return found
+        if gap.note == LIFELESS or is_contradicted(
+            gap, identification.repaired, learnt(cut.problem)
+        ):
+            identification = cut
+    return identification
 
 
-def with_right_navigation(found: Identification) -> Identification:
+def with_right_navigation(identification: Identification) -> Identification:
     """The log with the channels of the navigation labelled as the ship's response says."""
     # Labels of the navigation that the response of the ship prefers.
-    candidates = relabelled(found.log, found.faults, found.problem)
+    candidates = relabelled(identification.log, identification.faults, identification.problem)
     if not candidates:
-        return found
+        return identification
     # Fit each candidate, with the best single cause, and keep the likeliest that
     # gains enough over the log as it is. The density makes units comparable.
-    best = found
-    enough = explain(found.problem, most=1)[0].score + FAULT
+    best = identification
+    enough = explain(identification.problem, most=1)[0].score + FAULT
     for candidate in candidates:
-        again = _repaired(found, candidate.faults)
+        again = _repaired(identification, candidate.faults)
         # A cheap estimate of the evidence first, as a full fit takes long.
         if at_first_sight(again.problem) + candidate.density < enough:
             continue
@@ -108,47 +112,55 @@ def with_right_navigation(found: Identification) -> Identification:
     return best
 
 
-def with_right_clock(found: Identification) -> Identification:
+def with_right_clock(identification: Identification) -> Identification:
     """The log with the segments of a wrong clock that the ship's response shows."""
     # Identify with the rows as logged, without any segment of wrong clock found so far.
-    others = tuple(fault for fault in found.faults if fault.cause != "clock" or not fault.segments)
-    as_logged = found if len(others) == len(found.faults) else _repaired(found, others)
+    others = tuple(
+        fault for fault in identification.faults if fault.cause != "clock" or not fault.segments
+    )
+    as_logged = (
+        identification
+        if len(others) == len(identification.faults)
+        else _repaired(identification, others)
+    )
     clock = clock_by_response(as_logged.problem)
     if clock is None:
-        return found
+        return identification
     # The motion was distorted by the wrong clock: correct it, then estimate the rate again.
-    first = _repaired(found, (*others, clock))
+    first = _repaired(identification, (*others, clock))
     clock = with_rate(first.problem, clock, first.repaired)
-    return _repaired(found, (*others, clock), first.problem.noise)
+    return _repaired(identification, (*others, clock), first.problem.noise)
 
 
-def with_right_wind(found: Identification) -> Identification:
+def with_right_wind(identification: Identification) -> Identification:
     """The log with a mislabelled wind corrected by the ship's response: the label, and its segment."""
-    for place, fault in enumerate(found.faults):
+    for place, fault in enumerate(identification.faults):
         if fault.mislabel in WIND_LABELS and len(fault.segments) < 2:
-            found = _with_right_wind_label(found, place)
-    return found
+            identification = _with_right_wind_label(identification, place)
+    return identification
 
 
-def _with_right_wind_label(found, place):
+def _with_right_wind_label(identification, place):
     """The log with one fault of the wind's labels, by its place among the faults, settled.
 
     One that the log alone told of throughout, and the ship's answer of nearly nowhere, is none.
     """
     # Log with all faults corrected but this one.
-    before = found.faults[:place]
-    after = found.faults[place + 1 :]
-    as_logged = replace(found, repaired=_without(found, (*before, *after)))
+    before = identification.faults[:place]
+    after = identification.faults[place + 1 :]
+    as_logged = replace(identification, repaired=_without(identification, (*before, *after)))
     # First the label of the direction, then the segment.
-    fault, problem = _likeliest_direction(as_logged, found.faults[place])
+    fault, problem = _likeliest_direction(as_logged, identification.faults[place])
     fault, right = _with_settled_segment(replace(as_logged, problem=problem), fault)
     # A fault throughout of which only a segment is left
     # needs evidence from the ship, else it is dropped.
-    shrunk = fault.segments and not found.faults[place].segments
+    shrunk = fault.segments and not identification.faults[place].segments
     about = right.problem
     logged = record_of(as_logged.repaired, about.model)
     if shrunk and likelihood(about, about.record) <= likelihood(about, logged) + PART_GAIN:
-        problem = identification_problem(as_logged.repaired, found.ship, found.causes)
+        problem = identification_problem(
+            as_logged.repaired, identification.ship, identification.causes
+        )
         return replace(as_logged, faults=(*before, *after), problem=problem)
     return replace(right, faults=(*before, fault, *after))
 
@@ -178,24 +190,27 @@ def _likeliest_direction(as_logged, fault):
     return finding_of(label, fault.probability, *fault.segments), again
 
 
-def with_right_connections(found: Identification) -> Identification:
+def with_right_connections(identification: Identification) -> Identification:
     """The ship with connections corrected by their names, where the log contradicts the system."""
-    if found.ship.wiring is None:
-        return found
+    if identification.ship.wiring is None:
+        return identification
     # Correct one odd connection at a time, and keep it if the evidence grows by the threshold.
-    score = at_first_sight(found.problem)
-    for name, what in found.ship.wiring.odd.items():
-        if found.ship.wiring is None:
+    score = at_first_sight(identification.problem)
+    for name, what in identification.ship.wiring.odd.items():
+        if identification.ship.wiring is None:
             break
-        ship = replace(found.ship, wiring=put_right(found.ship.wiring, name))
-        problem = identification_problem(found.repaired, ship, found.causes)
+        ship = replace(identification.ship, wiring=put_right(identification.ship.wiring, name))
+        problem = identification_problem(identification.repaired, ship, identification.causes)
         if (rewired := at_first_sight(problem)) > score + FAULT:
             finding = Finding("connection", name, "physics", 0.99, {}, note=what)
-            found = replace(
-                found, ship=ship, problem=problem, misconnections=(*found.misconnections, finding)
+            identification = replace(
+                identification,
+                ship=ship,
+                problem=problem,
+                misconnections=(*identification.misconnections, finding),
             )
             score = rewired
-    return found
+    return identification
 
 
 def with_right_inputs(explained: ExplainedLog, plain: Identification) -> ExplainedLog:
@@ -204,12 +219,12 @@ def with_right_inputs(explained: ExplainedLog, plain: Identification) -> Explain
     They are sought on the `plain` ship, of the model's form: one that is learnt from wrong channels hides where they
     are wrong.
     """
-    known = len(explained.identification.faults)
+    before = len(explained.identification.faults)
     for _ in range(MOST_INPUT_FAULTS):
         better = None if explained.is_healthy else _with_right_input(explained, plain)
         if better is None:
             break
-        *others, fault = better.identification.faults[known:]
+        *others, fault = better.identification.faults[before:]
         if any(set(fault.channels) & set(other.channels) for other in others):
             break  # what a channel already corrected cannot be again: something else is wrong with it
         explained = better
@@ -259,39 +274,43 @@ def _with_right_input(explained, plain):
     return None
 
 
-def _repaired(found, faults, noise=None):
+def _repaired(identification, faults, noise=None):
     """A repeated identification, of the log as read with some faults corrected."""
-    log = _without(found, faults)
-    problem = identification_problem(log, found.ship, found.causes, noise)
-    return replace(found, faults=tuple(faults), repaired=log, problem=problem)
+    log = _without(identification, faults)
+    problem = identification_problem(log, identification.ship, identification.causes, noise)
+    return replace(identification, faults=tuple(faults), repaired=log, problem=problem)
 
 
-def _without(found, faults):
+def _without(identification, faults):
     """The log as read with some faults corrected; a long one in stretches."""
-    return in_stretches(repaired(found.log, faults), found.ship.length)
+    return in_stretches(repaired(identification.log, faults), identification.ship.length)
 
 
-def _relabelled(found, fault):
+def _relabelled(identification, fault):
     """A repeated identification, of its repaired log with a mislabel undone too."""
-    log = with_label(found.repaired, fault.mislabel, fault.segments)
+    log = with_label(identification.repaired, fault.mislabel, fault.segments)
     return replace(
-        found, repaired=log, problem=identification_problem(log, found.ship, found.causes)
+        identification,
+        repaired=log,
+        problem=identification_problem(log, identification.ship, identification.causes),
     )
 
 
-def _with_settled_segment(found, fault):
+def _with_settled_segment(identification, fault):
     """A mislabel with its segment settled, and the identification with it corrected.
 
-    `found` has the log without it corrected, and the problem with it corrected in its first segment.
+    `identification` has the log without it corrected, and the problem with it corrected in its first segment.
     """
     # Segment and motion depend on each other: refine one with the other, a few times.
-    right = replace(found, repaired=with_label(found.repaired, fault.mislabel, fault.segments))
+    right = replace(
+        identification, repaired=with_label(identification.repaired, fault.mislabel, fault.segments)
+    )
     for _ in range(ROUNDS_OF_SEGMENT):
-        refined = with_refined_segment(found.repaired, fault, right.problem)
+        refined = with_refined_segment(identification.repaired, fault, right.problem)
         if refined is fault:
             break
         fault = refined
-        right = _relabelled(found, refined)
+        right = _relabelled(identification, refined)
     return fault, right
 
 
@@ -301,10 +320,10 @@ def _shows_at_its_ends(log, fault):
     if mislabel not in WIND_LABELS or mislabel.scale is None:
         return True
     speed = log["wind_speed"].values
-    known = np.isfinite(speed)
+    has_value = np.isfinite(speed)
     return leaps(
-        log["time"].values[known],
-        speed[known],
+        log["time"].values[has_value],
+        speed[has_value],
         next(iter(fault.segments), None),
         1.0 / mislabel.scale,
     )
@@ -313,6 +332,8 @@ def _shows_at_its_ends(log, fault):
 def _least_gain(fault, fit):
     """What a fault of the inputs' channels must gain over a fit: little, if a wrong unit looks like a cause in it."""
     label = fault.mislabel
-    alike = {channel for one in fit.hypotheses for channel in one.definition.unit_of}
+    mistakable = {
+        channel for hypothesis in fit.hypotheses for channel in hypothesis.definition.unit_of
+    }
     is_unit = label is not None and label.scale is not None
-    return UNIT if is_unit and alike & set(fault.channels) else FAULT
+    return UNIT if is_unit and mistakable & set(fault.channels) else FAULT

@@ -39,14 +39,14 @@ def held_inputs(log: xarray.Dataset, model: ShipModel) -> list[Finding]:
     drives = [role for name in model.thrusters for role in drive_channels(name, log)]
     roles = [*drives, *(role for role in _WIND if role in log)]
     held = {role: held_segments(time, log[role].values) for role in roles}
-    found = {}
+    findings = {}
     # A wind that is the same in every row is none that was measured: she meets another one as she moves.
     wind = tuple(role for role in _WIND[:2] if role in log)
     if any(is_constant(log[role].values) for role in wind):
         whole = (float(time[0]), float(time[-1]))
-        found[wind] = log_fault("gap", wind, LIFELESS, (whole,), 0.99)
+        findings[wind] = log_fault("gap", wind, LIFELESS, (whole,), 0.99)
     for role, segments in held.items():
-        if not segments or any(role in channels for channels in found):
+        if not segments or any(role in channels for channels in findings):
             continue
         # What is held together, as all channels of a thruster whose line is lost, is one gap.
         here = inside(time, segments)
@@ -55,8 +55,8 @@ def held_inputs(log: xarray.Dataset, model: ShipModel) -> list[Finding]:
             for other, others in held.items()
             if others and (here & inside(time, others)).sum() > HELD_ALIKE * here.sum()
         )
-        found[together] = log_fault("gap", together, HELD, segments, 0.99)
-    return list(found.values())
+        findings[together] = log_fault("gap", together, HELD, segments, 0.99)
+    return list(findings.values())
 
 
 def is_contradicted(finding: Finding, log: xarray.Dataset, problem: IdentificationProblem) -> bool:

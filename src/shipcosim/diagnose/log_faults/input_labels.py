@@ -81,7 +81,7 @@ def suspected_inputs(log: xarray.Dataset, problem: IdentificationProblem) -> lis
     """
     # Log-likelihood of each row as logged, as the reference.
     base = _by_row(problem, problem.record)
-    found = []
+    gained = []
     # For each mislabel the gain of each row if it is
     # undone everywhere, and the segment of largest sum.
     for mislabel in _mislabels(log, problem.model):
@@ -94,8 +94,8 @@ def suspected_inputs(log: xarray.Dataset, problem: IdentificationProblem) -> lis
             halves = np.array_split(gain[inside(problem.record.time, finding.segments)], 2)
             total = 2.0 * min(half.sum() for half in halves)
         if total > LEAST_ROW_GAIN:
-            found.append((total, finding))
-    return [finding for _, finding in sorted(found, key=lambda entry: -entry[0])]
+            gained.append((total, finding))
+    return [finding for _, finding in sorted(gained, key=lambda entry: -entry[0])]
 
 
 def with_refined_segment(
@@ -119,7 +119,7 @@ def with_refined_segment(
     """
     # Log-likelihoods by the ends of the segment, kept since the search returns to the same ones.
     time = problem.record.time
-    known = {}
+    cached = {}
     least = round(SHORTEST_INPUT / problem.record.step)
     last = time.size - 1
 
@@ -129,11 +129,11 @@ def with_refined_segment(
     def likelihood_of(ends):
         if not 0 <= ends[0] <= ends[1] - least <= last - least:
             return -np.inf
-        if ends not in known:
+        if ends not in cached:
             relabelled = with_label(log, finding.mislabel, segment(ends))
             record = with_inputs_of(problem.record, relabelled, problem.model)
-            known[ends] = likelihood(problem, record)
-        return known[ends]
+            cached[ends] = likelihood(problem, record)
+        return cached[ends]
 
     def likelihoods_of(many):
         """Likelihoods of several segments, computed side by side."""
@@ -167,9 +167,11 @@ def _likeliest_ends(likelihoods_of, first, last, stride):
     step = max(FIRST_MOVE, stride // 2)
     while step:
         tried = [_moved(ends, i, ends[i] + by) for i in (0, 1) for by in (-step, step)]
-        known = likelihoods_of([*tried, ends])
-        best = max(tried, key=known)
-        ends, step = (best, step) if known(best) > known(ends) else (ends, step // 2)
+        likelihood_of = likelihoods_of([*tried, ends])
+        best = max(tried, key=likelihood_of)
+        ends, step = (
+            (best, step) if likelihood_of(best) > likelihood_of(ends) else (ends, step // 2)
+        )
     return ends
 
 
@@ -186,12 +188,12 @@ def likelihood(problem: IdentificationProblem, record: Record) -> float:
 def _mislabels(log, model):
     """Every way in which channels of thrusters and wind could be wrong."""
     # Two thrusters of the same make can be exchanged: all their channels, or all but the speed.
-    found = []
-    for one, other in combinations(model.thrusters, 2):
-        pairs = [(role, other + role.removeprefix(one)) for role in drive_channels(one, log)]
+    mislabels = []
+    for first, other in combinations(model.thrusters, 2):
+        pairs = [(role, other + role.removeprefix(first)) for role in drive_channels(first, log)]
         pairs = [pair for pair in pairs if pair[1] in log]
-        if model.make_of(one) == model.make_of(other):
-            found += [
+        if model.make_of(first) == model.make_of(other):
+            mislabels += [
                 exchanged(group)
                 for group in ([pairs] if len(pairs) == 1 else [pairs, pairs[1:]])
                 if group
@@ -199,14 +201,14 @@ def _mislabels(log, model):
     # Wrong signs of speed, thrust and azimuth, and each of these channels late.
     for name in model.thrusters:
         for role in drive_channels(name, log):
-            found.append(negative(role))
-            found += [_late(role, lag) for lag in LAGS_TRIED]
+            mislabels.append(negative(role))
+            mislabels += [_late(role, lag) for lag in LAGS_TRIED]
     # Labels of the wind that involve the motion need its channels.
     if "wind_from" in log:
         motion = all(role in log for role in ("heading", "surge", "sway"))
         labels = WIND_LABELS if motion else (negative("wind_from"),)
-        found += possible((*labels, WHERE_TO), log)
-    return found
+        mislabels += possible((*labels, WHERE_TO), log)
+    return mislabels
 
 
 def with_label(

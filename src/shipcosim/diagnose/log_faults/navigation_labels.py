@@ -75,37 +75,40 @@ def relabelled(
     list of Relabelled
     """
     # The log with all faults corrected but those of navigation labels.
-    found = [fault for fault in faults if fault.mislabel in LABELS]
-    others = [fault for fault in faults if fault not in found]
+    labelled = [fault for fault in faults if fault.mislabel in LABELS]
+    others = [fault for fault in faults if fault not in labelled]
     plain = in_stretches(repaired(log, others), problem.model.length)
     # With several such faults, or none and clear kinematics, the response of the ship adds nothing.
-    if len(found) > 1 or (not found and _is_clear(plain)):
+    if len(labelled) > 1 or (not labelled and _is_clear(plain)):
         return []
     # Under a wrong label the fitted process noise is too large
     # and hides it: limit it to a share of its first guess.
-    if found:
+    if labelled:
         calm = CALM_JOLT * first_noise(problem.record, problem.model.length).jolt
         problem = replace(
             problem, noise=replace(problem.noise, jolt=np.minimum(problem.noise.jolt, calm))
         )
     # Log-likelihood of each row as logged, and its gain with each label undone.
     base = _by_row(problem, record_of(plain, problem.model))
-    known = [fault.mislabel for fault in found]
+    found_labels = [fault.mislabel for fault in labelled]
     labels = [
-        label for label in possible(LABELS, plain) if label in known or _matters(plain, label)
+        label
+        for label in possible(LABELS, plain)
+        if label in found_labels or _matters(plain, label)
     ]
     # A row after a step with unknown inputs is predicted by nothing: there a unit gains by its factor alone.
     judged = _judged(problem)
     gains = {label: judged * (_gain(plain, label, problem) - base) for label in labels}
     # What the present faults gain is the threshold for others, with a margin.
     so_far = sum(
-        float(gains[one.mislabel][inside(problem.record.time, one.segments)].sum()) for one in found
+        float(gains[fault.mislabel][inside(problem.record.time, fault.segments)].sum())
+        for fault in labelled
     )
     tried = _likely(gains, problem.record, max(LABEL_GAIN, so_far + BETTER_LABEL))
     # Units change the density of the data; correct for the
     # factors of the faults at hand and of the candidates.
-    less = sum(_density(one, problem) for one in found)
-    return [Relabelled((*others, one), _density(one, problem) - less) for one in tried]
+    less = sum(_density(fault, problem) for fault in labelled)
+    return [Relabelled((*others, fault), _density(fault, problem) - less) for fault in tried]
 
 
 def _judged(problem):
@@ -116,13 +119,17 @@ def _judged(problem):
 def _likely(gains, record, least):
     """Findings of the labels that gain most by their rows' gains, those above a least gain, in their stretches."""
     # Segment of largest gain for each label.
-    found = [where_best(gain, label, record, SHORTEST_LABEL) for label, gain in gains.items()]
-    likely = [one for total, one in sorted(found, key=lambda one: -one[0]) if total > least]
+    stretches = [where_best(gain, label, record, SHORTEST_LABEL) for label, gain in gains.items()]
+    likely = [
+        finding
+        for total, finding in sorted(stretches, key=lambda entry: -entry[0])
+        if total > least
+    ]
     # A label in its stretch and throughout; a unit throughout is a scale, which is a cause of its own.
     tried = {
-        (one.note, one.segments): one
+        (finding.note, finding.segments): finding
         for part in likely[:LIKELY_LABELS]
-        for one in (
+        for finding in (
             (part,) if part.mislabel.scale is not None else (part, replace(part, segments=()))
         )
     }
@@ -176,10 +183,10 @@ def _by_row(problem, record):
             linearised_by_parts(motion, record, problem.model, []), problem.noise, record, motion
         )
     # Innovations about this motion give the log-likelihood of each row.
-    found = innovations(
+    by_row = innovations(
         linearised_by_parts(motion, record, problem.model, []), problem.noise, record
     )
-    return -0.5 * (found.squares + found.log_determinant)
+    return -0.5 * (by_row.squares + by_row.log_determinant)
 
 
 def _density(finding, problem):

@@ -33,7 +33,9 @@ class Bands:
 
     def products(self) -> np.ndarray:
         """Inner products of the columns with each other, (k, k)."""
-        return np.block([[_product(one, other) for other in self.blocks] for one in self.blocks])
+        return np.block(
+            [[_product(block, other) for other in self.blocks] for block in self.blocks]
+        )
 
     def dense(self) -> np.ndarray:
         """All of the matrix, (n, k)."""
@@ -43,8 +45,8 @@ class Bands:
         return np.hstack(parts)
 
 
-def _product(one, other):
-    (first, values) = one
+def _product(first_band, other):
+    (first, values) = first_band
     (second, others) = other
     # Only rows that both blocks share contribute.
     begin = max(first, second)

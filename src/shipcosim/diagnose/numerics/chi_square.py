@@ -73,7 +73,7 @@ def _upper_fraction(a, x):
     b = x + 1.0 - a
     c = 1.0 / _TINY
     d = 1.0 / b
-    found = d
+    fraction = d
     change = 0.0
     k = 0
     while abs(change - 1.0) > 1e-15:
@@ -83,5 +83,5 @@ def _upper_fraction(a, x):
         d = 1.0 / ((numerator * d + b) or _TINY)
         c = (b + numerator / c) or _TINY
         change = c * d
-        found *= change
-    return found
+        fraction *= change
+    return fraction

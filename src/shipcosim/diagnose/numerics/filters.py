@@ -79,5 +79,5 @@ def _convolved(series, weights, beyond, ends, axis):
     last = np.moveaxis(np.asarray(series, float), axis, -1)
     padded = np.pad(last, [(0, 0)] * (last.ndim - 1) + [beyond], mode=_PADDED[ends])
     flat = padded.reshape(-1, padded.shape[-1])
-    found = np.array([np.convolve(one, weights, "valid") for one in flat])
-    return np.moveaxis(found.reshape(last.shape), -1, axis)
+    smooth = np.array([np.convolve(row, weights, "valid") for row in flat])
+    return np.moveaxis(smooth.reshape(last.shape), -1, axis)

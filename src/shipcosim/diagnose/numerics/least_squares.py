@@ -46,20 +46,20 @@ def least_squares(
     )
     # Start with the unbounded coefficients free and all others at 0.
     free = ~bound
-    found = _solution(triangle, target, free)
+    coefficients = _solution(triangle, target, free)
     for _ in range(_ROUNDS * count):
         # Negative gradient at the bounded coefficients. Where it
         # is positive, freeing the coefficient lowers the residual.
-        pull = np.where(free, -np.inf, triangle.T @ (target - triangle @ found))
+        pull = np.where(free, -np.inf, triangle.T @ (target - triangle @ coefficients))
         best = int(np.argmax(pull))
         if not pull[best] > least:
             break
         free[best] = True
-        found = _feasible(triangle, target, found, free, bound)
-    return found
+        coefficients = _feasible(triangle, target, coefficients, free, bound)
+    return coefficients
 
 
-def _feasible(triangle, target, found, free, bound):
+def _feasible(triangle, target, coefficients, free, bound):
     """Solution in the free coefficients; those that would turn negative on the way are taken from `free` again."""
     while True:
         wanted = _solution(triangle, target, free)
@@ -68,15 +68,17 @@ def _feasible(triangle, target, found, free, bound):
             return wanted
         # Go towards the unbounded solution until the first
         # coefficient reaches 0, and fix those that did.
-        share = np.min(found[below] / np.maximum(found[below] - wanted[below], 1e-300))
-        found = found + share * (wanted - found)
-        stopped = below & (found <= 1e-15 * np.abs(found).max())
-        stopped[np.flatnonzero(below)[np.argmin(found[below])]] = True
+        share = np.min(
+            coefficients[below] / np.maximum(coefficients[below] - wanted[below], 1e-300)
+        )
+        coefficients = coefficients + share * (wanted - coefficients)
+        stopped = below & (coefficients <= 1e-15 * np.abs(coefficients).max())
+        stopped[np.flatnonzero(below)[np.argmin(coefficients[below])]] = True
         free &= ~stopped
-        found[stopped] = 0.0
+        coefficients[stopped] = 0.0
 
 
 def _solution(triangle, target, free):
-    found = np.zeros(free.size)
-    found[free] = np.linalg.lstsq(triangle[:, free], target, rcond=None)[0]
-    return found
+    coefficients = np.zeros(free.size)
+    coefficients[free] = np.linalg.lstsq(triangle[:, free], target, rcond=None)[0]
+    return coefficients

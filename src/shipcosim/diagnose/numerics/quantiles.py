@@ -29,10 +29,10 @@ def quantile(values: np.ndarray, share: float) -> float:
     below = int(place)
     above = min(below + 1, last)
     # Only the two rows beside the place are sorted.
-    found = np.partition(values, (below, above))
+    ordered = np.partition(values, (below, above))
     part = place - below
-    change = found[above] - found[below]
+    change = ordered[above] - ordered[below]
     # From the nearer row, as NumPy does it, so that rounding is the same.
     if part >= 0.5:
-        return float(found[above] - change * (1.0 - part))
-    return float(found[below] + change * part)
+        return float(ordered[above] - change * (1.0 - part))
+    return float(ordered[below] + change * part)

@@ -32,7 +32,7 @@ def solve_tridiagonal(
     array([1., 2., 3.])
     """
     below, middle, above = (
-        one.reshape(-1, *[1] * (right.ndim - 1)) for one in (lower, diagonal, upper)
+        band.reshape(-1, *[1] * (right.ndim - 1)) for band in (lower, diagonal, upper)
     )
     return _solved(below, middle, above, right)
 
@@ -42,7 +42,7 @@ def _solved(lower, diagonal, upper, right):
         return right / diagonal
     # Solve each odd row for its unknown, in terms of its neighbours.
     before, after, alone = (
-        one[1::2] / diagonal[1::2] for one in (lower, upper, right)
+        series[1::2] / diagonal[1::2] for series in (lower, upper, right)
     )  # of every other row
     # Insert these into the even rows, which leaves a tridiagonal system of half the size.
     n = len(before)
@@ -61,8 +61,8 @@ def _solved(lower, diagonal, upper, right):
     rest[3][:n] -= up * alone
     rest[3][1:] -= down * alone[left]
     # Solve the smaller system, and insert its solution into the odd rows.
-    found = np.empty(right.shape, np.result_type(right, diagonal))
-    found[::2] = _solved(*rest)
-    found[1::2] = alone - before * found[::2][:n]
-    found[1::2][left] -= after[left] * found[2::2]
-    return found
+    solution = np.empty(right.shape, np.result_type(right, diagonal))
+    solution[::2] = _solved(*rest)
+    solution[1::2] = alone - before * solution[::2][:n]
+    solution[1::2][left] -= after[left] * solution[2::2]
+    return solution

@@ -84,16 +84,21 @@ def calibrated_to(logs: SeveralLogs) -> Calibration:
         explain(logs, most=2 * len(logs.problems), fitted=fit, screened=screened_jointly),
     )
     # The best set of causes in which each gains clearly more than weather may by chance.
-    ordinary = {one.label: WEATHER_GAIN for one in logs.hypotheses}
-    best = next(one for one in fits if not one.hypotheses or admissible(one, fits, ordinary))
+    ordinary = {hypothesis.label: WEATHER_GAIN for hypothesis in logs.hypotheses}
+    best = next(
+        fitted_set
+        for fitted_set in fits
+        if not fitted_set.hypotheses or admissible(fitted_set, fits, ordinary)
+    )
     # With the weather explained, the tolerances may need another width: fit once more.
     again = likeliest_scale(best, scale)
     if again != scale:
         best = fitted_jointly(logs, best.hypotheses, best.values, scale=again, about_all=True)
     # Gain of unmodelled errors that remain in each log.
-    own = errors_of_the_fit(best)
+    errors = errors_of_the_fit(best)
     unmodelled = {
-        name: unmodelled_gains(one, best.parts[name]) | own for name, one in logs.problems.items()
+        name: unmodelled_gains(problem, best.parts[name]) | errors
+        for name, problem in logs.problems.items()
     }
     return Calibration(logs, best, again, unmodelled, form_gain)
 
@@ -123,12 +128,12 @@ def with_common_form(logs: SeveralLogs) -> tuple[SeveralLogs, float]:
     return replace(logs, problems=formed), scores[best] - scores[0.0]
 
 
-def causes_beside(found: Calibration) -> dict[str, float]:
+def causes_beside(calibration: Calibration) -> dict[str, float]:
     """Causes in the ship that the logs still look like beside the calibrated ship, with their gain. [nats]
 
     Parameters
     ----------
-    found : Calibration
+    calibration : Calibration
 
     Returns
     -------
@@ -137,21 +142,21 @@ def causes_beside(found: Calibration) -> dict[str, float]:
         wider tolerances, a cause beside the stated ones must explain them better than those do.
     """
     # Allow causes in the ship, which the calibration excluded.
-    every = replace(found.logs, is_well=False)
+    every = replace(calibration.logs, is_well=False)
     suspects = {}
     # Try beside the calibrated tolerances and beside the
     # stated ones, as wide tolerances can hide a cause.
-    for scale in dict.fromkeys((found.scale, 1.0)):
+    for scale in dict.fromkeys((calibration.scale, 1.0)):
         fit = partial(fitted_jointly, scale=scale, about_all=True)
         without = (
-            found.fit
-            if scale == found.scale
-            else fit(every, found.fit.hypotheses, found.fit.values)
+            calibration.fit
+            if scale == calibration.scale
+            else fit(every, calibration.fit.hypotheses, calibration.fit.values)
         )
         for _, hypothesis, values in _most_likely(every, without):
             # Fit the cause jointly; it must gain enough over the calibrated ship to be a suspect.
             again = fit(every, (*without.hypotheses, hypothesis), without.values | values)
-            gain = again.score - found.fit.score
+            gain = again.score - calibration.fit.score
             if gain > ENOUGH + WEATHER_GAIN and admissible(again, [without, again], {}):
                 suspects[hypothesis.label] = max(gain, suspects.get(hypothesis.label, 0.0))
     return suspects
@@ -159,8 +164,8 @@ def causes_beside(found: Calibration) -> dict[str, float]:
 
 def _most_likely(logs: SeveralLogs, fit: JointFit) -> list[Gain]:
     """The causes in the ship that gain most beside a fit at first sight, where that is enough to look closer."""
-    gains = [one for one in screened_jointly(logs, fit) if not is_in_one_log(one[1])]
-    return [one for one in gains[:MOST_SUSPECTS] if one[0] > WEATHER_GAIN]
+    gains = [gain for gain in screened_jointly(logs, fit) if not is_in_one_log(gain[1])]
+    return [gain for gain in gains[:MOST_SUSPECTS] if gain[0] > WEATHER_GAIN]
 
 
 def likeliest_scale(fit: JointFit, scale: float = 1.0) -> float:
@@ -225,11 +230,13 @@ def dispersion_of(fit: JointFit) -> float:
     """How much more the parts of logs pull at the columns than by noise, mean square; 1 where the form is right."""
     # Pull of each part, and its information about each column.
     pulls = _pulls(fit)
-    known = np.stack([np.diag(part)[1:] for part in fit.products.blocks])
+    information = np.stack([np.diag(part)[1:] for part in fit.products.blocks])
     # Mean of squared pulls over their expected variance,
     # weighted by information, with a limit for each part.
-    told = np.minimum(known * np.array([column.prior for column in fit.columns]) ** 2, MOST_WEIGHT)
-    return float((told * pulls**2 / np.maximum(known, 1e-12)).sum() / told.sum())
+    informed = np.minimum(
+        information * np.array([column.prior for column in fit.columns]) ** 2, MOST_WEIGHT
+    )
+    return float((informed * pulls**2 / np.maximum(information, 1e-12)).sum() / informed.sum())
 
 
 def _pulls(fit: JointFit) -> np.ndarray:
@@ -238,7 +245,7 @@ def _pulls(fit: JointFit) -> np.ndarray:
 
 
 def reference_of(
-    found: Calibration,
+    calibration: Calibration,
     ship: ShipModel,
     ordinary: Mapping[str, float],
     logs: Sequence[ReferenceLog],
@@ -248,7 +255,7 @@ def reference_of(
 
     Parameters
     ----------
-    found : Calibration
+    calibration : Calibration
     ship : ShipModel
         With the system's own numbers.
     ordinary : mapping of str to float
@@ -263,7 +270,7 @@ def reference_of(
     """
     # Estimates and covariance of the ship's numbers; the
     # covariance is stored as deviations and correlations.
-    names, tolerances, moved, covariance = numbers_of(found.fit)
+    names, tolerances, moved, covariance = numbers_of(calibration.fit)
     std = np.sqrt(np.diag(covariance))
     correlation = np.clip(covariance / np.outer(std, std), -1.0, 1.0)
     numbers = [
@@ -277,16 +284,16 @@ def reference_of(
         )
         for name, tolerance, by, deviation in zip(names, tolerances, moved, std, strict=True)
     ]
-    first = next(iter(found.logs.problems.values()))
+    first = next(iter(calibration.logs.problems.values()))
     return Reference(
         schema=SCHEMA,
         form_scale=first.model.form_scale,
         shipcosim=shipcosim.__version__,
         system=system,
         system_sha256=fingerprint(ship, names),
-        tolerance_scale=found.scale,
+        tolerance_scale=calibration.scale,
         logs=tuple(logs),
-        dispersion=dispersion_of(found.fit),
+        dispersion=dispersion_of(calibration.fit),
         ordinary_errors={kind: float(gain) for kind, gain in ordinary.items()},
         numbers=tuple(numbers),
         correlation=tuple(tuple(map(float, row)) for row in correlation),

@@ -30,18 +30,19 @@ def with_sizes_at_reference(
         Those of the data, and of what no number of the reference holds, are as they were: a current is the day's.
     """
     # Numbers of the reference, and the causes that the ship can have.
-    known = {number.name: number for number in reference.numbers}
+    numbers = {number.name: number for number in reference.numbers}
     hypotheses = {
-        one.label: one for one in hypotheses_of(dict(causes), with_reference(ship, reference))
+        hypothesis.label: hypothesis
+        for hypothesis in hypotheses_of(dict(causes), with_reference(ship, reference))
     }
-    found = []
+    sized = []
     for finding in findings:
         # The size of each cause follows from the reference's estimate of its number.
         hypothesis = hypotheses.get(finding.label) if finding.kind == "physics" else None
         before = {
-            of.name: of.estimate(known[of.path].estimate, known[of.path].std)
+            of.name: of.estimate(numbers[of.path].estimate, numbers[of.path].std)
             for of in (hypothesis.parameters if hypothesis else ())
-            if of.path in known
+            if of.path in numbers
         }
-        found.append(replace(finding, at_reference=before) if before else finding)
-    return tuple(found)
+        sized.append(replace(finding, at_reference=before) if before else finding)
+    return tuple(sized)

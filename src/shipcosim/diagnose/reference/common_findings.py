@@ -30,8 +30,8 @@ def common_faults(faults: Mapping[str, Sequence[Finding]]) -> list[Finding]:
     # Group faults of the whole log that agree in cause,
     # channels and wording, whatever their numbers.
     by_key: dict[tuple, dict[str, Finding]] = {}
-    for name, own in faults.items():
-        for fault in own:
+    for name, of_log in faults.items():
+        for fault in of_log:
             if fault.kind == "data" and not fault.segments and not fault.alternatives:
                 key = fault.cause, fault.component, fault.channels, _NUMBER.sub("#", fault.note)
                 by_key.setdefault(key, {})[name] = fault
@@ -45,22 +45,22 @@ def _as_one(same: Mapping[str, Finding]) -> Finding:
     findings = list(same.values())
     return replace(
         findings[0],
-        probability=max(one.probability for one in findings),
-        parameters=together([one.parameters for one in findings]),
+        probability=max(finding.probability for finding in findings),
+        parameters=together([finding.parameters for finding in findings]),
         logs=tuple(same),
     )
 
 
 def together(parameters: Sequence[Mapping[str, ParameterEstimate]]) -> dict[str, ParameterEstimate]:
     """Estimates of several logs as one: means weighted by information, deviations at least what the logs differ by."""
-    found = {}
+    estimates = {}
     for name, first in parameters[0].items():
         # Mean weighted by inverse variances.
-        values = np.array([one[name].estimate for one in parameters])
-        stds = np.array([one[name].std for one in parameters])
+        values = np.array([parameter[name].estimate for parameter in parameters])
+        stds = np.array([parameter[name].std for parameter in parameters])
         mean, std, _ = _weighted(values, np.maximum(stds, 1e-12))
-        found[name] = ParameterEstimate(mean, std, first.unit)
-    return found
+        estimates[name] = ParameterEstimate(mean, std, first.unit)
+    return estimates
 
 
 def _weighted(values: np.ndarray, stds: np.ndarray) -> tuple[float, float, float]:
@@ -134,18 +134,18 @@ class RatioOfLogs:
     def _is_apart(self, name: str) -> bool:
         # Ratio of all other logs, which must not contain the log itself.
         others = self.without(name)
-        own = self.each[name]
+        ratio = self.each[name]
         if others is None:
             return False
         # Difference of the logarithms in units of its standard deviation.
-        return abs(np.log(own.ratio / others.ratio)) > APART * np.hypot(
-            own.std / own.ratio, others.std / others.ratio
+        return abs(np.log(ratio.ratio / others.ratio)) > APART * np.hypot(
+            ratio.std / ratio.ratio, others.std / others.ratio
         )
 
     def without(self, name: str) -> CommonRatio | None:
         """The ratio by the other logs."""
         return ratio_of_logs(
-            {other: one for other, one in self.each.items() if other != name}
+            {other: ratio for other, ratio in self.each.items() if other != name}
         ).common
 
     @property
@@ -154,7 +154,7 @@ class RatioOfLogs:
         if self.common is not None or not self.each:
             return ""
         sizes = ", ".join(
-            f"{name} {one.ratio:.2f} ± {one.std:.2f}" for name, one in self.each.items()
+            f"{name} {ratio.ratio:.2f} ± {ratio.std:.2f}" for name, ratio in self.each.items()
         )
         return f"Thrust over inertia differs from log to log by more than their errors, so none is common: {sizes}."
 
@@ -170,11 +170,13 @@ def ratio_of_logs(each: Mapping[str, CommonRatio]) -> RatioOfLogs:
     if not each:
         return RatioOfLogs({}, None)
     # Mean of the logarithms, as a ratio has relative errors.
-    logs = np.log([one.ratio for one in each.values()])
-    mean, std, squares = _weighted(logs, np.array([one.std / one.ratio for one in each.values()]))
+    logs = np.log([ratio.ratio for ratio in each.values()])
+    mean, std, squares = _weighted(
+        logs, np.array([ratio.std / ratio.ratio for ratio in each.values()])
+    )
     # Chi-square test that all logs have one ratio.
     chance = survival(float(squares), logs.size - 1) if logs.size > 1 else 1.0
-    axes = tuple(dict.fromkeys(axis for one in each.values() for axis in one.axes))
+    axes = tuple(dict.fromkeys(axis for ratio in each.values() for axis in ratio.axes))
     # Errors of the hull's form are common to all logs and do not average out.
     std = float(
         max(std, COMMON_SPREAD / np.sqrt(max(len(axes), 1)))
@@ -199,33 +201,38 @@ def common_discrepancies(each: Mapping[str, Sequence[Discrepancy]]) -> list[Disc
     """
     # Group discrepancies that agree in place, axis, unit and wording.
     by_key: dict[tuple, dict[str, Discrepancy]] = {}
-    for name, own in each.items():
-        for one in own:
-            key = one.component, one.axis, one.unit, _NUMBER.sub("#", one.what)
-            by_key.setdefault(key, {})[name] = one
-    found = [
+    for name, of_log in each.items():
+        for discrepancy in of_log:
+            key = (
+                discrepancy.component,
+                discrepancy.axis,
+                discrepancy.unit,
+                _NUMBER.sub("#", discrepancy.what),
+            )
+            by_key.setdefault(key, {})[name] = discrepancy
+    common = [
         replace(_ranging(list(same.values()), len(each)), logs=tuple(same))
         for same in by_key.values()
         if len(same) > 1 and 2 * len(same) >= len(each)
     ]
-    return sorted(found, key=lambda one: (one.estimate > 0.0, -one.share))
+    return sorted(common, key=lambda shared: (shared.estimate > 0.0, -shared.share))
 
 
 def _ranging(same: Sequence[Discrepancy], logs: int) -> Discrepancy:
     """Discrepancies of several logs as one, the numbers in its words from smallest to largest."""
     # Numbers in the wording become ranges over the logs.
-    numbers = list(zip(*(_NUMBER.findall(one.what) for one in same), strict=True))
+    numbers = list(zip(*(_NUMBER.findall(discrepancy.what) for discrepancy in same), strict=True))
     ranges = iter([_range(texts) for texts in numbers])
     what = _NUMBER.sub(lambda _: next(ranges), same[0].what)
     # Weighted mean if all sizes have a standard deviation,
     # else the plain one; a log without it has a share of 0.
-    values = np.array([one.estimate for one in same])
-    stds = np.array([one.std for one in same])
+    values = np.array([discrepancy.estimate for discrepancy in same])
+    stds = np.array([discrepancy.std for discrepancy in same])
     mean = float(values.mean())
     std = 0.0
     if (stds > 0.0).all():
         mean, std, _ = _weighted(values, stds)
-    share = sum(one.share for one in same) / logs
+    share = sum(discrepancy.share for discrepancy in same) / logs
     return replace(same[0], what=what, estimate=mean, std=std, share=share)
 
 

@@ -44,12 +44,16 @@ def sizes_without(
     others = SeveralLogs(
         {other: problem for other, problem in logs.problems.items() if other != name}
     )
-    known = [
-        one for one in hypotheses if not is_in_one_log(one) or one.component in others.problems
+    others_hypotheses = [
+        hypothesis
+        for hypothesis in hypotheses
+        if not is_in_one_log(hypothesis) or hypothesis.component in others.problems
     ]
-    start = {path: value for path, value in values.items() if path in paths_of(known)}
-    fit = fitted_jointly(others, known, start, rounds=3)
-    of_ship = {hypothesis.label for hypothesis in known if not is_in_one_log(hypothesis)}
+    start = {path: value for path, value in values.items() if path in paths_of(others_hypotheses)}
+    fit = fitted_jointly(others, others_hypotheses, start, rounds=3)
+    of_ship = {
+        hypothesis.label for hypothesis in others_hypotheses if not is_in_one_log(hypothesis)
+    }
     return [finding for finding in findings_of(fit) if finding.label in of_ship]
 
 
@@ -67,29 +71,31 @@ def sizes_by_log(
         By all logs, to start from.
     """
     # Fit each log by itself, with the causes that it has something to say of.
-    found: SizesOfLogs = {}
+    by_label: SizesOfLogs = {}
     for name, problem in logs.problems.items():
-        own = [one for _, one in logs.all_within(name, hypotheses)]
-        start = {p: v for p, v in values_in(name, values).items() if p in paths_of(own)}
-        fit = fitted(problem, own, start, rounds=3)
-        for finding, one in zip(findings_of(fit), own, strict=True):
+        of_log = [hypothesis for _, hypothesis in logs.all_within(name, hypotheses)]
+        start = {p: v for p, v in values_in(name, values).items() if p in paths_of(of_log)}
+        fit = fitted(problem, of_log, start, rounds=3)
+        for finding, hypothesis in zip(findings_of(fit), of_log, strict=True):
             # The standard deviation includes the tolerance of each parameter.
-            known = {of.name: of.tolerance * of.factor for of in one.parameters}
-            found.setdefault(finding.label, {})[name] = {
-                key: replace(size, std=float(np.hypot(size.std, known[key])))  # as of a finding
+            tolerances = {of.name: of.tolerance * of.factor for of in hypothesis.parameters}
+            by_label.setdefault(finding.label, {})[name] = {
+                key: replace(
+                    size, std=float(np.hypot(size.std, tolerances[key]))
+                )  # as of a finding
                 for key, size in finding.parameters.items()
             }
-    of_ship = {one.label for one in hypotheses if not is_in_one_log(one)}
-    return {label: sizes for label, sizes in found.items() if label in of_ship}
+    of_ship = {hypothesis.label for hypothesis in hypotheses if not is_in_one_log(hypothesis)}
+    return {label: sizes for label, sizes in by_label.items() if label in of_ship}
 
 
 def weather_of(fit: JointFit, name: str, hypotheses: Sequence[Hypothesis]) -> list[Finding]:
     """Causes that belong to the day of one log, from the fit of all logs."""
-    own = {hypothesis.cause for hypothesis in hypotheses if hypothesis.component == name}
+    of_log = {hypothesis.cause for hypothesis in hypotheses if hypothesis.component == name}
     return [
         finding
         for finding in findings_of(fit.parts[name])
-        if finding.cause in own and finding.component is None
+        if finding.cause in of_log and finding.component is None
     ]
 
 
@@ -121,19 +127,19 @@ def errors_by_log(
     progress : callable
         Called with the name of a log, how many pieces of it are done, and of how many.
     """
-    found = {}
+    by_log = {}
     # One horizon for all logs, so that their errors can be compared.
-    horizon = min(fitting_horizon(one.record, one.model) for one in logs.problems.values())
+    horizon = min(fitting_horizon(each.record, each.model) for each in logs.problems.values())
     # Each log is predicted with causes that the other logs have sized, and with its own weather.
     for name, problem in logs.problems.items():
-        of_ship, own = findings(name)
+        of_ship, of_day = findings(name)
         craft = crafts.get(name)
         others = tuple(other for other in logs.problems if other != name)
         others = others if of_ship or craft else ()
         fitted_to_it = calibrated(fit.parts[name])
-        about = _Judged(name, problem, fitted_to_it, horizon, of_ship, own, others, craft)
-        found[name] = _log_errors(about, given, causes, progress)
-    return {name: one for name, one in found.items() if one is not None}
+        about = _Judged(name, problem, fitted_to_it, horizon, of_ship, of_day, others, craft)
+        by_log[name] = _log_errors(about, given, causes, progress)
+    return {name: errors for name, errors in by_log.items() if errors is not None}
 
 
 @dataclass(frozen=True)

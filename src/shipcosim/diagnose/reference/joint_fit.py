@@ -82,13 +82,14 @@ def fitted_jointly(
     last = None
     about: dict[str, dict[str, float]] = {name: {} for name in logs.problems}
     motions = {name: problem.motion for name, problem in logs.problems.items()}
-    own = {
-        name: tuple(one for _, one in logs.all_within(name, hypotheses)) for name in logs.problems
+    by_log = {
+        name: tuple(hypothesis for _, hypothesis in logs.all_within(name, hypotheses))
+        for name in logs.problems
     }
     # Columns of each log: its known numbers, the ship's with scaled tolerances, and its causes.
     columns = {
-        name: [_scaled(column, scale) for column in problem.known(own[name])]
-        + own_columns(problem, own[name])
+        name: [_scaled(column, scale) for column in problem.known(by_log[name])]
+        + own_columns(problem, by_log[name])
         for name, problem in logs.problems.items()
     }
     # Common columns for numbers of the ship, separate ones for those of a day.
@@ -96,13 +97,13 @@ def fitted_jointly(
     # Gauss-Newton: linearise each log about its own
     # motion, solve for all logs together, and repeat.
     for _ in range(rounds):
-        found = {
+        fitted_logs = {
             name: linearised(
                 problem, columns[name], values_in(name, values) | about[name], motions[name]
             )
             for name, problem in logs.problems.items()
         }
-        fit = _posterior(logs, hypotheses, own, values, layout, found)
+        fit = _posterior(logs, hypotheses, by_log, values, layout, fitted_logs)
         motions = {name: part.motion for name, part in fit.parts.items()}
         values = next_values(fit)
         # New point of linearisation for the known numbers.
@@ -132,53 +133,62 @@ def _layout(
     """Where the columns of each log are among all, and which of all are known numbers of the ship, (p,) bool array."""
     # One column for each parameter of each cause.
     parameters = [
-        (f"{one.label}, {k}", Regressor(dict.fromkeys(parameter.paths, parameter.typical)))
-        for one in hypotheses
-        for k, parameter in enumerate(one.parameters)
+        (f"{hypothesis.label}, {k}", Regressor(dict.fromkeys(parameter.paths, parameter.typical)))
+        for hypothesis in hypotheses
+        for k, parameter in enumerate(hypothesis.parameters)
     ]
-    known = {}
+    of_ship = {}
     companions = []
     named = {}
     # The columns of a log are its known numbers, then
     # companions of its causes, then their parameters.
     for name in logs.problems:
         pairs = logs.all_within(name, hypotheses)
-        turned = [f"{one.label}, {k}" for one, _ in pairs for k in range(len(one.parameters))]
-        about = sum(len(own.definition.companions) for _, own in pairs)
+        turned = [
+            f"{hypothesis.label}, {k}"
+            for hypothesis, _ in pairs
+            for k in range(len(hypothesis.parameters))
+        ]
+        about = sum(len(hypothesis.definition.companions) for _, hypothesis in pairs)
         split = len(columns[name]) - len(turned) - about
-        known[name] = columns[name][:split]
+        of_ship[name] = columns[name][:split]
         beside_them = [
             (f"{name}, {i}", column)
             for i, column in enumerate(columns[name][split : split + about])
         ]
         companions += beside_them
         named[name] = [key for key, _ in beside_them] + turned
-    layout = laid_out(known, companions + parameters, named)
+    layout = laid_out(of_ship, companions + parameters, named)
     # Known numbers come first in the layout; those that are not of a day are common.
     first = len(layout.regressors) - len(companions) - len(parameters)
     common = [i < first and not column.is_of_day for i, column in enumerate(layout.regressors)]
     return layout, np.array(common, bool)
 
 
-def _posterior(logs, hypotheses, own, values, layout, found):
+def _posterior(logs, hypotheses, hypotheses_of_log, values, layout, linearised):
     """The joint fit of logs that are linearised, each about its own motion."""
     # Independent logs: inner products, determinants and free terms of the likelihood add up.
     products = Gram(
-        np.sum([layout.spread(name, one.products.products) for name, one in found.items()], axis=0),
-        np.concatenate([layout.spread(name, one.products.blocks) for name, one in found.items()]),
-        np.sum([one.products.log_determinant for one in found.values()], axis=0),
+        np.sum(
+            [layout.spread(name, part.products.products) for name, part in linearised.items()],
+            axis=0,
+        ),
+        np.concatenate(
+            [layout.spread(name, part.products.blocks) for name, part in linearised.items()]
+        ),
+        np.sum([part.products.log_determinant for part in linearised.values()], axis=0),
     )
-    centre = layout.together({name: one.centre for name, one in found.items()})
+    centre = layout.together({name: part.centre for name, part in linearised.items()})
     # Posterior of all columns by the combined products, and the log-evidence.
     score, theta, covariance = evidence(products.products, layout.prior, centre)
-    score += sum(float(one.products.free) for one in found.values())
+    score += sum(float(part.products.free) for part in linearised.values())
     # Each log gets its part of the joint posterior.
     parts = {}
-    for name, one in found.items():
+    for name, of_log in linearised.items():
         at = layout.places[name]
         posterior = theta[at], covariance[np.ix_(at, at)]
-        parts[name] = one.with_posterior(
-            logs.problems[name], own[name], values_in(name, values), score, *posterior
+        parts[name] = of_log.with_posterior(
+            logs.problems[name], hypotheses_of_log[name], values_in(name, values), score, *posterior
         )
     first = next(iter(parts.values()))
     return JointFit(
@@ -209,17 +219,19 @@ def _at_the_mean(fit: JointFit, common: np.ndarray) -> dict[str, float]:
 def screened_jointly(logs: SeveralLogs, fit: JointFit) -> list[Gain]:
     """Gain in log-evidence of each hypothesis beside a fit to several logs, linearised once; as `screened`."""
     # Hypotheses that are not in the fit yet.
-    wanted = [one for one in logs.hypotheses if one not in fit.hypotheses]
-    found = {}
+    wanted = [hypothesis for hypothesis in logs.hypotheses if hypothesis not in fit.hypotheses]
+    products_by_log = {}
     # Inner products of each log with the columns of the fit and the new ones.
     for name, problem in logs.problems.items():
         part = fit.parts[name]
-        added = regressors_of(own for _, own in logs.all_within(name, wanted))
+        added = regressors_of(hypothesis for _, hypothesis in logs.all_within(name, wanted))
         linear = beside(part.linear, problem.base_of(added))
-        found[name] = problem.gram(linear).products
+        products_by_log[name] = problem.gram(linear).products
     # Add them up over the logs, and compute the gain of each hypothesis.
     layout = screening_layout(logs, fit.layout, wanted)
-    products = np.sum([layout.spread(name, one) for name, one in found.items()], axis=0)
+    products = np.sum(
+        [layout.spread(name, product) for name, product in products_by_log.items()], axis=0
+    )
     return gains(products, fit.columns, fit.centre, wanted, fit.get)
 
 
@@ -240,12 +252,12 @@ def screening_layout(logs: SeveralLogs, layout: Layout, wanted: Sequence[Hypothe
         In each log the columns of the fit are followed by those of the hypotheses that it has something to say of.
     """
     regressors = list(layout.regressors)
-    places = {name: list(own) for name, own in layout.places.items()}
+    places = {name: list(where_in_all) for name, where_in_all in layout.places.items()}
     for hypothesis in wanted:
         columns = regressors_of([hypothesis])
         where = range(len(regressors), len(regressors) + len(columns))
-        for name, own in places.items():
+        for name, log_places in places.items():
             if logs.within(name, hypothesis) is not None:
-                own += where
+                log_places += where
         regressors += columns
-    return Layout(regressors, {name: np.array(own, int) for name, own in places.items()})
+    return Layout(regressors, {name: np.array(columns, int) for name, columns in places.items()})

@@ -27,8 +27,8 @@ def joint_baseline(errors: Mapping[str, LogErrors]) -> dict[str, list[float]] | 
     each = list(errors.values())
     return {
         "horizon_s": list(each[0].horizon),
-        "position_error_m": _over_logs([one.position["before"] for one in each]),
-        "heading_error_deg": _over_logs([one.heading["before"] for one in each]),
+        "position_error_m": _over_logs([log.position["before"] for log in each]),
+        "heading_error_deg": _over_logs([log.heading["before"] for log in each]),
     }
 
 
@@ -53,12 +53,16 @@ def joint_gain(errors: Mapping[str, LogErrors]) -> dict[str, Any] | None:
         As the gain of one log, `logs` besides; ``bias_observer_m`` is None: these predictions have no observer. None
         where nothing in the ship is named, or no other log says how large it is.
     """
-    judged = {name: one for name, one in errors.items() if one.fitted_on and one.misses is not None}
+    judged = {
+        name: error
+        for name, error in errors.items()
+        if error.fitted_on and error.misses is not None
+    }
     # Predictions at whose end the log has a position.
     squares = {
-        name: one.misses[:, np.isfinite(one.misses).all(axis=0)] ** 2
-        for name, one in judged.items()
-        if one.misses is not None
+        name: log.misses[:, np.isfinite(log.misses).all(axis=0)] ** 2
+        for name, log in judged.items()
+        if log.misses is not None
     }
     squares = {name: of for name, of in squares.items() if of.size}
     if not squares:

@@ -71,7 +71,9 @@ class JointDiagnosis(Diagnosis):
 
     def own_faults(self, name: str) -> list[Finding]:
         """Faults of the data that are one log's own."""
-        common = {(one.cause, one.channels) for one in self.findings if name in one.logs}
+        common = {
+            (finding.cause, finding.channels) for finding in self.findings if name in finding.logs
+        }
         return [
             f
             for f in self.logs[name].findings

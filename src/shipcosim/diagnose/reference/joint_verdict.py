@@ -78,29 +78,29 @@ def judged_jointly(logs: SeveralLogs) -> JointVerdict:
     models = [problem.model for problem in logs.problems.values()]
     usual = max(map(usual_gain, models)) + NULL_GAIN_WITHOUT_WIND * silent
     # Judge the best sets against what causes gain in healthy logs.
-    found = judge_against_healthy(
+    judgement = judge_against_healthy(
         fits,
         lambda fit: _unmodelled(logs, fit),
         lambda fit: _null_gains(logs, fit, fits),
-        null={one.label: usual for one in logs.hypotheses},
+        null={hypothesis.label: usual for hypothesis in logs.hypotheses},
         without_wind=silent,
     )
-    return JointVerdict(logs, tuple(fits), *found)
+    return JointVerdict(logs, tuple(fits), *judgement)
 
 
 def _unmodelled(logs: SeveralLogs, fit: JointFit) -> dict[str, float]:
     """Gain of unmodelled errors beside a joint fit: of a force or a channel in any log, or the same kind in all."""
     # Gains in each log, and errors of the joint fit itself.
     each = [unmodelled_gains(problem, fit.parts[name]) for name, problem in logs.problems.items()]
-    own = errors_of_the_fit(fit)
-    kinds = (kind for kind in each[0] if kind not in own)
-    found = {}
+    of_fit = errors_of_the_fit(fit)
+    kinds = (kind for kind in each[0] if kind not in of_fit)
+    by_kind = {}
     for kind in kinds:
         # Either one log shows the error, at the cost of
         # choosing this log, or all show the same kind.
         values = [gains[kind] for gains in each]
-        found[kind] = max(max(values) - float(np.log(len(values))), sum(values))
-    return found | own
+        by_kind[kind] = max(max(values) - float(np.log(len(values))), sum(values))
+    return by_kind | of_fit
 
 
 def _null_gains(logs, fit, fits):
@@ -112,8 +112,8 @@ def _null_gains(logs, fit, fits):
     together = np.zeros(())
     kept = np.array(True)
     for name, problem in logs.problems.items():
-        own = [one for _, one in logs.all_within(name, wanted)]
-        _, products = healthy_products(problem, fit.parts[name].motion, own)
+        hypotheses = [hypothesis for _, hypothesis in logs.all_within(name, wanted)]
+        _, products = healthy_products(problem, fit.parts[name].motion, hypotheses)
         kept = kept & on_track(products)
         together = together + layout.spread(name, products)
     # Gain of each cause on each simulated set of logs, where the ship stayed on its track.
@@ -128,11 +128,14 @@ def joint_excitation(verdict: JointVerdict) -> Excitation:
     layout = screening_layout(logs, nothing.layout, logs.hypotheses)
     together = np.zeros(())
     for name, problem in logs.problems.items():
-        own = (one for _, one in logs.all_within(name, logs.hypotheses))
-        columns = nothing.parts[name].columns + regressors_of(own)
+        hypotheses = (hypothesis for _, hypothesis in logs.all_within(name, logs.hypotheses))
+        columns = nothing.parts[name].columns + regressors_of(hypotheses)
         products = problem.gram(problem.base_of(columns)).products
         together = together + layout.spread(name, products)
     # Columns of each cause, and the evidence that it needs to count as testable.
-    groups = [(one, places) for one, _, places in placed(logs.hypotheses, len(nothing.columns))]
+    groups = [
+        (hypothesis, places)
+        for hypothesis, _, places in placed(logs.hypotheses, len(nothing.columns))
+    ]
     usual = max(usual_gain(problem.model) for problem in logs.problems.values())
     return Excitation(together, layout.regressors, groups, TESTABLE + usual)

@@ -66,9 +66,15 @@ class LogErrors:
 def errors_on(tracks: Tracks, fitted_on: Sequence[str]) -> LogErrors:
     """Root mean square errors of the predictions of a log, by simulation and horizon."""
     errors = errors_of(tracks)
-    shown = {str(one): errors.sel(simulation=one) for one in errors["simulation"].values}
+    shown = {
+        str(simulation): errors.sel(simulation=simulation)
+        for simulation in errors["simulation"].values
+    }
     position, heading = (
-        {one: tuple(map(float, np.atleast_1d(of[channel].values))) for one, of in shown.items()}
+        {
+            simulation: tuple(map(float, np.atleast_1d(of[channel].values)))
+            for simulation, of in shown.items()
+        }
         for channel in ("position", "heading")
     )
     return LogErrors(

@@ -55,10 +55,10 @@ def _variable(system: System, number: KnownNumber):
         return None
     start = part.start_value(name)
     # The system must hold the number before or after calibration; else it is another number.
-    known = isinstance(start, int | float) and any(
-        is_same(start, one) for one in (number.nominal, number.estimate)
+    is_same_number = isinstance(start, int | float) and any(
+        is_same(start, value) for value in (number.nominal, number.estimate)
     )
-    return part.variables[name] if known else None
+    return part.variables[name] if is_same_number else None
 
 
 def with_calibrated_numbers(

@@ -160,9 +160,9 @@ def read_reference(path: AnyPath | Reference) -> Reference:
         raise ShipcosimError(problems) from error
 
 
-def is_same(one: float, other: float) -> bool:
+def is_same(first: float, other: float) -> bool:
     """Whether two values of a number are the same, except for what a file rounds."""
-    return bool(np.isclose(one, other, rtol=1e-6, atol=1e-9))
+    return bool(np.isclose(first, other, rtol=1e-6, atol=1e-9))
 
 
 def fingerprint(ship: ShipModel, names: list[str]) -> str:
@@ -199,8 +199,8 @@ def with_reference(ship: ShipModel, reference: Reference) -> ShipModel:
                 Problem(number.name, "The ship of this system has no such number.", _REMEDY)
             )
         elif not any(is_same(ship.get(number.name), v) for v in (number.nominal, number.estimate)):
-            found = f"The system has {ship.get(number.name):g}, the reference was made from {number.nominal:g}."
-            problems.append(Problem(number.name, found, _REMEDY))
+            message = f"The system has {ship.get(number.name):g}, the reference was made from {number.nominal:g}."
+            problems.append(Problem(number.name, message, _REMEDY))
     if problems:
         raise ShipcosimError(problems)
     # Start from the estimates, with the principal axes of their covariance instead of tolerances.

@@ -9,7 +9,7 @@ from shipcosim.diagnose.validation.gain import calibrated
 from shipcosim.diagnose.validation.split import first_rows, trained
 
 
-def remaining_errors(found: Calibration) -> dict[str, LogErrors | None]:
+def remaining_errors(calibration: Calibration) -> dict[str, LogErrors | None]:
     """The error that remains in each log of a calibration.
 
     Each log is judged by the numbers that the other logs give; a single one by those of its first part. The weather is
@@ -17,50 +17,62 @@ def remaining_errors(found: Calibration) -> dict[str, LogErrors | None]:
 
     Parameters
     ----------
-    found : Calibration
+    calibration : Calibration
 
     Returns
     -------
     dict of str to LogErrors or None
         By name of the log; None where no stretch of it is whole.
     """
-    problems = found.logs.problems
+    problems = calibration.logs.problems
     if len(problems) == 1:
-        return {name: _of_last_rows(found, name) for name in problems}
-    return {name: _by_others(found, name) for name in problems}
+        return {name: _of_last_rows(calibration, name) for name in problems}
+    return {name: _by_others(calibration, name) for name in problems}
 
 
-def _by_others(found: Calibration, name: str) -> LogErrors | None:
+def _by_others(calibration: Calibration, name: str) -> LogErrors | None:
     # Fit the ship's numbers to the other logs, with their weather.
-    others = {other: problem for other, problem in found.logs.problems.items() if other != name}
-    weather = [one for one in found.fit.hypotheses if one.component in others]
-    values = {path: v for path, v in found.fit.values.items() if path.partition("|")[0] in others}
+    others = {
+        other: problem for other, problem in calibration.logs.problems.items() if other != name
+    }
+    weather = [
+        hypothesis for hypothesis in calibration.fit.hypotheses if hypothesis.component in others
+    ]
+    values = {
+        path: v for path, v in calibration.fit.values.items() if path.partition("|")[0] in others
+    }
     logs = SeveralLogs(others, is_well=True)
-    fit = fitted_jointly(logs, weather, values, scale=found.scale, about_all=True)
+    fit = fitted_jointly(logs, weather, values, scale=calibration.scale, about_all=True)
     return _errors(
-        found,
+        calibration,
         name,
-        found.logs.problems[name].record,
-        _with_numbers(found, name, fit),
+        calibration.logs.problems[name].record,
+        _with_numbers(calibration, name, fit),
         tuple(others),
     )
 
 
-def _of_last_rows(found: Calibration, name: str) -> LogErrors | None:
-    problem = found.logs.problems[name]
+def _of_last_rows(calibration: Calibration, name: str) -> LogErrors | None:
+    problem = calibration.logs.problems[name]
     # Fit to the first part of the only log, and predict the rest.
     rows = first_rows(problem.record)
     early = SeveralLogs({name: trained(problem, rows)}, is_well=True)
     fit = fitted_jointly(
-        early, found.fit.hypotheses, found.fit.values, scale=found.scale, about_all=True
+        early,
+        calibration.fit.hypotheses,
+        calibration.fit.values,
+        scale=calibration.scale,
+        about_all=True,
     )
-    return _errors(found, name, problem.record.part(~rows), _with_numbers(found, name, fit), ())
+    return _errors(
+        calibration, name, problem.record.part(~rows), _with_numbers(calibration, name, fit), ()
+    )
 
 
-def _with_numbers(found: Calibration, name: str, fit: JointFit) -> ShipModel:
+def _with_numbers(calibration: Calibration, name: str, fit: JointFit) -> ShipModel:
     """The ship of a log with the numbers of a fit to other rows, in the weather that was fitted in the log itself."""
-    model = found.logs.problems[name].model
-    part = found.fit.parts[name]
+    model = calibration.logs.problems[name].model
+    part = calibration.fit.parts[name]
     # The ship's numbers moved as the fit wants, and the weather of this log's own fit.
     names, _, moved, _ = numbers_of(fit)
     of_ship = {
@@ -70,10 +82,10 @@ def _with_numbers(found: Calibration, name: str, fit: JointFit) -> ShipModel:
     return model.with_values(of_ship | of_day)
 
 
-def _errors(found, name, record, after, others) -> LogErrors | None:
+def _errors(calibration, name, record, after, others) -> LogErrors | None:
     """Errors on a record by the system, by `after`, and by the ship as all logs have her."""
     # Open-loop predictions by the system, the calibrated ship, and the ship fitted to all logs.
-    model = found.logs.problems[name].model
-    part = found.fit.parts[name]
+    model = calibration.logs.problems[name].model
+    part = calibration.fit.parts[name]
     models = {"before": model, "after": after, "floor": calibrated(part)}
     return errors_by_models(record, models, others)

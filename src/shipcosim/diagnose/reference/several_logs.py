@@ -81,7 +81,11 @@ class SeveralLogs:
             component = None
         wanted = hypothesis.cause, component
         return next(
-            (one for one in self.problems[name].hypotheses if (one.cause, one.component) == wanted),
+            (
+                hypothesis
+                for hypothesis in self.problems[name].hypotheses
+                if (hypothesis.cause, hypothesis.component) == wanted
+            ),
             None,
         )
 
@@ -89,19 +93,19 @@ class SeveralLogs:
         self, name: str, hypotheses: Sequence[Hypothesis]
     ) -> list[tuple[Hypothesis, Hypothesis]]:
         """Causes that one log can show, each as it is in that log."""
-        pairs = ((one, self.within(name, one)) for one in hypotheses)
-        return [(one, own) for one, own in pairs if own is not None]
+        pairs = ((hypothesis, self.within(name, hypothesis)) for hypothesis in hypotheses)
+        return [(hypothesis, in_log) for hypothesis, in_log in pairs if in_log is not None]
 
 
 def values_in(name: str, values: Mapping[str, float]) -> dict[str, float]:
     """Numbers for one log: those of the ship, and those of the log's own day."""
-    found = {}
+    in_log = {}
     # Numbers with the prefix of another log are left out, the own prefix is removed.
     for path, value in values.items():
         owner, separator, number = path.rpartition(_SEPARATOR)
         if not separator or owner == name:
-            found[number if separator else path] = value
-    return found
+            in_log[number if separator else path] = value
+    return in_log
 
 
 @dataclass(frozen=True)
@@ -128,20 +132,20 @@ class Layout:
         # Row and column 0 belong to the log itself, the others move to their places in the layout.
         where = np.concatenate([[0], 1 + self.places[name]])
         size = 1 + len(self.regressors)
-        found = np.zeros((*products.shape[:-2], size, size))
-        found[..., where[:, None], where] = products
-        return found
+        spread = np.zeros((*products.shape[:-2], size, size))
+        spread[..., where[:, None], where] = products
+        return spread
 
     def together(self, values: Mapping[str, np.ndarray]) -> np.ndarray:
         """One value a column, (p,) array, from those of the logs; common columns have the same in all."""
-        found = np.zeros(len(self.regressors))
-        for name, own in values.items():
-            found[self.places[name]] = own
-        return found
+        means = np.zeros(len(self.regressors))
+        for name, of_log in values.items():
+            means[self.places[name]] = of_log
+        return means
 
 
 def laid_out(
-    known: Mapping[str, Sequence[Regressor]],
+    of_ship: Mapping[str, Sequence[Regressor]],
     others: Sequence[tuple[str, Regressor]],
     named: Mapping[str, Sequence[str]],
 ) -> Layout:
@@ -149,7 +153,7 @@ def laid_out(
 
     Parameters
     ----------
-    known : dict of str to sequence of Regressor
+    of_ship : dict of str to sequence of Regressor
         By name of the log: its first columns.
     others : sequence of (str, Regressor)
         The columns behind them all, by name.
@@ -161,20 +165,20 @@ def laid_out(
     Layout
     """
     # Known numbers of the ship are the same column in all logs, those of a day one for each.
-    found: dict[object, Regressor] = {}
-    for log, columns in known.items():
+    regressors: dict[object, Regressor] = {}
+    for log, columns in of_ship.items():
         for column in columns:
-            found.setdefault(_key(log, column), column)
-    found |= dict(others)
-    order = {key: place for place, key in enumerate(found)}
+            regressors.setdefault(_key(log, column), column)
+    regressors |= dict(others)
+    order = {key: place for place, key in enumerate(regressors)}
     # Place of each log's columns in the common order.
     keys = {
         log: [*(_key(log, column) for column in columns), *named[log]]
-        for log, columns in known.items()
+        for log, columns in of_ship.items()
     }
     return Layout(
-        list(found.values()),
-        {log: np.array([order[key] for key in own], int) for log, own in keys.items()},
+        list(regressors.values()),
+        {log: np.array([order[key] for key in log_keys], int) for log, log_keys in keys.items()},
     )
 
 

@@ -72,10 +72,10 @@ def _clock_by_heading(rate, measured, step, length, rows):
         return 1.0
     # The same ratio from heading and yaw rate, over rows in which the ship turns quickly.
     turned = moving_average(np.diff(psi), rows)
-    told = moving_average(0.5 * step * (r[1:] + r[:-1]), rows)
+    integrated = moving_average(0.5 * step * (r[1:] + r[:-1]), rows)
     quick = np.abs(r[1:]) * length > thresholds.TURNS * np.hypot(u, v)[1:]
-    quick &= np.isfinite(rate) & (np.abs(told) > 0.2 * np.max(np.abs(told)))
+    quick &= np.isfinite(rate) & (np.abs(integrated) > 0.2 * np.max(np.abs(integrated)))
     if quick.sum() < 20:
         return 1.0
-    by_heading = turned[quick] / told[quick]
+    by_heading = turned[quick] / integrated[quick]
     return float(np.nanmedian(rate) / np.median(rate[quick] / by_heading))

@@ -120,25 +120,36 @@ def trial_evidence(
     # Central differences for the causes, forward ones for numbers that are only allowed for; all
     # ships in one simulation.
     causes = [
-        (parameter, _PART * parameter.typical) for one in hypotheses for parameter in one.parameters
+        (parameter, _PART * parameter.typical)
+        for hypothesis in hypotheses
+        for parameter in hypothesis.parameters
     ]
-    known = known_numbers(model)
+    of_ship = known_numbers(model)
     both = [dict.fromkeys(p.paths, sign * size) for sign in (1.0, -1.0) for p, size in causes]
-    found = predicted(trials, model, [{}, *both, *({path: size} for path, size in known)])
-    slopes = (found[1 : 1 + len(causes)] - found[1 + len(causes) : 1 + 2 * len(causes)]) / (
+    features = predicted(trials, model, [{}, *both, *({path: size} for path, size in of_ship)])
+    slopes = (features[1 : 1 + len(causes)] - features[1 + len(causes) : 1 + 2 * len(causes)]) / (
         2.0 * _PART
     )
-    beside = found[1 + 2 * len(causes) :] - found[0]
+    of_ship_slopes = features[1 + 2 * len(causes) :] - features[0]
     length = model.length
     # Covariance of features by how well trials repeat, independent between trials.
     noise = blocks([covariance_of(trial, length) for trial in trials])
     measured = np.concatenate([features_of(trial, trial.measured) for trial in trials])
     first = TrialEvidence(
-        tuple(trials), model, tuple(hypotheses), measured, found[0], slopes, beside, noise
+        tuple(trials),
+        model,
+        tuple(hypotheses),
+        measured,
+        features[0],
+        slopes,
+        of_ship_slopes,
+        noise,
     )
     # How well they repeat is unknown: take the scale of largest evidence with up to two causes.
     scaled = [replace(first, noise=scale**2 * noise, scale=scale) for scale in thresholds.SCALES]
-    return max(scaled, key=lambda one: max(value for value, _ in _linear(one, 2)))
+    return max(
+        scaled, key=lambda scaled_evidence: max(value for value, _ in _linear(scaled_evidence, 2))
+    )
 
 
 def known_numbers(model: ShipModel) -> list[tuple[str, float]]:
@@ -151,21 +162,21 @@ def known_numbers(model: ShipModel) -> list[tuple[str, float]]:
     """
     # Tolerances of hull and thrusters, without the wind's, as trials are sailed calm.
     places = (model.vessel, *model.thrusters)
-    found = [
+    numbers = [
         (path, size) for path, size in model.tolerances.items() if path.rpartition(".")[0] in places
     ]
-    found = [
+    numbers = [
         (path, size)
-        for path, size in found
+        for path, size in numbers
         if isinstance(model.get(path), float) and "wind" not in path
     ]
     # Current and mounting errors have standard deviations of their own.
-    found += [
+    numbers += [
         ("water.current_north", thresholds.CURRENT),
         ("water.current_east", thresholds.CURRENT),
     ]
     sizes = thresholds.HEADING_BIAS, thresholds.LEVER * model.length
-    return [*found, *zip(MOUNTING, sizes, strict=True)]
+    return [*numbers, *zip(MOUNTING, sizes, strict=True)]
 
 
 def predicted(
@@ -194,78 +205,86 @@ def slopes_of(
     """Features of trials by fitted sets, (f,) array, and their slopes by parameter, (p, f), over a typical size."""
     # The set itself, then each of its parameters moved.
     changes = []
-    for one in sets:
-        moves = _PART * np.eye(len(one.values))
-        changes += [changes_of(one), *(_changes(one.hypotheses, one.values + by) for by in moves)]
+    for cause_set in sets:
+        moves = _PART * np.eye(len(cause_set.values))
+        changes += [
+            changes_of(cause_set),
+            *(_changes(cause_set.hypotheses, cause_set.values + by) for by in moves),
+        ]
     features = iter(predicted(trials, model, changes))
-    found = []
-    for one in sets:
+    linearised = []
+    for cause_set in sets:
         here = next(features)
-        found.append(
+        linearised.append(
             (
                 here,
-                np.array([(next(features) - here) / _PART for _ in one.values]).reshape(
+                np.array([(next(features) - here) / _PART for _ in cause_set.values]).reshape(
                     -1, here.size
                 ),
             )
         )
-    return found
+    return linearised
 
 
 def blocks(matrices: Sequence[np.ndarray]) -> np.ndarray:
     """A matrix of square matrices along its diagonal."""
-    size = sum(len(one) for one in matrices)
-    found = np.zeros((size, size))
+    size = sum(len(matrix) for matrix in matrices)
+    joined = np.zeros((size, size))
     at = 0
-    for one in matrices:
-        found[at : at + len(one), at : at + len(one)] = one
-        at += len(one)
-    return found
+    for matrix in matrices:
+        joined[at : at + len(matrix), at : at + len(matrix)] = matrix
+        at += len(matrix)
+    return joined
 
 
-def changes_of(found: SetOfCauses) -> dict[str, float]:
+def changes_of(fitted_set: SetOfCauses) -> dict[str, float]:
     """What a fitted set adds to the numbers of the ship."""
-    return _changes(found.hypotheses, found.values)
+    return _changes(fitted_set.hypotheses, fitted_set.values)
 
 
-def allowed_for(found: TrialEvidence, one: SetOfCauses) -> dict[str, float]:
+def allowed_for(evidence: TrialEvidence, fitted_set: SetOfCauses) -> dict[str, float]:
     """What compass and antenna are most likely off, beside a fitted set: numbers of the ship and what is added."""
-    here = predicted(found.trials, found.model, [changes_of(one)])[0]
+    here = predicted(evidence.trials, evidence.model, [changes_of(fitted_set)])[0]
     # Posterior mean of known numbers given the residual: their share of the total covariance.
-    shares = found.known @ np.linalg.solve(found.covariance, found.measured - here)
+    shares = evidence.known @ np.linalg.solve(evidence.covariance, evidence.measured - here)
     return {
         path: float(share) * size
-        for share, (path, size) in zip(shares, known_numbers(found.model), strict=True)
+        for share, (path, size) in zip(shares, known_numbers(evidence.model), strict=True)
         if path in MOUNTING
     }
 
 
 def _changes(hypotheses, values):
     changes = {}
-    parameters = (parameter for one in hypotheses for parameter in one.parameters)
+    parameters = (parameter for hypothesis in hypotheses for parameter in hypothesis.parameters)
     for parameter, value in zip(parameters, values, strict=True):
         for path in parameter.paths:
             changes[path] = changes.get(path, 0.0) + float(value) * parameter.typical
     return changes
 
 
-def _linear(found: TrialEvidence, most: int) -> Iterator[tuple[float, tuple[int, ...]]]:
+def _linear(evidence: TrialEvidence, most: int) -> Iterator[tuple[float, tuple[int, ...]]]:
     """Log-evidence of sets of hypotheses in the linear approximation, with their places."""
     # Whitened products once; every set only selects from them.
-    products, free = _products(found.covariance, found.measured - found.predicted, found.slopes)
-    own = _columns(found.hypotheses)
+    products, free = _products(
+        evidence.covariance, evidence.measured - evidence.predicted, evidence.slopes
+    )
+    places_of = _columns(evidence.hypotheses)
     yield free, ()
     for count in range(1, most + 1):
-        for places in combinations(range(len(own)), count):
-            yield free + _gain(products, [i for place in places for i in own[place]])[0], places
+        for places in combinations(range(len(places_of)), count):
+            yield (
+                free + _gain(products, [i for place in places for i in places_of[place]])[0],
+                places,
+            )
 
 
 def _columns(hypotheses):
     """Places of each hypothesis' parameters among all."""
-    ends = np.cumsum([len(one.parameters) for one in hypotheses])
+    ends = np.cumsum([len(hypothesis.parameters) for hypothesis in hypotheses])
     return [
-        list(range(end - len(one.parameters), end))
-        for one, end in zip(hypotheses, ends, strict=True)
+        list(range(end - len(hypothesis.parameters), end))
+        for hypothesis, end in zip(hypotheses, ends, strict=True)
     ]
 
 
@@ -283,12 +302,12 @@ def _gain(products, columns):
     return evidence(products[np.ix_(rows, rows)], np.ones(len(columns)))
 
 
-def ranked(found: TrialEvidence) -> list[SetOfCauses]:
+def ranked(evidence: TrialEvidence) -> list[SetOfCauses]:
     """Sets of causes by evidence, best first: those best in the linear approximation, fitted to the simulation itself.
 
     Parameters
     ----------
-    found : TrialEvidence
+    evidence : TrialEvidence
 
     Returns
     -------
@@ -297,42 +316,46 @@ def ranked(found: TrialEvidence) -> list[SetOfCauses]:
     """
     # Rank all sets linearly, keep the best of each size, and every set with one cause less, for
     # comparisons.
-    everyone = sorted(_linear(found, thresholds.MOST_CAUSES), reverse=True)
+    everyone = sorted(_linear(evidence, thresholds.MOST_CAUSES), reverse=True)
     chosen = {()}
     for count in range(1, thresholds.MOST_CAUSES + 1):
         chosen |= {
             places
-            for _, places in [one for one in everyone if len(one[1]) == count][
+            for _, places in [ranked_set for ranked_set in everyone if len(ranked_set[1]) == count][
                 : thresholds.RELINEARISED
             ]
         }
     chosen |= {part for places in chosen for part in combinations(places, max(len(places) - 1, 0))}
-    sets = [tuple(found.hypotheses[i] for i in places) for places in sorted(chosen)]
-    return sorted(_fitted(found, sets), key=lambda one: -one.evidence)
+    sets = [tuple(evidence.hypotheses[i] for i in places) for places in sorted(chosen)]
+    return sorted(_fitted(evidence, sets), key=lambda fitted_set: -fitted_set.evidence)
 
 
-def _fitted(found, sets):
+def _fitted(evidence, sets):
     """Sets fitted by linearising about what was found, a few times, all sets in one simulation."""
     # First solve with the slopes about the ship as modelled.
-    own = dict(zip((h.label for h in found.hypotheses), _columns(found.hypotheses), strict=True))
-    slopes = [found.slopes[[i for one in causes for i in own[one.label]]] for causes in sets]
+    places_of = dict(
+        zip((h.label for h in evidence.hypotheses), _columns(evidence.hypotheses), strict=True)
+    )
+    slopes = [
+        evidence.slopes[[i for cause in causes for i in places_of[cause.label]]] for causes in sets
+    ]
     fits = [
-        _solved(found, causes, s, found.predicted, np.zeros(len(s)))
+        _solved(evidence, causes, s, evidence.predicted, np.zeros(len(s)))
         for causes, s in zip(sets, slopes, strict=True)
     ]
     # Gauss-Newton: simulate each set where it is and solve again.
     for _ in range(thresholds.ROUNDS):
-        about = slopes_of(found.trials, found.model, fits)
+        about = slopes_of(evidence.trials, evidence.model, fits)
         fits = [
-            _solved(found, fit.hypotheses, slopes, here, fit.values)
+            _solved(evidence, fit.hypotheses, slopes, here, fit.values)
             for fit, (here, slopes) in zip(fits, about, strict=True)
         ]
     return fits
 
 
-def _solved(found, causes, slopes, here, centre):
+def _solved(of_trials, causes, slopes, here, centre):
     """Posterior and evidence of a set, linearised about a centre."""
-    products, free = _products(found.covariance, found.measured - here, slopes)
+    products, free = _products(of_trials.covariance, of_trials.measured - here, slopes)
     gain, mean, covariance = evidence(products, np.ones(len(centre)), centre)
     # Steps of the estimate are limited, as slopes hold near the centre only.
     limit = 1.5 + np.abs(centre)

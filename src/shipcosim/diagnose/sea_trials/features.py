@@ -132,15 +132,15 @@ def _drift(motion, trial, turned):
     psi = motion[steady, 2]
     since = trial.time[steady] - np.mean(trial.time[steady])
     none = np.zeros_like(psi)
-    one = np.ones_like(psi)
+    ones = np.ones_like(psi)
     c = np.cos(psi)
     s = np.sin(psi)
     # Least squares: a circle whose centre drifts, x = x0 + a cos psi - b sin psi + U t, y = y0 + a
     # sin psi + b cos psi + V t.
     rows = np.block(
         [
-            [np.stack((one, none, c, -s, since, none), 1)],
-            [np.stack((none, one, s, c, none, since), 1)],
+            [np.stack((ones, none, c, -s, since, none), 1)],
+            [np.stack((none, ones, s, c, none, since), 1)],
         ]
     )
     return np.linalg.lstsq(
@@ -258,11 +258,11 @@ def covariance_of(trial: SeaTrial, length: float) -> np.ndarray:
         return np.diag(np.square(_SPREADS[trial.kind]))
     # Independent errors of each feature, then errors that features share: a late start, a common
     # error of speed, and one of rate.
-    own = [t.SPEED, t.RATE, t.DRIFT, *t.TIMES, *[t.SPEEDS] * len(t.HEADINGS_OF_SPEED), *t.WAYS]
+    stds = [t.SPEED, t.RATE, t.DRIFT, *t.TIMES, *[t.SPEEDS] * len(t.HEADINGS_OF_SPEED), *t.WAYS]
     names = FEATURES[trial.kind]
     features = features_of(trial, trial.measured)
     late = t.START * np.sqrt(length)
-    found = np.diag(np.square(own))
+    covariance = np.diag(np.square(stds))
     for shares in (
         {name: late / np.exp(x) for name, x in zip(names, features, strict=True) if name in _TIMES}
         | {
@@ -274,5 +274,5 @@ def covariance_of(trial: SeaTrial, length: float) -> np.ndarray:
         {"rate": t.COMMON} | dict.fromkeys((*_TIMES, *_WAYS), -t.COMMON),
     ):
         shared = np.array([shares.get(name, 0.0) for name in names])
-        found += np.outer(shared, shared)
-    return found
+        covariance += np.outer(shared, shared)
+    return covariance

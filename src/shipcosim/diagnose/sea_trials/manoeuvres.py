@@ -99,7 +99,7 @@ def catalogue(model: ShipModel) -> list[PlannedTrial]:
     d = np.radians
     speeds = {"full speed": _FULL, "half speed": _HALF, "slow speed": _SLOW}
     fast = {name: power for name, power in speeds.items() if power != _SLOW}
-    found = [
+    manoeuvres = [
         _planned(
             f"turning circle with {angle} deg at {name}",
             "turning circle",
@@ -109,7 +109,7 @@ def catalogue(model: ShipModel) -> list[PlannedTrial]:
         for name, power in fast.items()
         for angle in (10, 20, 35)
     ]
-    found += [
+    manoeuvres += [
         _planned(
             f"zig-zag {helm}/{check} at {name}",
             "zig-zag",
@@ -122,7 +122,7 @@ def catalogue(model: ShipModel) -> list[PlannedTrial]:
     turn = Leg(12.0, _FULL, d(20))
     amidships = Leg(6.0, _FULL)
     spiral = [Leg(12.0, _FULL, d(angle)) for angle in (20, 10, 5, 2.5)]
-    found += [
+    manoeuvres += [
         _planned("pull-out from 20 deg at full speed", "pull-out", _FULL, turn, amidships, seen=1),
         _planned("spiral from 20 to 2.5 deg at full speed", "spiral", _FULL, *spiral),
         _planned(
@@ -135,7 +135,7 @@ def catalogue(model: ShipModel) -> list[PlannedTrial]:
         _planned("crash stop from full speed", "change of speed", _FULL, Leg(6.0, -_FULL)),
     ]
     sideways = (dp_thruster_of(model, name).pushes_sideways for name in model.thrusters)
-    return [*found, *_with_bow_thruster(speeds)] if any(sideways) else found
+    return [*manoeuvres, *_with_bow_thruster(speeds)] if any(sideways) else manoeuvres
 
 
 def _with_bow_thruster(speeds):
@@ -179,18 +179,26 @@ def as_trials(
     length = model.length
     h = thresholds.STEP * np.sqrt(model.length)
     # Each approach begins at its own steady speed straight ahead.
-    approaches = sorted({one.approach for one in planned})
+    approaches = sorted({manoeuvre.approach for manoeuvre in planned})
     units = {name: dp_thruster_of(model, name) for name in model.thrusters}
     orders = [_orders(units, shafts, power, 0.0, 0.0) for power in approaches]
     speeds = dict(zip(approaches, settled(orders, model, changes, h), strict=True))
     # Every manoeuvre to both sides, on opposite courses; all runs in one simulation.
-    runs = [(one, side) for one in planned for side in (1, -1)]
-    pilots = [_Pilot(one, side, speeds[one.approach], length, shafts, units) for one, side in runs]
-    rows = [int(one.way * length / speeds[one.approach] / h) + 2 for one, _ in runs]
-    start = [(0.0, 0.0, 0.0 if side > 0 else np.pi, speeds[one.approach]) for one, side in runs]
+    runs = [(manoeuvre, side) for manoeuvre in planned for side in (1, -1)]
+    pilots = [
+        _Pilot(manoeuvre, side, speeds[manoeuvre.approach], length, shafts, units)
+        for manoeuvre, side in runs
+    ]
+    rows = [
+        int(manoeuvre.way * length / speeds[manoeuvre.approach] / h) + 2 for manoeuvre, _ in runs
+    ]
+    start = [
+        (0.0, 0.0, 0.0 if side > 0 else np.pi, speeds[manoeuvre.approach])
+        for manoeuvre, side in runs
+    ]
     motions, ordered = steered(pilots, start, max(rows), model, changes, h)
-    found = []
-    for i, one in enumerate(planned):
+    sailed_pairs = []
+    for i, plan in enumerate(planned):
         pair = [
             _seen(
                 runs[k][0],
@@ -203,18 +211,18 @@ def as_trials(
         ]
         # Keep manoeuvres that the ship gets through to both sides.
         if all(trial is not None for trial in pair):
-            found.append((one, pair))
-    return found
+            sailed_pairs.append((plan, pair))
+    return sailed_pairs
 
 
-def _seen(one, side, motion, units, h):
+def _seen(manoeuvre, side, motion, units, h):
     """The part of a run that features are taken from, or nothing."""
     # Legs by their share of the way; the first ones may not belong to the features.
-    ways = np.cumsum([0.0, *(leg.way for leg in one.legs)]) / one.way
-    first = int(ways[-1 - one.seen] * (len(motion) - 1))
+    ways = np.cumsum([0.0, *(leg.way for leg in manoeuvre.legs)]) / manoeuvre.way
+    first = int(ways[-1 - manoeuvre.seen] * (len(motion) - 1))
     last = len(motion)
     # A circle ends after the wanted number of turns; one that is not reached does not count.
-    if one.kind == "turning circle":
+    if manoeuvre.kind == "turning circle":
         turned = side * (motion[:, 2] - motion[0, 2])
         if turned.max() < np.radians(thresholds.CIRCLES):
             return None
@@ -222,22 +230,24 @@ def _seen(one, side, motion, units, h):
     part = slice(first, last)
     cut = {name: (speed[part], direction[part]) for name, (speed, direction) in units.items()}
     time = h * np.arange(last - first)
-    helm = float(np.sin(abs(one.legs[-1].helm)))
-    return SeaTrial(one.kind, side, (h * first, h * last), helm, time, motion[part], cut, True)
+    helm = float(np.sin(abs(manoeuvre.legs[-1].helm)))
+    return SeaTrial(
+        manoeuvre.kind, side, (h * first, h * last), helm, time, motion[part], cut, True
+    )
 
 
 def _orders(units, shafts, power, helm, bow):
     """Speed and direction of every thruster, from shaft speed, helm to starboard and bow thruster to starboard."""
-    found = {}
+    orders = {}
     for name, unit in units.items():
         if unit.pushes_sideways:
-            found[name] = (bow * unit.most, 0.0)
+            orders[name] = (bow * unit.most, 0.0)
         elif unit.pointed:
-            found[name] = (power * shafts.get(name, 0.0), -helm if unit.x < 0.0 else 0.0)
+            orders[name] = (power * shafts.get(name, 0.0), -helm if unit.x < 0.0 else 0.0)
         else:
             share = np.sqrt(max(1.0 - np.sign(unit.y) * np.sin(helm), 0.0))
-            found[name] = (power * shafts.get(name, 0.0) * share, 0.0)
-    return found
+            orders[name] = (power * shafts.get(name, 0.0) * share, 0.0)
+    return orders
 
 
 class _Pilot:

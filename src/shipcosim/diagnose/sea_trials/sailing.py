@@ -95,7 +95,7 @@ def settled(
     speed = thresholds.FROUDE * np.sqrt(9.81 * length)
     rows = int(thresholds.RUN * length / speed / h) + 2
     units = {
-        name: tuple(np.tile([one[name][i] for one in orders], (rows, 1)) for i in (0, 1))
+        name: tuple(np.tile([order[name][i] for order in orders], (rows, 1)) for i in (0, 1))
         for name in model.thrusters
     }
     state = Motion(zero, zero, zero, zero + speed, zero, zero)
@@ -187,7 +187,11 @@ def _driven(trial, model):
 def _padded(series, rows):
     """(rows, trials) array of series, each held after its end."""
     return np.stack(
-        [np.concatenate((one, np.full(rows - one.size, one[-1]))) for one in series], axis=1
+        [
+            np.concatenate((of_trial, np.full(rows - of_trial.size, of_trial[-1])))
+            for of_trial in series
+        ],
+        axis=1,
     )
 
 
@@ -197,7 +201,7 @@ def _at(units, k):
 
 def _followed(actual, units, k, ships, h):
     """Speed and direction of each unit a step later, which follow their orders. [rev/s or N, rad]"""
-    found = {}
+    followed = {}
     (count, trials) = next(iter(units.values()))[0].shape
     # Row and share of a row at which orders act after the delay; by ship where this is an array.
     at = np.clip(k - ships.parts["instruments"].order_lag / h, 0.0, count - 1.0)
@@ -219,8 +223,8 @@ def _followed(actual, units, k, ships, h):
         n = wanted + (actual[name][0] - wanted) * np.exp(-h / thresholds.RPM_LAG)
         if isinstance(unit, AzimuthParameters) and name not in ships.fixed:
             angle = turned(actual[name][1], angle, unit.azimuth_rate * h)
-        found[name] = (n, angle)
-    return found
+        followed[name] = (n, angle)
+    return followed
 
 
 def _stepped(state, before, after, ships, h):

@@ -31,7 +31,7 @@ from shipcosim.diagnose.ship.model import ShipModel
 _PART = 0.3  # of a standard deviation, by which known numbers are moved
 
 
-def separations(found: TrialEvidence, sets: Sequence[SetOfCauses]) -> list[Separation]:
+def separations(evidence: TrialEvidence, sets: Sequence[SetOfCauses]) -> list[Separation]:
     """What each manoeuvre of the catalogue would tell of sets of causes that fit sea trials alike.
 
     The first set's ship sails them; the ships of all sets are simulated on the same orders. Their parameters and the
@@ -40,7 +40,7 @@ def separations(found: TrialEvidence, sets: Sequence[SetOfCauses]) -> list[Separ
 
     Parameters
     ----------
-    found : TrialEvidence
+    evidence : TrialEvidence
         Of the trials that were sailed.
     sets : sequence of SetOfCauses
         Those to tell apart, the best first; no more than four are compared.
@@ -52,35 +52,39 @@ def separations(found: TrialEvidence, sets: Sequence[SetOfCauses]) -> list[Separ
     """
     # Sail each manoeuvre with the best set's ship, then simulate all sets on the same orders.
     sets = list(sets)[:MOST_SETS]
-    model = found.model
-    planned = as_trials(catalogue(model), model, _shafts(found.trials, model), changes_of(sets[0]))
+    model = evidence.model
+    planned = as_trials(
+        catalogue(model), model, _shafts(evidence.trials, model), changes_of(sets[0])
+    )
     trials = [trial for _, pair in planned for trial in pair]
     there = slopes_of(trials, model, sets)
     # Numbers that stay uncertain: known ones, and causes that the trials said nothing of.
     numbers = known_numbers(model)
-    untold = _untold(found, sets)
+    untold = _untold(evidence, sets)
     sizes = [{path: size} for path, size in numbers] + [
         dict.fromkeys(p.paths, p.typical) for _, p in untold
     ]
     first = changes_of(sets[0])
     # Slopes of the new features by them, by forward differences about the best set.
     moved = [
-        first | {path: first.get(path, 0.0) + _PART * size for path, size in one.items()}
-        for one in sizes
+        first | {path: first.get(path, 0.0) + _PART * size for path, size in step.items()}
+        for step in sizes
     ]
-    beside = (predicted(trials, model, moved) - there[0][0]) / _PART
+    slopes_of_ship = (predicted(trials, model, moved) - there[0][0]) / _PART
     # What the trials said constrains sets and numbers: predict the new features from that
     # posterior.
-    known = replace(found, known=np.vstack((found.known, *(found.slopes[i] for i, _ in untold))))
-    spread = found.scale**2 * blocks([covariance_of(trial, model.length) for trial in trials])
-    of_day = np.array([ShipModel.is_of_day(path) for one in sizes for path in list(one)[:1]])
+    with_untold = replace(
+        evidence, known=np.vstack((evidence.known, *(evidence.slopes[i] for i, _ in untold)))
+    )
+    spread = evidence.scale**2 * blocks([covariance_of(trial, model.length) for trial in trials])
+    of_day = np.array([ShipModel.is_of_day(path) for size in sizes for path in list(size)[:1]])
     priors = [
-        _prediction(known, at_trials, here, beside, of_day, spread)
-        for at_trials, here in zip(slopes_of(found.trials, model, sets), there, strict=True)
+        _prediction(with_untold, at_trials, here, slopes_of_ship, of_day, spread)
+        for at_trials, here in zip(slopes_of(evidence.trials, model, sets), there, strict=True)
     ]
     results = []
     at = 0
-    for one, pair in planned:
+    for manoeuvre, pair in planned:
         names = [(trial.kind, trial.side, name) for trial in pair for name in FEATURES[trial.kind]]
         part = slice(at, at + len(names))
         at += len(names)
@@ -92,27 +96,27 @@ def separations(found: TrialEvidence, sets: Sequence[SetOfCauses]) -> list[Separ
         minutes = float(sum(trial.logged[1] + _approach(trial, model) for trial in pair)) / 60.0
         results.append(
             Separation(
-                one.name,
+                manoeuvre.name,
                 round(minutes, 1),
                 {key: nats for key, (nats, _) in pairs.items()},
-                one.kind in SOUGHT,
+                manoeuvre.kind in SOUGHT,
                 {key: telling for key, (_, telling) in pairs.items()},
             )
         )
     return sorted(results, key=lambda result: -result.least)
 
 
-def _untold(found, sets):
+def _untold(evidence, sets):
     """Parameters of causes in no set that the trials said next to nothing of: allowed for at their typical size."""
-    held = {cause.label for one in sets for cause in one.hypotheses}
-    pairs = [(cause, parameter) for cause in found.hypotheses for parameter in cause.parameters]
+    held = {cause.label for cause_set in sets for cause in cause_set.hypotheses}
+    pairs = [(cause, parameter) for cause in evidence.hypotheses for parameter in cause.parameters]
     # Information on each parameter: the sum of squares of its whitened slopes.
-    white = np.linalg.solve(np.linalg.cholesky(found.covariance), found.slopes.T)
-    said = np.sum(white**2, axis=0)
+    white = np.linalg.solve(np.linalg.cholesky(evidence.covariance), evidence.slopes.T)
+    information = np.sum(white**2, axis=0)
     return [
         (i, parameter)
         for i, (cause, parameter) in enumerate(pairs)
-        if cause.label not in held and said[i] < thresholds.UNTOLD
+        if cause.label not in held and information[i] < thresholds.UNTOLD
     ]
 
 
@@ -129,40 +133,44 @@ def _shafts(trials: Sequence[SeaTrial], model: ShipModel) -> dict[str, float]:
     }
 
 
-def _prediction(found, at_trials, here, known, of_day, spread):
+def _prediction(evidence, at_trials, here, ship_slopes, of_day, spread):
     """Features of new trials by a set, and their covariance: by the posterior of the trials that were sailed."""
     features, slopes = at_trials
     # Posterior covariance of parameters and numbers with unit prior: (I + A R^-1 A')^-1.
-    columns = np.vstack((slopes, found.known))
-    weighted = columns @ np.linalg.inv(found.noise)
+    columns = np.vstack((slopes, evidence.known))
+    weighted = columns @ np.linalg.inv(evidence.noise)
     P = np.linalg.inv(np.eye(len(columns)) + weighted @ columns.T)
-    mean = (P @ weighted @ (found.measured - features))[len(slopes) :]
+    mean = (P @ weighted @ (evidence.measured - features))[len(slopes) :]
     # Current, compass and antenna are of another day: they keep their prior, the rest the
     # posterior.
     lasting = np.concatenate((np.ones(len(slopes), bool), ~of_day))
-    new = np.vstack((here[1], known))[lasting]
-    C = spread + new.T @ P[np.ix_(lasting, lasting)] @ new + known[of_day].T @ known[of_day]
-    return here[0] + (mean * ~of_day) @ known, C
+    new = np.vstack((here[1], ship_slopes))[lasting]
+    C = (
+        spread
+        + new.T @ P[np.ix_(lasting, lasting)] @ new
+        + ship_slopes[of_day].T @ ship_slopes[of_day]
+    )
+    return here[0] + (mean * ~of_day) @ ship_slopes, C
 
 
-def _apart(one, other, part, names):
+def _apart(first, other, part, names):
     """Log-evidence by which the right one of two is expected to lead, and the feature that says most."""
-    (a, C_a) = one
+    (a, C_a) = first
     (b, C_b) = other
     d = (b - a)[part]
-    found = []
+    separations = []
     # Expected log-evidence between two predictions: half the Mahalanobis distance; the smaller of
     # both being true.
     for C in (C_a[part, part], C_b[part, part]):
-        found.append((0.5 * float(d @ np.linalg.solve(C, d)), np.sqrt(np.diag(C))))
-    nats, sigma = min(found, key=lambda pair: pair[0])
+        separations.append((0.5 * float(d @ np.linalg.solve(C, d)), np.sqrt(np.diag(C))))
+    nats, sigma = min(separations, key=lambda pair: pair[0])
     # The feature with the largest difference in standard deviations.
     best = int(np.argmax(abs(d) / sigma))
     kind, side, name = names[best]
     unit, factor = ("deg", np.degrees(1.0)) if name in ANGLES else ("%", 100.0)
     difference = np.expm1(d[best]) if is_logarithm(kind, name) else d[best]
     to = "to starboard" if side > 0 else "to port"
-    told = TellingFeature(
+    telling = TellingFeature(
         f"{name} {to}", float(factor * difference), float(factor * sigma[best]), unit
     )
-    return nats, told
+    return nats, telling

@@ -122,7 +122,7 @@ class SeaTrialStudy:
     @property
     def pairs(self) -> list[tuple[str, str]]:
         """Causes that two compared sets do not share, for each pair."""
-        return [differing(one, other) for one, other in combinations(self.compared, 2)]
+        return [differing(first, other) for first, other in combinations(self.compared, 2)]
 
     @property
     def compared(self) -> list[SetOfCauses]:
@@ -151,7 +151,8 @@ class SeaTrialStudy:
         """The causes that are named, as those of a diagnosis; their probability is the best set's among its rivals."""
         # Probability of the best set among its rivals, by their evidence.
         share = 1.0 / sum(
-            np.exp(one.evidence - self.best.evidence) for one in (self.best, *self.rivals)
+            np.exp(candidate.evidence - self.best.evidence)
+            for candidate in (self.best, *self.rivals)
         )
         return [
             Finding(
@@ -170,60 +171,62 @@ class SeaTrialStudy:
             "verdict": self.verdict,
             "trials": [trial.name for trial in self.trials],
             "causes": _as_json(self.best),
-            "indistinguishable": [_as_json(one) for one in self.rivals],
-            "prescriptions": [asdict(one) for one in self.prescriptions],
-            "manoeuvres": [_separation_as_json(one, self.compared) for one in self.separations],
+            "indistinguishable": [_as_json(rival) for rival in self.rivals],
+            "prescriptions": [asdict(prescription) for prescription in self.prescriptions],
+            "manoeuvres": [
+                _separation_as_json(separation, self.compared) for separation in self.separations
+            ],
             "held_out": {
                 name: {
-                    "causes": _as_json(one.best),
-                    "judged_on": list(one.judged_on),
-                    "before": one.before,
-                    "after": one.after,
+                    "causes": _as_json(judged.best),
+                    "judged_on": list(judged.judged_on),
+                    "before": judged.before,
+                    "after": judged.after,
                 }
-                for name, one in self.held_out.items()
+                for name, judged in self.held_out.items()
             },
         }
 
 
-def _separation_as_json(one, sets):
+def _separation_as_json(separation, sets):
     pairs = [
         {
             "between": differing(sets[a], sets[b]),
             "nats": round(nats, 1),
-            "telling": one.telling[a, b]._asdict(),
+            "telling": separation.telling[a, b]._asdict(),
         }
-        for (a, b), nats in one.nats.items()
+        for (a, b), nats in separation.nats.items()
     ]
     return {
-        "manoeuvre": one.manoeuvre,
-        "minutes": one.minutes,
-        "read_from_logs": one.read,
+        "manoeuvre": separation.manoeuvre,
+        "minutes": separation.minutes,
+        "read_from_logs": separation.read,
         "pairs": pairs,
     }
 
 
-def _as_json(found):
+def _as_json(causes):
     return [
         {
             "cause": cause.cause,
             "component": cause.component,
             "parameters": {
-                name: vars(estimate) for name, estimate in _estimates(found, cause).items()
+                name: vars(estimate) for name, estimate in _estimates(causes, cause).items()
             },
         }
-        for cause in found.hypotheses
+        for cause in causes.hypotheses
     ]
 
 
-def _estimates(found, cause):
+def _estimates(causes, cause):
     return {
         parameter.name: estimate
-        for (owner, parameter), estimate in zip(found.parameters, estimates(found), strict=True)
+        for (owner, parameter), estimate in zip(causes.parameters, estimates(causes), strict=True)
         if owner is cause
     }
 
 
-def estimates(found: SetOfCauses) -> list[ParameterEstimate]:
+def estimates(causes: SetOfCauses) -> list[ParameterEstimate]:
     """Estimates of a set's parameters in the units of their files."""
     return [
         ParameterEstimate(
@@ -231,7 +234,7 @@ def estimates(found: SetOfCauses) -> list[ParameterEstimate]:
             float(abs(p.factor * p.typical) * std),
             p.unit,
         )
-        for (_, p), value, std in zip(found.parameters, found.values, found.std, strict=True)
+        for (_, p), value, std in zip(causes.parameters, causes.values, causes.std, strict=True)
     ]
 
 
@@ -275,26 +278,26 @@ def study(
     drives = {name: ship.drives(name) for name in ship.thrusters}
     read = checked(ReadLog(read_log(log, channels, drives), ship, read_catalogue(causes)))
     if read.ship.third_party:
-        found = f"{', '.join(read.ship.third_party)}: what such an FMU gives is only known where a log has been."
+        message = f"{', '.join(read.ship.third_party)}: what such an FMU gives is only known where a log has been."
         right = "Sea trials need the FMUs azimuth_thruster and tunnel_thruster."
-        raise error_at(system.file, found, right)
+        raise error_at(system.file, message, right)
     # Gaps must not fall within a trial.
     lost = [segment for fault in read.faults if fault.cause == "gap" for segment in fault.segments]
     record = record_of(read.repaired, read.ship)
     record = as_ordered(record, read.repaired, read.ship) if orders else record
     trials = sea_trials_of(record, read.ship, lost, orders=orders)
     if not any(trial.kind == "turning circle" for trial in trials):
-        found = f"no turning circle among {len(trials)} manoeuvres: {', '.join(t.name for t in trials) or 'none'}."
+        message = f"no turning circle among {len(trials)} manoeuvres: {', '.join(t.name for t in trials) or 'none'}."
         right = f"A circle is an order held until she has turned by {thresholds.CIRCLE:.0f} deg, from a straight course."
-        raise error_at(source_of(read.repaired), found, right)
+        raise error_at(source_of(read.repaired), message, right)
     causes_of_log = causes_of_trials(read.ship, read.causes, orders=orders)
     return studied(trials, read.ship, causes_of_log, say)
 
 
-def motions_of(found: SeaTrialStudy) -> tuple[list[np.ndarray], list[np.ndarray]]:
+def motions_of(trial_study: SeaTrialStudy) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Motions (n, 6) of all trials by the ship as modelled, and with the best set, compass and antenna as told."""
-    best = changes_of(found.best) | allowed_for(found.evidence, found.best)
-    motions = sailed(found.trials, found.model, [{}, best])
+    best = changes_of(trial_study.best) | allowed_for(trial_study.evidence, trial_study.best)
+    motions = sailed(trial_study.trials, trial_study.model, [{}, best])
     return [motion[0] for motion in motions], [motion[1] for motion in motions]
 
 
@@ -312,10 +315,10 @@ def causes_of_trials(
     allowed |= {"instruments.order_lag"} if orders else set()
     everyone = hypotheses_of(catalogue, model, "sea trials")
     return [
-        one
-        for one in everyone
-        if one.definition.law == "linear"
-        and all(path in allowed for p in one.parameters for path in p.paths)
+        hypothesis
+        for hypothesis in everyone
+        if hypothesis.definition.law == "linear"
+        and all(path in allowed for p in hypothesis.parameters for path in p.paths)
     ]
 
 
@@ -345,13 +348,13 @@ def studied(
     }
     held_out = {}
     if all(sides.values()):
-        for name, own in sides.items():
+        for name, of_side in sides.items():
             progress(f"fitted on circles to {name}, judged on the others")
             others = [
-                trial for trial in trials if trial.kind != "straight run" and trial not in own
+                trial for trial in trials if trial.kind != "straight run" and trial not in of_side
             ]
             straight = [trial for trial in trials if trial.kind == "straight run"]
-            held_out[name] = _judged([*straight, *own], others, model, hypotheses)
+            held_out[name] = _judged([*straight, *of_side], others, model, hypotheses)
     # The result itself is fitted on all trials.
     progress("fitted on all manoeuvres")
     whole = trial_evidence(trials, model, hypotheses)
@@ -366,12 +369,12 @@ def studied(
 
 def _judged(train, others, model, hypotheses):
     both_sides = [
-        one for one in hypotheses if one.component is None
+        hypothesis for hypothesis in hypotheses if hypothesis.component is None
     ]  # one unit alone: told by comparing both sides
-    found = trial_evidence(train, model, both_sides)
-    ranking = tuple(ranked(found))
+    evidence = trial_evidence(train, model, both_sides)
+    ranking = tuple(ranked(evidence))
     best = best_of(ranking)
-    fitted = changes_of(best) | allowed_for(found, best)
+    fitted = changes_of(best) | allowed_for(evidence, best)
     before, after = (errors(others, model, changes) for changes in ({}, fitted))
     fitted_on, judged_on = (tuple(trial.name for trial in some) for some in (train, others))
     return HeldOut(fitted_on, judged_on, ranking, before, after, fitted)
@@ -381,18 +384,22 @@ def best_of(ranking: Iterable[SetOfCauses]) -> SetOfCauses:
     """The set that is named: each of its causes adds enough, to any set of fewer and to what it explains without it."""
     ranking = list(ranking)
     # A set is named if each of its causes adds enough to the set without it.
-    by_label = {frozenset(c.label for c in one.hypotheses): one for one in ranking}
-    for one in sorted((one for one in ranking if one.plausible), key=_worth, reverse=True):
-        names = frozenset(c.label for c in one.hypotheses)
+    by_label = {
+        frozenset(c.label for c in ranked_set.hypotheses): ranked_set for ranked_set in ranking
+    }
+    for best in sorted(
+        (ranked_set for ranked_set in ranking if ranked_set.plausible), key=_worth, reverse=True
+    ):
+        names = frozenset(c.label for c in best.hypotheses)
         less = [by_label[names - {name}].evidence for name in names if names - {name} in by_label]
-        if all(one.evidence - value > thresholds.NAMED for value in less):
-            return one
+        if all(best.evidence - value > thresholds.NAMED for value in less):
+            return best
     return by_label[frozenset()]
 
 
-def _worth(one):
+def _worth(ranked_set):
     """Evidence minus the cost of each cause. [nats]"""
-    return one.evidence - thresholds.NAMED * len(one.hypotheses)
+    return ranked_set.evidence - thresholds.NAMED * len(ranked_set.hypotheses)
 
 
 def rivals_of(ranking: Iterable[SetOfCauses]) -> list[SetOfCauses]:
@@ -400,12 +407,12 @@ def rivals_of(ranking: Iterable[SetOfCauses]) -> list[SetOfCauses]:
     ranking = list(ranking)
     best = best_of(ranking)
     return [
-        one
-        for one in ranking
-        if one is not best
-        and one.plausible
-        and len(one.hypotheses) <= len(best.hypotheses)
-        and _worth(one) > _worth(best) - thresholds.RIVAL
+        ranked_set
+        for ranked_set in ranking
+        if ranked_set is not best
+        and ranked_set.plausible
+        and len(ranked_set.hypotheses) <= len(best.hypotheses)
+        and _worth(ranked_set) > _worth(best) - thresholds.RIVAL
     ]
 
 
@@ -429,11 +436,13 @@ def errors(
     measured = [features_of(trial, trial.measured) for trial in trials]
     # Simulate all trials with the changes and compare features: logarithms as relative errors.
     sailed = predicted(trials, model, [changes])[0]
-    found = {}
+    by_feature = {}
     at = 0
-    for trial, own in zip(trials, measured, strict=True):
-        for name, off in zip(FEATURES[trial.kind], sailed[at : at + own.size] - own, strict=True):
+    for trial, of_trial in zip(trials, measured, strict=True):
+        for name, off in zip(
+            FEATURES[trial.kind], sailed[at : at + of_trial.size] - of_trial, strict=True
+        ):
             size = np.degrees(off) if name in ANGLES else 100.0 * np.expm1(off)
-            found.setdefault(f"{trial.kind}: {name}", []).append(size)
-        at += own.size
-    return {name: float(np.sqrt(np.mean(np.square(values)))) for name, values in found.items()}
+            by_feature.setdefault(f"{trial.kind}: {name}", []).append(size)
+        at += of_trial.size
+    return {name: float(np.sqrt(np.mean(np.square(values)))) for name, values in by_feature.items()}

@@ -90,11 +90,11 @@ def sea_trials_of(
     for first, last in lost:
         whole &= (record.time < first - record.step) | (record.time > last + record.step)
     # Circles and zig-zags first, straight runs between them.
-    found = [*_circles(helm, measured), *_zig_zags(helm, measured, length)]
-    busy = [rows for _, rows in found]
-    found += _straight_runs(helm, record, measured, length, busy)
+    manoeuvres = [*_circles(helm, measured), *_zig_zags(helm, measured, length)]
+    busy = [rows for _, rows in manoeuvres]
+    manoeuvres += _straight_runs(helm, record, measured, length, busy)
     # Only whole manoeuvres in which the ship makes way.
-    kept = [(kind, rows) for kind, rows in found if whole[rows].all()]
+    kept = [(kind, rows) for kind, rows in manoeuvres if whole[rows].all()]
     fast = thresholds.UNDER_WAY * np.sqrt(9.81 * length)
     kept = [(kind, rows) for kind, rows in kept if np.mean(speed[rows]) > fast]
     # Correct the clock and the scale of the speed log by the motion itself.
@@ -102,9 +102,9 @@ def sea_trials_of(
     measured = measured.copy()
     measured[:, 3:5] *= scale
     kept = [
-        one
-        for one in kept
-        if not (orders and one[0] == "straight run" and _clipped(one[1], record, model))
+        manoeuvre
+        for manoeuvre in kept
+        if not (orders and manoeuvre[0] == "straight run" and _clipped(manoeuvre[1], record, model))
     ]
     trials = [
         _trial(kind, rows, record, measured, clock, helm, length, orders) for kind, rows in kept
@@ -133,21 +133,21 @@ def as_ordered(record: Record, log: xarray.Dataset, model: ShipModel) -> Record:
     units = {}
     for name, (speed, direction) in record.units.items():
         # Orders as logged; the averaged ones where the log has a hole.
-        own = speed
+        ordered = speed
         for drive, factor in (("thrust", 1.0), ("rpm", 1.0 / 60.0)):
             if drive in model.drives(name) and f"{name}_{drive}" in log:
-                own = factor * _known(log[f"{name}_{drive}"].values, speed, at)
+                ordered = factor * _finite_or(log[f"{name}_{drive}"].values, speed, at)
         azimuth = f"{name}_azimuth"
         units[name] = (
-            own,
-            _known(unwrap_series(np.radians(log[azimuth].values)), direction, at)
+            ordered,
+            _finite_or(unwrap_series(np.radians(log[azimuth].values)), direction, at)
             if azimuth in log
             else direction,
         )
     return replace(record, units=units)
 
 
-def _known(series, otherwise, at):
+def _finite_or(series, otherwise, at):
     """Values of a series at some rows; a default for missing values."""
     return np.where(np.isfinite(series[at]), series[at], otherwise)
 
@@ -229,7 +229,7 @@ def _zig_zags(helm, measured, length):
     way = _way(measured)
     side = np.where(helm > thresholds.ZIG_ZAG, 1, np.where(helm < -thresholds.ZIG_ZAG, -1, 0))
     # Times with helm to either side, in order.
-    swings = [run for one in (1, -1) for run in _runs(side == one)]
+    swings = [run for sign in (1, -1) for run in _runs(side == sign)]
     swings.sort(key=lambda run: run.start)
     chains = []
     for run in swings:
@@ -301,14 +301,14 @@ def _trial(kind, rows, record, measured, clock, helm, length, orders):
     """The rows of a manoeuvre on even steps of its own clock."""
     # Even steps of the ship's time scale on the corrected clock; orders are steps, so they are not
     # interpolated.
-    own = clock[rows] - clock[rows][0]
+    seconds = clock[rows] - clock[rows][0]
     h = thresholds.STEP * np.sqrt(length)
-    time = np.arange(int(own[-1] / h) + 1) * h
+    time = np.arange(int(seconds[-1] / h) + 1) * h
 
     def even(series):
-        return np.interp(time, own, series[rows])
+        return np.interp(time, seconds, series[rows])
 
-    nearest = np.argmin(np.abs(own[:, None] - time), axis=0) + rows.start
+    nearest = np.argmin(np.abs(seconds[:, None] - time), axis=0) + rows.start
     units = {
         name: (speed[nearest], direction[nearest])
         for name, (speed, direction) in record.units.items()

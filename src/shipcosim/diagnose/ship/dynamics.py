@@ -85,13 +85,13 @@ def loads(
         X, Y, N. [N, N, N.m]
     """
     parts = model.parts
-    found = {}
+    by_name = {}
     # Loads depend on the velocity through the water.
     u_c, v_c = _body_current(motion.psi, inputs.time, model)
     u_r = motion.u - u_c
     v_r = motion.v - v_c
     r = motion.r
-    same = _alike(model, *like) if like else {}
+    same = _equal_loads(model, *like) if like else {}
 
     def kept(name, load):
         return _kept_at_hull(name, load, u_r, inputs, model)
@@ -101,16 +101,18 @@ def loads(
     for name in [
         name for name in parts if isinstance(parts[name], (AzimuthParameters, TunnelParameters))
     ]:
-        found[name] = same.get(name) or kept(name, thruster_loads(name, inputs, u_r, v_r, r, model))
+        by_name[name] = same.get(name) or kept(
+            name, thruster_loads(name, inputs, u_r, v_r, r, model)
+        )
     for name in model.third_party:
-        found[name] = same.get(name) or kept(
+        by_name[name] = same.get(name) or kept(
             name, _third_party_loads(name, motion, inputs, (u_r, v_r), model)
         )
     # Wind, and the deviation of cross-flow drag from the model's form.
     if inputs.wind_speed is not None:
-        found["wind"] = same.get("wind") or _wind_loads(motion, inputs, model)
+        by_name["wind"] = same.get("wind") or _wind_loads(motion, inputs, model)
     if parts["hull_form"].acts:
-        found["hull_form"] = same.get("hull_form") or cross_flow_form(
+        by_name["hull_form"] = same.get("hull_form") or cross_flow_form(
             v_r, r, parts["hull"], parts["hull_form"]
         )
     # Wave drift and a line to the shore, each only where it acts.
@@ -121,32 +123,32 @@ def loads(
             for name in ("surge_share", "sway_power", "yaw_arm")
         }
         swell = swell_of(inputs.time, model.span, water)
-        found["drift_force"] = drift_force(
+        by_name["drift_force"] = drift_force(
             motion.psi, swell * water.drift_north, swell * water.drift_east, **shape
         )
     if np.any(water.tow_north) or np.any(water.tow_east):
-        found["earth_force"] = earth_force(
+        by_name["earth_force"] = earth_force(
             motion.psi, water.tow_north, water.tow_east, x=water.tow_x
         )
-    return found
+    return by_name
 
 
-def _alike(model: ShipModel, other: ShipModel, found: dict[str, Load]) -> dict[str, Load]:
+def _equal_loads(model: ShipModel, other: ShipModel, by_name: dict[str, Load]) -> dict[str, Load]:
     """Loads of another ship that this ship has too."""
 
-    def alike(name):
+    def is_equal(name):
         made_of = _MADE_OF.get(name, (name, form_of(name)))
         return all(model.parts.get(part) is other.parts.get(part) for part in made_of)
 
     # In another current only the wind load is the same, as it does not depend on the water.
-    names = found if _same_current(model, other) else {"wind"} & set(found)
-    return {name: found[name] for name in names if alike(name)}
+    names = by_name if _same_current(model, other) else {"wind"} & set(by_name)
+    return {name: by_name[name] for name in names if is_equal(name)}
 
 
 def _same_current(model: ShipModel, other: ShipModel) -> bool:
-    one = model.parts["water"]
+    first = model.parts["water"]
     two = other.parts["water"]
-    return one is two or all(getattr(one, name) == getattr(two, name) for name in _CURRENT)
+    return first is two or all(getattr(first, name) == getattr(two, name) for name in _CURRENT)
 
 
 def _kept_at_hull(name: str, load: Load, u_r: Arithmetic, inputs: Inputs, model: ShipModel) -> Load:
@@ -185,12 +187,12 @@ def _wind_loads(motion: Motion, inputs: Inputs, model: ShipModel) -> Load:
         speed, direction = wind.apparent_wind(motion.psi, motion.u, motion.v, north, east)
     # Subtract the sensor offset before the load, so that form factors see the true angle.
     angle = wrap(direction - parameters.apparent_wind_offset)
-    found = wind.wind_loads(speed, angle, wind=replace(parameters, apparent_wind_offset=0.0))
+    wind_load = wind.wind_loads(speed, angle, wind=replace(parameters, apparent_wind_offset=0.0))
     form = model.parts["wind_form"]
     if not form.acts:
-        return found
+        return wind_load
     return tuple(
-        load * factor for load, factor in zip(found, wind_factors(angle, form), strict=True)
+        load * factor for load, factor in zip(wind_load, wind_factors(angle, form), strict=True)
     )
 
 
@@ -241,13 +243,13 @@ def _accelerations(
 
 
 def rate_difference(
-    one: ShipModel, other: ShipModel, motion: Motion, inputs: Inputs, like: Alike
+    first: ShipModel, other: ShipModel, motion: Motion, inputs: Inputs, like: Alike
 ) -> Load:
     """Accelerations of one ship minus those of another in the same motion with the same inputs.
 
     Parameters
     ----------
-    one, other : ShipModel
+    first, other : ShipModel
     motion : Motion
     inputs : Inputs
     like : tuple of ShipModel, dict
@@ -259,14 +261,14 @@ def rate_difference(
         [m/s2, m/s2, rad/s2]
     """
     # With another hull or current Coriolis force and damping differ too: take the full difference.
-    hull = one.parts["hull"]
-    if hull is not other.parts["hull"] or not _same_current(one, other):
+    hull = first.parts["hull"]
+    if hull is not other.parts["hull"] or not _same_current(first, other):
         rates = (
-            _accelerations(motion, inputs, model, (0.0, 0.0, 0.0), like) for model in (one, other)
+            _accelerations(motion, inputs, model, (0.0, 0.0, 0.0), like) for model in (first, other)
         )
         return tuple(a - b for a, b in zip(*rates, strict=True))
     # Otherwise only the loads that differ count: M^-1 times their difference.
-    mine, theirs = (loads(motion, inputs, model, like) for model in (one, other))
+    mine, theirs = (loads(motion, inputs, model, like) for model in (first, other))
     pairs = [(mine[name], theirs[name]) for name in mine if mine[name] is not theirs[name]]
     X, Y, N = (sum(a[axis] - b[axis] for a, b in pairs) for axis in range(3))
     i11, i22, i26, i62, i66 = hull.inverse_mass

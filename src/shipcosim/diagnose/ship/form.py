@@ -146,28 +146,28 @@ def form_sizes(
     """
     # Cross-flow drag along the hull and wind load over the angle.
     hull = parts["hull"]
-    found = {f"hull_form.cross_flow_{degree}": size for degree, size in ALONG.items()}
-    found |= {
+    sizes = {f"hull_form.cross_flow_{degree}": size for degree, size in ALONG.items()}
+    sizes |= {
         f"wind_form.{axis}_{name}": ROUND[order]
         for axis in "XYN"
         for name, order, _ in _harmonics()
     }
     # Coefficients of the hull, and the level of the wind load.
-    found |= {f"{vessel}.{name}": size for name, size in _hull_sizes(hull).items() if size > 0.0}
-    found[f"{vessel}.wind_load_scale"] = WIND_LEVEL
+    sizes |= {f"{vessel}.{name}": size for name, size in _hull_sizes(hull).items() if size > 0.0}
+    sizes[f"{vessel}.wind_load_scale"] = WIND_LEVEL
     # Tunnel thrusters lose thrust with speed; others by
     # thrust deduction, and by direction if they turn.
     for name in drives:
         if isinstance(parts[name], TunnelParameters):
-            found[f"{name}.speed_loss"] = SPEED_LOSS * _OF_LENGTH / hull.length
+            sizes[f"{name}.speed_loss"] = SPEED_LOSS * _OF_LENGTH / hull.length
             continue
-        found[f"{name}.thrust_loss"] = DEDUCTION
+        sizes[f"{name}.thrust_loss"] = DEDUCTION
         lost = LOST if "azimuth" in drives[name] else {}
-        found |= {
+        sizes |= {
             f"{form_of(name)}.{where}": size
             for where, size in (lost | {"under_way": UNDER_WAY}).items()
         }
-    return found
+    return sizes
 
 
 def form_functions(
@@ -189,17 +189,17 @@ def form_functions(
     # Mean square of a Legendre polynomial of degree k is 1 / (2 k + 1).
     level = abs(parts["hull"].cross_flow_drag)
     hull = f"{vessel}."
-    found = {
+    functions = {
         "drag across the hull, along her length": {
             f"hull_form.cross_flow_{k}": 1 / (2 * k + 1) for k in _DEGREES
         }
     }
     if level:
-        found["drag across the hull, along her length"] |= {
+        functions["drag across the hull, along her length"] |= {
             f"{hull}cross_flow_drag": 1.0 / level**2
         }
     # The mean square of a harmonic is 1/2, of a constant 1; a third for each of X, Y and N.
-    found["wind load over the angle"] = {f"{hull}wind_load_scale": 1.0} | {
+    functions["wind load over the angle"] = {f"{hull}wind_load_scale": 1.0} | {
         f"wind_form.{axis}_{name}": (0.5 if order else 1.0) / 3.0
         for axis in "XYN"
         for name, order, _ in _harmonics()
@@ -209,21 +209,23 @@ def form_functions(
         if "azimuth" in drives[name]:
             mean = {"across": 3 / 8, "to_starboard": 1 / 2, "astern": 3 / 8}
             of_form = {f"{form_of(name)}.{where}": share for where, share in mean.items()}
-            found[f"thrust of {name}, over its direction"] = {f"{name}.thrust_loss": 1.0} | of_form
-    return found
+            functions[f"thrust of {name}, over its direction"] = {
+                f"{name}.thrust_loss": 1.0
+            } | of_form
+    return functions
 
 
 def _hull_sizes(hull: HullParameters) -> dict[str, float]:
     """Standard deviations of the hull's numbers: coefficients by a share of their size, linear damping by the quadratic
     one."""
     # Added mass, lift and damping coefficients: a share of their size.
-    found = {
+    stds = {
         name: ADDED_MASS * abs(getattr(hull, name)) for name in ("A11", "A22", "A26", "A62", "A66")
     }
-    found |= {name: LIFT * abs(getattr(hull, name)) for name in ("lift", "lift_x")}
+    stds |= {name: LIFT * abs(getattr(hull, name)) for name in ("lift", "lift_x")}
     coefficients = [item.name for item in fields(hull) if item.name[:2] in ("X_", "Y_", "N_")]
-    found |= {name: LEVEL * abs(getattr(hull, name)) for name in coefficients}
-    found["cross_flow_drag"] = CROSS_FLOW_LEVEL * abs(hull.cross_flow_drag)
+    stds |= {name: LEVEL * abs(getattr(hull, name)) for name in coefficients}
+    stds["cross_flow_drag"] = CROSS_FLOW_LEVEL * abs(hull.cross_flow_drag)
     # Linear damping is compared with the quadratic one at usual speeds, which follow Froude's law.
     speed, side = (
         froude * np.sqrt(_GRAVITY * hull.length) for froude in (FROUDE_AHEAD, FROUDE_ACROSS)
@@ -232,10 +234,10 @@ def _hull_sizes(hull: HullParameters) -> dict[str, float]:
     strength = _strength(hull)
     # Quadratic damping at this speed, as linear damping: in
     # surge by its coefficient, in sway and yaw by strips.
-    found["X_u"] += LINEAR * speed * abs(hull.X_uu)
-    found["Y_v"] += LINEAR * side * strength * hull.length
-    found["N_r"] += LINEAR * side / half * strength * half**4 / 2.0
-    return {name: float(size) for name, size in found.items()}
+    stds["X_u"] += LINEAR * speed * abs(hull.X_uu)
+    stds["Y_v"] += LINEAR * side * strength * hull.length
+    stds["N_r"] += LINEAR * side / half * strength * half**4 / 2.0
+    return {name: float(size) for name, size in stds.items()}
 
 
 def _strength(hull: HullParameters) -> Arithmetic:

@@ -111,9 +111,9 @@ class Record:
     @cached_property
     def is_last(self) -> np.ndarray:
         """Which rows are the last of a stretch, (n,) bool array."""
-        found = np.zeros(self.time.size, bool)
-        found[[rows.stop - 1 for rows in self.stretches]] = True
-        return found
+        flags = np.zeros(self.time.size, bool)
+        flags[[rows.stop - 1 for rows in self.stretches]] = True
+        return flags
 
     def part(self, rows: Any) -> Record:
         """Some rows, as an index of an array gives them."""
@@ -209,13 +209,13 @@ def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
         raise error_at(source_of(log), f"{rows} rows.", right)
     missing = [role for role in ("north", "east", "heading") if role not in log]
     if missing:
-        found = f"no channel {', '.join(missing)}."
+        message = f"no channel {', '.join(missing)}."
         source = source_of(log)
         right = (
             "A diagnosis needs north, east and heading. "
             f"`shipcosim channels {source}` shows which columns may be them."
         )
-        raise error_at(source, found, right)
+        raise error_at(source, message, right)
     # Measurements in SI units, with the heading unwrapped.
     measured = np.stack(
         [_column(log, role, rows) * si for role, si in zip(CHANNELS, _TO_SI, strict=True)], axis=-1
@@ -224,7 +224,7 @@ def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     _check_third_party(log, model)
     # Add the inputs, then average rows down to the rate that the ship needs.
     record = _driven(log, model, measured)
-    remarks = [_about_third_party(name, one) for name, one in model.third_party.items()]
+    remarks = [_about_third_party(name, fmu) for name, fmu in model.third_party.items()]
     record = replace(record, remarks=(*_about_stretches(time), *record.remarks, *remarks))
     thinned = _thinned_for(model, record)
     _check_length(log, model, first_motion(thinned))
@@ -261,15 +261,15 @@ def _driven(log: xarray.Dataset, model: ShipModel, measured: np.ndarray) -> Reco
     units = {}
     # A step is known if all inputs are measured at both
     # of its ends, away from holes between stretches.
-    known = np.ones(rows, bool)
+    usable = np.ones(rows, bool)
     for name in model.thrusters:
         units[name], whole = _unit(log, name, model, rows, remarks)
-        known &= whole
+        usable &= whole
     wind, whole = _wind(log, rows, remarks)
-    known &= whole
-    known[:-1] &= known[1:]
-    known &= ~_near_holes(time)
-    return Record(time, measured, units, wind, known, tuple(remarks))
+    usable &= whole
+    usable[:-1] &= usable[1:]
+    usable &= ~_near_holes(time)
+    return Record(time, measured, units, wind, usable, tuple(remarks))
 
 
 def _near_holes(time: np.ndarray) -> np.ndarray:
@@ -277,10 +277,10 @@ def _near_holes(time: np.ndarray) -> np.ndarray:
     # Rows at both sides of each hole, as far as a late channel reaches.
     inner = [rows.stop for rows in stretches_of(time)[:-1]]
     late = int(np.ceil(_LATE / (time[1] - time[0])))
-    found = np.zeros(time.size, bool)
+    flags = np.zeros(time.size, bool)
     for row in inner:
-        found[max(row - late, 0) : row + late] = True
-    return found
+        flags[max(row - late, 0) : row + late] = True
+    return flags
 
 
 def _about_stretches(time: np.ndarray) -> list[str]:
@@ -325,9 +325,9 @@ def _check_length(log: xarray.Dataset, model: ShipModel, motion: Motion) -> None
         answer = (
             f"whose slowest answer takes {slowest:.2g} s" if slowest < 1e4 else "that hardly moves"
         )
-        found = f"{rows} rows over {span:.0f} s, of a ship {answer}."
+        message = f"{rows} rows over {span:.0f} s, of a ship {answer}."
         right = f"It takes {_FEWEST_ROWS} rows over {least:.0f} s at the least, better twenty times that."
-        raise error_at(source_of(log), found, right)
+        raise error_at(source_of(log), message, right)
 
 
 def _thinned(record: Record, rows: int, model: ShipModel) -> Record:
@@ -336,7 +336,10 @@ def _thinned(record: Record, rows: int, model: ShipModel) -> Record:
         return record
     # Whole groups of rows within each stretch; what is left at its end is dropped.
     used = np.concatenate(
-        [np.arange(one.start, one.stop - (one.stop - one.start) % rows) for one in record.stretches]
+        [
+            np.arange(stretch.start, stretch.stop - (stretch.stop - stretch.start) % rows)
+            for stretch in record.stretches
+        ]
     )
 
     def mean(series):
@@ -357,8 +360,8 @@ def _thinned(record: Record, rows: int, model: ShipModel) -> Record:
     }
     wind = None if record.wind is None else (of_squares(record.wind[0]), mean(record.wind[1]))
     # An averaged row is known only if all of its rows are.
-    known = mean(record.known.astype(float)) == 1.0
-    return Record(mean(record.time), mean(record.measured), units, wind, known, record.remarks)
+    usable = mean(record.known.astype(float)) == 1.0
+    return Record(mean(record.time), mean(record.measured), units, wind, usable, record.remarks)
 
 
 def _column(log: xarray.Dataset, role: str, rows: int) -> np.ndarray:
@@ -389,7 +392,7 @@ def _unit(log, name, model, rows, remarks):
 def _check_third_party(log: xarray.Dataset, model: ShipModel) -> None:
     """Raise ShipcosimError where the log lacks what drives a third-party FMU: nobody knows its load then."""
     drives = [
-        (name, f"{name}_{kind}") for name, one in model.third_party.items() for kind in one.drives
+        (name, f"{name}_{kind}") for name, fmu in model.third_party.items() for kind in fmu.drives
     ]
     where = source_of(log)
     remedy = "Log it under this name, or name its column in a channel file."
@@ -401,24 +404,24 @@ def _check_third_party(log: xarray.Dataset, model: ShipModel) -> None:
     lacking += [
         Problem(
             str(name),
-            f"{one.component.fmu.model_name} follows {', '.join(one.idle)}, which no log contains.",
+            f"{fmu.component.fmu.model_name} follows {', '.join(fmu.idle)}, which no log contains.",
             "A diagnosis knows what drives a thruster as rpm, azimuth or thrust: describe her by another kind.",
         )
-        for name, one in model.third_party.items()
-        if one.idle and not one.drives
+        for name, fmu in model.third_party.items()
+        if fmu.idle and not fmu.drives
     ]
     if lacking:
         raise ShipcosimError(lacking)
 
 
-def _about_third_party(name: str, one: ThirdPartyFmu) -> str:
+def _about_third_party(name: str, fmu: ThirdPartyFmu) -> str:
     """What the user should know of a third-party FMU."""
     idle = (
-        f" Inputs that the log does not have keep their start values: {', '.join(one.idle)}."
-        if one.idle
+        f" Inputs that the log does not have keep their start values: {', '.join(fmu.idle)}."
+        if fmu.idle
         else ""
     )
-    text = f"'{name}' is a third-party FMU ({one.component.fmu.model_name}), known by its co-simulation along the log."
+    text = f"'{name}' is a third-party FMU ({fmu.component.fmu.model_name}), known by its co-simulation along the log."
     return f"{text}{idle} No manoeuvre can be prescribed with it."
 
 
@@ -472,11 +475,11 @@ def first_motion(record: Record, smooth: float = 4.0) -> Motion:
     flat = record.measured.reshape(-1, rows.size, 6)
     out = np.empty_like(flat)
     # Interpolate over gaps, then smooth each stretch by itself.
-    for one, into in zip(flat, out, strict=True):
+    for table, into in zip(flat, out, strict=True):
         for channel in range(6):
-            whole = np.isfinite(one[:, channel])
+            whole = np.isfinite(table[:, channel])
             into[:, channel] = (
-                np.interp(rows, rows[whole], one[whole, channel]) if whole.any() else np.nan
+                np.interp(rows, rows[whole], table[whole, channel]) if whole.any() else np.nan
             )
             for part in record.stretches if whole.any() else ():
                 into[part, channel] = gaussian_filter(into[part, channel], width, ends="held")

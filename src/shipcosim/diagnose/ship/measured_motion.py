@@ -30,9 +30,9 @@ def readings(motion: Motion, model: ShipModel) -> Motion:
     -------
     Motion
     """
-    own = model.parts["instruments"]
-    return Motion(*instruments.readings(*motion, **own.errors))._replace(
-        psi=motion.psi + own.heading_bias
+    errors = model.parts["instruments"]
+    return Motion(*instruments.readings(*motion, **errors.errors))._replace(
+        psi=motion.psi + errors.heading_bias
     )
 
 
@@ -48,9 +48,9 @@ def true_motion(seen: Motion, model: ShipModel) -> Motion:
     -------
     Motion
     """
-    own = model.parts["instruments"]
-    return Motion(*instruments.true_motion(*seen, **own.errors))._replace(
-        psi=seen.psi - own.heading_bias
+    errors = model.parts["instruments"]
+    return Motion(*instruments.true_motion(*seen, **errors.errors))._replace(
+        psi=seen.psi - errors.heading_bias
     )
 
 

@@ -105,10 +105,10 @@ class ShipModel:
     def uncertainties(self) -> dict[str, float]:
         """Standard deviation of every number that is not known for sure: by its tolerance, and by the form's."""
         # Independent errors of parameters and of form add up as squares.
-        found = dict(self.tolerances)
+        stds = dict(self.tolerances)
         for path, size in self.form_sizes.items() if self.form_scale else ():
-            found[path] = float(np.hypot(found.get(path, 0.0), self.form_scale * size))
-        return found
+            stds[path] = float(np.hypot(stds.get(path, 0.0), self.form_scale * size))
+        return stds
 
     @property
     def form_sizes(self) -> dict[str, float]:

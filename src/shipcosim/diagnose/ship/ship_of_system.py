@@ -50,7 +50,7 @@ def ship_model_of(system: System) -> ShipModel:
     # Third-party FMUs need inputs that a log can feed.
     if problems := list(
         filter(
-            None, (problem_of(system, name, ship.name, one) for name, one in third_party.items())
+            None, (problem_of(system, name, ship.name, fmu) for name, fmu in third_party.items())
         )
     ):
         raise ShipcosimError(problems)
@@ -59,23 +59,23 @@ def ship_model_of(system: System) -> ShipModel:
     water = water_of(parts["hull"].length)
     neighbours = neighbours_of(system, parts)
     parts = neighbours_placed(parts, neighbours) | {"water": water, "instruments": Instruments()}
-    driven = [*ours, *(name for name, one in third_party.items() if one.drives)]
+    driven = [*ours, *(name for name, fmu in third_party.items() if fmu.drives)]
     parts |= {"hull_form": HullForm(), "wind_form": WindForm()} | {
         form_of(name): ThrusterForm() for name in driven
     }
-    found = {"wiring": wiring_of(system, ship.name, ours), "third_party": third_party}
-    found |= {"fixed": fixed_of(system, parts), "neighbours": neighbours}
-    return ShipModel(parts, ship.name, tolerances_of(system, parts, ship.name), **found)
+    parts_of_system = {"wiring": wiring_of(system, ship.name, ours), "third_party": third_party}
+    parts_of_system |= {"fixed": fixed_of(system, parts), "neighbours": neighbours}
+    return ShipModel(parts, ship.name, tolerances_of(system, parts, ship.name), **parts_of_system)
 
 
 def _vessel(system: System) -> Component:
     """The only component with the parameters of a hull."""
     vessels = [c for c in system.components.values() if _holds(c, HullParameters)]
     if len(vessels) != 1:
-        found = ", ".join(f"{name} ({c.fmu.model_name})" for name, c in system.components.items())
+        shown = ", ".join(f"{name} ({c.fmu.model_name})" for name, c in system.components.items())
         raise error_at(
             system.file,
-            f"{len(vessels)} components with the parameters of a hull among: {found}.",
+            f"{len(vessels)} components with the parameters of a hull among: {shown}.",
             "The diagnosis needs a system with exactly one vessel.fmu.",
         )
     return vessels[0]
@@ -126,11 +126,11 @@ def _left_out(system: System, ship: Component) -> Iterator[Problem]:
         if names := [
             item.name for kind in kinds for item in fields(kind) if item.name in component.left_out
         ]:
-            found = f"parameters left out, which have no value of their own: {', '.join(names)}."
-            yield Problem(where, found, "Give them, as a ship's parameter set does.")
+            message = f"parameters left out, which have no value of their own: {', '.join(names)}."
+            yield Problem(where, message, "Give them, as a ship's parameter set does.")
         if names := [name for kind in kinds for name in _missing(component, kind)]:
-            found = f"its FMU has no {', '.join(names)}: an earlier version built it."
-            yield Problem(where, found, "Build it again: shipcosim build.")
+            message = f"its FMU has no {', '.join(names)}: an earlier version built it."
+            yield Problem(where, message, "Build it again: shipcosim build.")
 
 
 def _values(component: Component, kind: type) -> Any:

@@ -111,49 +111,52 @@ class Surrogate:
         # Co-simulated loads and slopes at these times.
         about, rest = self._at(time)
         # Offsets are errors of the log: correct the inputs that were given.
-        told = {
+        inputs = {
             name: given[name] + sign * getattr(part, off)
             for name, off, sign in _offsets(given, part)
         }
-        given = {**given, **told}
+        given = {**given, **inputs}
         # Linear expansion about the inputs and parameters of the co-simulation.
-        found = list(rest[0])
+        loads = list(rest[0])
         off = [given[name] - value for name, value in zip(self.about, about, strict=True)]
         off += [getattr(part, name) - value for name, value in self.nominal.items()]
         for deviation, slopes in zip(off, rest[1:], strict=True):
-            found = [load + slope * deviation for load, slope in zip(found, slopes, strict=True)]
+            loads = [load + slope * deviation for load, slope in zip(loads, slopes, strict=True)]
         # The quadratic thrust law holds for large changes of speed and direction.
         if "rpm" in self.about:
             ideal = self.thrust.loads(given["rpm"], given["azimuth"])[0]
-            found = [load + more for load, more in zip(found, ideal, strict=True)]
+            loads = [load + more for load, more in zip(loads, ideal, strict=True)]
         # A loss of thrust scales the whole load.
         kept = 1.0 - getattr(part, "thrust_loss", 0.0)
-        surge, sway, yaw = found
+        surge, sway, yaw = loads
         return kept * surge, kept * sway, kept * yaw
 
     def _at(self, time: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
         """`about` and `rest` at some times."""
         # Interpolate linearly between the times of the
         # co-simulation, and keep the result for the next call.
-        asked = np.asarray(time, float).tobytes()
-        found = self.met.get(asked)
-        if found is None:
+        key = np.asarray(time, float).tobytes()
+        interpolated = self.met.get(key)
+        if interpolated is None:
             at = (without_holes(self.rows, time) - self.time[0]) / (self.time[1] - self.time[0])
             at = np.clip(at, 0.0, self.time.size - 1.0)
             low = np.minimum(np.asarray(at).astype(int), self.time.size - 2)
             share = at - low
             about = [v[low] * (1.0 - share) + v[low + 1] * share for v in self.about.values()]
-            found = about, self.rest[..., low] * (1.0 - share) + self.rest[..., low + 1] * share
+            interpolated = (
+                about,
+                self.rest[..., low] * (1.0 - share) + self.rest[..., low + 1] * share,
+            )
             if len(self.met) >= _MET:
                 self.met.clear()
-            self.met[asked] = found
-        return found
+            self.met[key] = interpolated
+        return interpolated
 
 
 def _offsets(given: Mapping[str, Arithmetic], part: ThirdPartyPart) -> list[tuple[str, str, float]]:
     """Offsets of the inputs: quantity, number of the part, sign."""
     wrong = (("rpm", "rpm_offset", -1.0), ("azimuth", "azimuth_offset", 1.0))
-    return [one for one in wrong if one[0] in given and hasattr(part, one[1])]
+    return [offset for offset in wrong if offset[0] in given and hasattr(part, offset[1])]
 
 
 def without_holes(rows: np.ndarray, time: np.ndarray) -> np.ndarray:

@@ -67,21 +67,21 @@ def with_surrogates(model: ShipModel, record: Record, motion: Motion) -> ShipMod
     # Build surrogates only where there is none for this log and these inputs.
     units = {name: drives_of(*pair) for name, pair in record.units.items()}
     new = {
-        name: one
-        for name, one in model.third_party.items()
-        if one.surrogate is None or not _fits(one.surrogate, record, units.get(name, {}))
+        name: fmu
+        for name, fmu in model.third_party.items()
+        if fmu.surrogate is None or not _fits(fmu.surrogate, record, units.get(name, {}))
     }
     surrogates = surrogates_of(new, record.time, units, motion) if new else {}
     third_party = model.third_party | {
-        name: replace(new[name], surrogate=one) for name, one in surrogates.items()
+        name: replace(new[name], surrogate=surrogate) for name, surrogate in surrogates.items()
     }
     # Largest speed and its tolerance are known only after the co-simulation.
     parts = dict(model.parts)
     tolerances = dict(model.tolerances)
-    for name, one in third_party.items():
-        if "rpm" in one.drives:
-            parts[name] = replace(parts[name], rpm_max=one.built_surrogate.rpm_max)
-            tolerances[f"{name}.rpm_offset"] = 5e-4 * one.built_surrogate.rpm_max
+    for name, foreign in third_party.items():
+        if "rpm" in foreign.drives:
+            parts[name] = replace(parts[name], rpm_max=foreign.built_surrogate.rpm_max)
+            tolerances[f"{name}.rpm_offset"] = 5e-4 * foreign.built_surrogate.rpm_max
     return replace(model, parts=parts, tolerances=tolerances, third_party=third_party)
 
 
@@ -128,11 +128,11 @@ def surrogates_of(
     # Inputs of each FMU: the motion in still water, and the drives of its thruster.
     moved = dict(zip(MOTION, (*motion, motion.u, motion.v), strict=True))
     given = {name: {**moved, **units.get(name, {})} for name in third_party}
-    runs = [run for name, one in third_party.items() for run in _runs(name, one, given[name])]
+    runs = [run for name, fmu in third_party.items() for run in _runs(name, fmu, given[name])]
     # Time grid of the co-simulation; holes of the log are closed.
     clock = without_holes(time, time)
     fine = _fine(
-        clock, len(runs), max((one.step or 0.0 for one in third_party.values()), default=0.0)
+        clock, len(runs), max((fmu.step or 0.0 for fmu in third_party.values()), default=0.0)
     )
     fed = {
         name: {q: np.interp(fine, clock, values) for q, values in each.items()}
@@ -141,8 +141,8 @@ def surrogates_of(
     # Run all copies in one co-simulation, and form the derivatives of each FMU from its copies.
     table = _simulated(runs, third_party, fed, fine)
     return {
-        name: _surrogate(one, [run for run in runs if run.of == name], table, fine, fed[name], time)
-        for name, one in third_party.items()
+        name: _surrogate(fmu, [run for run in runs if run.of == name], table, fine, fed[name], time)
+        for name, fmu in third_party.items()
     }
 
 
@@ -156,15 +156,15 @@ class _Run(NamedTuple):
     by: float = 0.0
 
 
-def _runs(name: str, one: ThirdPartyFmu, given: Mapping[str, np.ndarray]) -> Iterator[_Run]:
+def _runs(name: str, fmu: ThirdPartyFmu, given: Mapping[str, np.ndarray]) -> Iterator[_Run]:
     """All copies of an FMU: as it is, and with each of its inputs and parameters changed."""
     # One copy as it is, then one for each input and parameter with a small change.
     yield _Run(name, name)
-    for quantity in dict.fromkeys(link.quantity for link in one.links):
+    for quantity in dict.fromkeys(link.quantity for link in fmu.links):
         by = _CHANGE.get(quantity) or _CHANGE_OF_DRIVE * max(np.abs(given[quantity]).max(), 1.0)
         yield _Run(name, f"{name} with another {quantity}", quantity, by=by)
-    for number, variable in one.parameters.items():
-        by = _CHANGE_OF_PARAMETER * one.component.tolerances[variable]
+    for number, variable in fmu.parameters.items():
+        by = _CHANGE_OF_PARAMETER * fmu.component.tolerances[variable]
         yield _Run(name, f"{name} with another {variable}", number=number, by=by)
 
 
@@ -195,14 +195,14 @@ def _simulated(
     columns = {}
     # Each copy gets the parameters and connections of the FMU, with its own change.
     for run in runs:
-        one = third_party[run.of]
-        start = dict(one.component.start)
+        fmu = third_party[run.of]
+        start = dict(fmu.component.start)
         if run.number:
-            variable = one.parameters[run.number]
-            start[variable] = number_of(one.component, variable) + run.by
-        components[run.name] = replace(one.component, name=run.name, start=start, step_size=None)
+            variable = fmu.parameters[run.number]
+            start[variable] = number_of(fmu.component, variable) + run.by
+        components[run.name] = replace(fmu.component, name=run.name, start=start, step_size=None)
         # The change of an input is an offset of its connection.
-        for link in one.links:
+        for link in fmu.links:
             place = f"{run.of} {link.quantity}"
             off = link.factor * run.by if link.quantity == run.quantity else 0.0
             connections.append(
@@ -218,14 +218,16 @@ def _simulated(
         clock, [(name, np.append(values, values[-1]), "", "") for name, values in columns.items()]
     )
     system = System("parts alone", "parts alone", components, tuple(connections), inputs)
-    found = simulate(
+    simulated = simulate(
         system, Scenario(stop_time=float(clock[-1]), step_size=float(h)), RunOptions(inputs=table)
     )
-    return found.isel(time=slice(lead + 1, None))  # what a step makes of a row is there at its end
+    return simulated.isel(
+        time=slice(lead + 1, None)
+    )  # what a step makes of a row is there at its end
 
 
 def _surrogate(
-    one: ThirdPartyFmu,
+    fmu: ThirdPartyFmu,
     runs: Sequence[_Run],
     table: xarray.Dataset,
     fine: np.ndarray,
@@ -234,9 +236,9 @@ def _surrogate(
 ) -> Surrogate:
     """The surrogate of a third-party FMU from the runs of its copies."""
     # Finite differences: load of the changed copy less that of the unchanged one, over the change.
-    base, *others = (_on_ship(one, run.name, table) for run in runs)
+    base, *others = (_on_ship(fmu, run.name, table) for run in runs)
     quantities = [run.quantity for run in runs if run.quantity]
-    nominal = {n: number_of(one.component, v) for n, v in one.parameters.items()}
+    nominal = {n: number_of(fmu.component, v) for n, v in fmu.parameters.items()}
     rest = np.stack(
         [base, *((other - base) / run.by for other, run in zip(others, runs[1:], strict=True))]
     )
@@ -246,9 +248,9 @@ def _surrogate(
     # Separate the quadratic thrust law, and its slopes, from load and derivatives.
     if "rpm" in about:
         top = next(
-            one.component.variables[x.variable].maximum for x in one.links if x.quantity == "rpm"
+            fmu.component.variables[x.variable].maximum for x in fmu.links if x.quantity == "rpm"
         )
-        factor = next(link.factor for link in one.links if link.quantity == "rpm")
+        factor = next(link.factor for link in fmu.links if link.quantity == "rpm")
         # Largest speed of the FMU's own bounds, if these are plausible, else of the log.
         logged = float(max(np.abs(fed["rpm"]).max(), 1.0))
         most = max(abs(top / factor), logged) if top and np.isfinite(top) and top < 1e6 else logged
@@ -261,12 +263,12 @@ def _surrogate(
     return Surrogate(fine, about, nominal, rest, thrust, most, rows)
 
 
-def _on_ship(one: ThirdPartyFmu, name: str, table: xarray.Dataset) -> np.ndarray:
+def _on_ship(fmu: ThirdPartyFmu, name: str, table: xarray.Dataset) -> np.ndarray:
     """Load of a copy on the ship, (3, k) array."""
-    found = np.zeros((3, table.sizes["time"]))
-    for axis, output, factor, offset in one.loads:
-        found[_AXES.index(axis)] += factor * table[f"{name}.{output}"].values + offset
-    return found
+    load = np.zeros((3, table.sizes["time"]))
+    for axis, output, factor, offset in fmu.loads:
+        load[_AXES.index(axis)] += factor * table[f"{name}.{output}"].values + offset
+    return load
 
 
 def fitted_thrust(

@@ -167,8 +167,8 @@ def _unit(system: System, connection: Connection) -> str | None:
     """Unit in which a log would feed it: that of the system's input, else of the variable."""
     (source, given) = connection.source
     (name, variable) = connection.target
-    own = None if name is None else system.components[name].variables[variable].unit
-    return (system.inputs[given].unit or own) if source is None else own
+    of_variable = None if name is None else system.components[name].variables[variable].unit
+    return (system.inputs[given].unit or of_variable) if source is None else of_variable
 
 
 def _drive(system: System, kind: str, connection: Connection) -> Link:
@@ -189,20 +189,20 @@ def _drive(system: System, kind: str, connection: Connection) -> Link:
 
 def _parameters(component: Component) -> dict[str, str]:
     """Variables of real parameters with a tolerance, by the names of their numbers."""
-    found = {}
+    by_number = {}
     for variable in component.tolerances:
-        known = component.variables.get(variable)
+        real = component.variables.get(variable)
         scalar = (
-            known is not None
+            real is not None
             and isinstance(component.start_value(variable), float)
-            and not known.dimensions
+            and not real.dimensions
         )
         if scalar and variable not in _numbers(DRIVES):
             name = re.sub(r"\W", "_", variable)
-            found[name if name.isidentifier() and not keyword.iskeyword(name) else f"_{name}"] = (
-                variable
-            )
-    return found
+            by_number[
+                name if name.isidentifier() and not keyword.iskeyword(name) else f"_{name}"
+            ] = variable
+    return by_number
 
 
 def _numbers(drives: Collection[str]) -> dict[str, Any]:
@@ -213,9 +213,9 @@ def _numbers(drives: Collection[str]) -> dict[str, Any]:
     offset = quantity(0.0, "rpm", "given speed minus the real one", "neutral")
     most = quantity(1.0, "rpm", "largest speed", "the FMU's, else the log's", minimum=1e-6)
     turned = quantity(0.0, "rad", "real direction minus the given one", "neutral", tolerance=0.0035)
-    found = {"thrust_loss": loss} if drives else {}
-    found |= {"rpm_offset": offset, "rpm_max": most} if "rpm" in drives else {}
-    return found | ({"azimuth_offset": turned} if "azimuth" in drives else {})
+    numbers = {"thrust_loss": loss} if drives else {}
+    numbers |= {"rpm_offset": offset, "rpm_max": most} if "rpm" in drives else {}
+    return numbers | ({"azimuth_offset": turned} if "azimuth" in drives else {})
 
 
 def part_of(third_party: ThirdPartyFmu) -> ThirdPartyPart:
@@ -239,22 +239,22 @@ def part_of(third_party: ThirdPartyFmu) -> ThirdPartyPart:
         numbers[name] = quantity(
             value, about.unit or "1", text, "the system's", tolerance=tolerance
         )
-    listed = [(name, float, one) for name, one in numbers.items()]
+    listed = [(name, float, number) for name, number in numbers.items()]
     return make_dataclass("ThirdPartyPartOf", listed, bases=(ThirdPartyPart,), frozen=True)()
 
 
-def problem_of(system: System, name: str, ship: str, one: ThirdPartyFmu) -> Problem | None:
+def problem_of(system: System, name: str, ship: str, fmu: ThirdPartyFmu) -> Problem | None:
     """Remark on a third-party FMU whose load a log does not determine; None if it does."""
-    if one.links and not one.unclear:
+    if fmu.links and not fmu.unclear:
         return None
     why = (
-        f"any of {', '.join(one.unclear)} could be what drives it"
-        if one.unclear
+        f"any of {', '.join(fmu.unclear)} could be what drives it"
+        if fmu.unclear
         else "nothing of a log feeds it"
     )
-    found = f"'{name}' ({one.component.fmu.model_name}) puts a load on '{ship}', and {why}."
+    message = f"'{name}' ({fmu.component.fmu.model_name}) puts a load on '{ship}', and {why}."
     remedy = (
         f"Feed it by inputs of the system: its speed by '{name}_rpm' [rpm or rad/s] and its direction by '{name}_azimuth' "
         f"[deg or rad], or its thrust by '{name}_thrust'. Or feed its inputs from the ship's {', '.join(MOTION)}."
     )
-    return Problem(system.file, found, remedy)
+    return Problem(system.file, message, remedy)

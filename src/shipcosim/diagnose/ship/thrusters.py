@@ -152,7 +152,7 @@ def neighbours_of(system: System, parts: Mapping[str, Any]) -> dict[str, str]:
         for c in system.connections
         if c.target[1].startswith("neighbour_")
     }
-    found = {}
+    neighbours = {}
     # Wired neighbours first, then the nearest by the sum of both distances.
     for name in units:
         here = parts[name]
@@ -164,8 +164,8 @@ def neighbours_of(system: System, parts: Mapping[str, Any]) -> dict[str, str]:
                 abs(parts[o].x - here.x) + abs(parts[o].y - here.y),
             ),
         )
-        found |= {name: near[0]} if near else {}
-    return found
+        neighbours |= {name: near[0]} if near else {}
+    return neighbours
 
 
 def neighbours_placed(parts: Mapping[str, Any], neighbours: Mapping[str, str]) -> dict[str, Any]:
@@ -195,7 +195,7 @@ def fixed_of(system: System, parts: Mapping[str, Any]) -> dict[str, float]:
     # A thruster turns if its direction is connected, or
     # if nothing drives it, and its azimuth rate is not 0.
     fed = {connection.target for connection in system.connections}
-    found = {}
+    directions = {}
     for name in [name for name, part in parts.items() if isinstance(part, AzimuthParameters)]:
         replays = bool(system.components[name].start_value("replay"))
         kinds = (
@@ -206,8 +206,8 @@ def fixed_of(system: System, parts: Mapping[str, Any]) -> dict[str, float]:
         speed, direction, start = kinds
         turned = (name, direction) in fed or (name, speed) not in fed
         if not turned or parts[name].azimuth_rate == 0.0:
-            found[name] = number_of(system.components[name], start)
-    return found
+            directions[name] = number_of(system.components[name], start)
+    return directions
 
 
 def thrust_numbers(model: ShipModel) -> tuple[str, ...]:
@@ -239,5 +239,5 @@ def with_thrust(model: ShipModel, ratio: float, std: float) -> ShipModel:
     # tolerance and standard deviation add up as squares.
     paths = thrust_numbers(model)
     values = {path: 1.0 - ratio * (1.0 - model.get(path)) for path in paths}
-    known = {path: float(np.hypot(model.tolerances.get(path, 0.0), std)) for path in paths}
-    return replace(model.with_values(values), tolerances=model.tolerances | known)
+    tolerances = {path: float(np.hypot(model.tolerances.get(path, 0.0), std)) for path in paths}
+    return replace(model.with_values(values), tolerances=model.tolerances | tolerances)

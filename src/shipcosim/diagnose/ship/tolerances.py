@@ -26,17 +26,17 @@ def tolerances_of(system: System, parts: Mapping[str, Any], vessel: str) -> dict
         By ``place.name``, in its unit.
     """
     # Tolerances of the parameter set have precedence over assumed ones.
-    found = {}
+    tolerances = {}
     for part, values in parts.items():
         place = vessel if part in ("hull", "wind") else part
-        known = system.components[place].tolerances if place in system.components else {}
+        stated = system.components[place].tolerances if place in system.components else {}
         for item in fields(values):
             path = f"{place}.{item.name}"
-            if item.name in known:
-                found[path] = known[item.name]
+            if item.name in stated:
+                tolerances[path] = stated[item.name]
             elif isinstance(value := getattr(values, item.name), float):
-                found[path] = _assumed(values, item, value)
-    return {path: tolerance for path, tolerance in found.items() if tolerance > 0.0}
+                tolerances[path] = _assumed(values, item, value)
+    return {path: tolerance for path, tolerance in tolerances.items() if tolerance > 0.0}
 
 
 def _assumed(values: Any, item: Field, value: float) -> float:

@@ -71,7 +71,7 @@ def kept_on_track(
     shares = dp.shares({name: azimuth for name, (_, azimuth) in record.units.items()}, held or {})
     shares = np.moveaxis(shares, -3, 0)
     # State of the controller: commanded forces and integral action.
-    told = np.zeros((shares.shape[-2], count))
+    added = np.zeros((shares.shape[-2], count))
     integral = np.zeros((3, count))
     rates = Motion(*np.zeros((6, count)))
     rows = []
@@ -81,14 +81,14 @@ def kept_on_track(
     for k in range(n):
         rows.append(ship)
         load, integral = dp.load(ship, Motion(*(value[..., k] for value in track)), integral)
-        told = dp.answer(told, load, shares[k])
-        speeds = dp.speeds(told, record, k)
+        added = dp.answer(added, load, shares[k])
+        speeds = dp.speeds(added, record, k)
         for name, pair in speeds.items():
             units[name].append(pair)
         if k < n - 1:
             for i, part in enumerate(inputs):
                 # a small ship answers within a row, through which a log's thrusters go on evenly
-                now = dp.speeds(told, record, k + (i + 0.5) / parts) if parts > 1 else speeds
+                now = dp.speeds(added, record, k + (i + 0.5) / parts) if parts > 1 else speeds
                 driven = part.at(k)._replace(units=now)  # the record's wind alone
                 ship, rates = _moved(ship, rates, driven, ships, h / parts, dp)
             if jolts is not None:
@@ -100,7 +100,7 @@ def kept_on_track(
             # At the end of a stretch start anew on the track, as the next row is much later.
             if k < n - 1 and record.is_last[k]:
                 ship = Motion(*(np.zeros(count) + value[..., k + 1] for value in track))
-                told = 0.0 * told
+                added = 0.0 * added
                 integral = 0.0 * integral
                 rates = Motion(*np.zeros((6, count)))
     # Stack the rows into series, of the motion and of each thruster.
@@ -182,9 +182,9 @@ class DpController:
         wanted = self.mass[:, None] * (w * w * error + 2.0 * _DAMPING * w * rate + integral)
         return np.clip(wanted, -self.most[:, None], self.most[:, None]), integral
 
-    def answer(self, told: np.ndarray, load: np.ndarray, shares: np.ndarray) -> np.ndarray:
+    def answer(self, added: np.ndarray, load: np.ndarray, shares: np.ndarray) -> np.ndarray:
         """Forces that the controller adds a step later, of first order towards those of a load; (k, m) array. [N]"""
-        return told + min(self.h / self.delay, 1.0) * (_times(shares, load) - told)
+        return added + min(self.h / self.delay, 1.0) * (_times(shares, load) - added)
 
     def shares(
         self, azimuths: Mapping[str, np.ndarray], held: Mapping[str, np.ndarray]
@@ -236,25 +236,29 @@ class DpController:
 
     def _by_thruster(self, forces: np.ndarray) -> dict[str, np.ndarray]:
         """Forces along and across the axis of each thruster."""
-        found = {}
+        by_name = {}
         place = 0
         for name in self.thrusters:
-            own = forces[place : place + self._forces(name)]
-            found[name] = own if len(own) > 1 else np.concatenate([own, np.zeros_like(own)])
-            place += len(own)
-        return found
+            of_thruster = forces[place : place + self._forces(name)]
+            by_name[name] = (
+                of_thruster
+                if len(of_thruster) > 1
+                else np.concatenate([of_thruster, np.zeros_like(of_thruster)])
+            )
+            place += len(of_thruster)
+        return by_name
 
-    def speeds(self, told: np.ndarray, record: Record, k: float) -> ThrusterSeries:
+    def speeds(self, added: np.ndarray, record: Record, k: float) -> ThrusterSeries:
         """Speed and direction of each thruster: those of the record, changed by what the controller adds.
 
         The row may be a broken number, for a time between two.
         """
-        found = {}
-        for name, (along, across) in self._by_thruster(told).items():
+        by_thruster = {}
+        for name, (along, across) in self._by_thruster(added).items():
             unit = self.thrusters[name]
             (n, azimuth) = (_between(series, k) for series in record.units[name])
             if not unit.ahead:
-                found[name] = n + 0.0 * along, azimuth + 0.0 * along
+                by_thruster[name] = n + 0.0 * along, azimuth + 0.0 * along
                 continue
             # Logged thrust plus the controller's, and a turn towards the force across.
             size = self.force(name, n) + along
@@ -264,11 +268,11 @@ class DpController:
                 turn = np.clip(
                     across / np.maximum(np.abs(size), 0.02 * self.force(name, unit.most)), -0.5, 0.5
                 )
-            found[name] = (
+            by_thruster[name] = (
                 np.clip(self.speed(name, size), -unit.most, unit.most),
                 azimuth + turn * np.sign(size),
             )
-        return found
+        return by_thruster
 
     def force(self, name: str, n: Arithmetic) -> np.ndarray:
         """Bollard thrust of a thruster at a speed in rev/s. [N]"""

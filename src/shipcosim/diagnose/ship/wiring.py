@@ -73,7 +73,7 @@ def wiring_of(system: System, vessel: str, thrusters: Sequence[str]) -> Wiring |
         matrix = _matrix(system, vessel, name)
         if not np.allclose(matrix, np.eye(3), rtol=1e-9, atol=1e-12):
             loads[name] = matrix
-            odd[name] = f"its load reaches {vessel} as {_told(matrix)}"
+            odd[name] = f"its load reaches {vessel} as {_words_for(matrix)}"
         # Drive of each thruster: it should be its own logged speed and direction.
         drives[name] = _driven(system, name, thrusters)
         for kind, (source, factor) in drives[name].items():
@@ -91,7 +91,7 @@ def wiring_of(system: System, vessel: str, thrusters: Sequence[str]) -> Wiring |
 
 def put_right(wiring: Wiring, name: str) -> Wiring | None:
     """The wiring with one thruster corrected by the names of its connectors; None if nothing contradicts them."""
-    rest = {other: told for other, told in wiring.odd.items() if other != name}
+    rest = {other: why for other, why in wiring.odd.items() if other != name}
     loads, drives = (
         {k: v for k, v in part.items() if k != name} for part in (wiring.loads, wiring.drives)
     )
@@ -115,7 +115,7 @@ def _matrix(system: System, vessel: str, name: str) -> np.ndarray:
     return matrix
 
 
-def _told(matrix: np.ndarray) -> str:
+def _words_for(matrix: np.ndarray) -> str:
     """A matrix in words: ``X: Y, Y: -1 Y, N: nothing``."""
     rows = []
     for axis, row in zip(_AXES, matrix, strict=True):
@@ -130,7 +130,7 @@ def _told(matrix: np.ndarray) -> str:
 
 def _driven(system: System, name: str, thrusters: Sequence[str]) -> dict[str, tuple[str, float]]:
     """Whose logged speed and direction a thruster gets from the system's inputs, and by which factor."""
-    found = {}
+    sources = {}
     for connection in system.connections:
         (source, given) = connection.source
         (target, variable) = connection.target
@@ -145,5 +145,5 @@ def _driven(system: System, name: str, thrusters: Sequence[str]) -> dict[str, tu
             # The unit conversion is no oddity: divide it out of the factor.
             unit = system.components[name].variables[variable].unit
             plain, _ = conversion(system.inputs[given].unit, unit)
-            found[kind] = other, connection.factor / plain
-    return found
+            sources[kind] = other, connection.factor / plain
+    return sources

@@ -50,8 +50,8 @@ def with_predictions(log: JudgedLog, is_named: bool) -> PredictedLog:
     """
     problem = log.problem
     fit = log.fit if is_named else without_causes(log.fits)
-    found = log.explained.identification.comparison
-    plain = found.given(problem.model) if found.started_craft else None
+    compared = log.explained.identification.comparison
+    plain = compared.given(problem.model) if compared.started_craft else None
     comparison = compare(problem, fit, plain=plain)
     force = missing_forces(problem, fit if is_named else None)
     held_out = compare_held_out(problem, fit, plain) if is_named and comparison is not None else {}
@@ -74,7 +74,7 @@ def rows_without_condition(record: Record) -> dict[str, np.ndarray]:
     # Leave out a quarter circle of headings, in turn every 30 deg; the one that holds most
     # predictions counts.
     rows = starts(record)
-    found = {}
+    rows_by_condition = {}
     sectors = [
         without_headings(record, middle) for middle in np.radians(np.arange(0.0, 360.0, 30.0))
     ]
@@ -83,14 +83,14 @@ def rows_without_condition(record: Record) -> dict[str, np.ndarray]:
         for train in sectors
         if train.mean() >= LEAST_TRAINED
     ]
-    most = max(tries, key=lambda one: one[0], default=(0, None))
+    most = max(tries, key=lambda split: split[0], default=(0, None))
     if most[0]:
-        found["other headings"] = most[1]
+        rows_by_condition["other headings"] = most[1]
     # Free drift: predictions that lie wholly on rows without thrust.
     powered = ~is_idle(record)
     if sorted_by(powered, rows, record)[1].size and powered.mean() >= LEAST_TRAINED:
-        found["free drift"] = powered
-    return found
+        rows_by_condition["free drift"] = powered
+    return rows_by_condition
 
 
 def compare_held_out(
@@ -109,7 +109,7 @@ def compare_held_out(
         ``"other headings"``: predictions that start 15 deg or more from any heading fitted on; ``"free drift"``. Those
         that the log has enough of.
     """
-    found = {}
+    comparisons = {}
     for name, train in rows_without_condition(problem.record).items():
         comparison = compare(problem, fit, train=train, plain=plain)
         if comparison is not None and name == "other headings":
@@ -120,5 +120,5 @@ def compare_held_out(
                 comparison, errors=comparison.errors.isel(segment=some), rows=comparison.rows[some]
             )
         if comparison is not None and comparison.rows.size >= FEWEST_PREDICTIONS:
-            found[name] = comparison
-    return found
+            comparisons[name] = comparison
+    return comparisons

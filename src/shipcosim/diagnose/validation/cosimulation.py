@@ -83,25 +83,25 @@ def simulated(
     apart = np.zeros((2, len(HORIZONS), count))
     if comparison.fit.hypotheses and extended is not None:
         replays["extended"] = extended
-    for number, (model, one) in enumerate(replays.items()):
+    for number, (model, system_replayed) in enumerate(replays.items()):
         predictor = comparison.predictors[model]
         each = (
             None
             if progress is None
             else lambda n, _, done=done: progress(done + n, count * len(replays))
         )
-        found = replayed(one, predictor, rows, progress=each)
+        predictions = replayed(system_replayed, predictor, rows, progress=each)
         done += count
         # Errors at the end of each horizon, against the same reference as those in array form.
         horizons = in_rows(predictor.record)
         ends = rows + np.array(horizons)[:, None]
-        for channel, values in missing(found, comparison.seen, ends).items():
+        for channel, values in missing(predictions, comparison.seen, ends).items():
             errors[channel].loc[{"model": model}] = values
             if "extended" not in replays:
                 errors[channel].loc[{"model": "extended"}] = values
         # How far co-simulation and array form differ: a check of the array form.
         array = in_array_form(predictor, rows)
-        apart[number:] = np.hypot(found.x - array.x, found.y - array.y)
+        apart[number:] = np.hypot(predictions.x - array.x, predictions.y - array.y)
     errors["difference"] = (("replayed", "horizon", "segment"), apart, {"units": "m"})
     return errors.assign_coords(replayed=["plain", "extended"])
 
@@ -109,12 +109,14 @@ def simulated(
 def in_array_form(predictor: Predictor, rows: np.ndarray) -> Motion:
     """What a model predicts the log to show after the horizons, (horizons, s) arrays."""
     motion = at_rows(predictor.motion, rows)
-    found = predicted(motion, rows, predictor.record, predictor.model, in_rows(predictor.record))
-    return readings(found, predictor.model)
+    predictions = predicted(
+        motion, rows, predictor.record, predictor.model, in_rows(predictor.record)
+    )
+    return readings(predictions, predictor.model)
 
 
 def replayed(
-    one: Replayed,
+    system_replayed: Replayed,
     predictor: Predictor,
     rows: np.ndarray,
     *,
@@ -125,7 +127,7 @@ def replayed(
 
     Parameters
     ----------
-    one : Replayed
+    system_replayed : Replayed
     predictor : Predictor
         The same model in array form: gives start values and the table.
     rows : (s,) array of int
@@ -148,11 +150,11 @@ def replayed(
     record = predictor.record
     # Instruments show the ship late by the navigation lag: the replay starts that much earlier.
     lag = predictor.original.parts["instruments"].navigation_lag
-    late = lag if one.signals else 0.0
-    known = replace(predictor, motion=at_rows(predictor.motion, rows))
+    late = lag if system_replayed.signals else 0.0
+    at_starts = replace(predictor, motion=at_rows(predictor.motion, rows))
     time, channels = sailed_from(
-        one,
-        known,
+        system_replayed,
+        at_starts,
         record.time[rows],
         HORIZONS[-1] + late,
         lag,
@@ -162,11 +164,11 @@ def replayed(
     # Horizons count from the start as shown, so the delay is added.
     ends = late + record.step * np.array(in_rows(record))
     motion = Motion(*(np.array([_at(series, time, end) for end in ends]) for series in channels))
-    return motion if one.signals else readings(motion, predictor.model)
+    return motion if system_replayed.signals else readings(motion, predictor.model)
 
 
 def sailed_from(
-    one: Replayed,
+    system_replayed: Replayed,
     start: Predictor,
     times: np.ndarray,
     seconds: float,
@@ -179,7 +181,7 @@ def sailed_from(
 
     Parameters
     ----------
-    one : Replayed
+    system_replayed : Replayed
     start : Predictor
         Gives the table, and the ship's motion where each run starts, (s,) arrays.
     times : (s,) array
@@ -199,13 +201,13 @@ def sailed_from(
         Times since the start [s], and position, heading without jumps, and velocity. [SI]
     """
     ship = start.model.vessel
-    table, states = driving_table(one.system, start, step_size, lag)
+    table, states = driving_table(system_replayed.system, start, step_size, lag)
     states |= {f"{ship}.{name}_start": value for name, value in start.motion._asdict().items()}
     signals = [f"{ship}.{name}" for name in Motion._fields]
-    if one.signals:
-        signals = [one.signals[role] for role in CHANNELS]
-    found = replay(
-        one.system,
+    if system_replayed.signals:
+        signals = [system_replayed.signals[role] for role in CHANNELS]
+    replay_table = replay(
+        system_replayed.system,
         table,
         (times - lag).tolist(),
         step_size * ceil(seconds / step_size - 1e-6),
@@ -214,9 +216,9 @@ def sailed_from(
         signals=signals,
         progress=progress,
     )
-    channels = [found[name].values for name in signals]
+    channels = [replay_table[name].values for name in signals]
     channels[2] = np.unwrap(channels[2], axis=1)
-    return found["time"].values, channels
+    return replay_table["time"].values, channels
 
 
 def _at(series, time, end):
@@ -273,9 +275,9 @@ def driving_table(
             ):
                 states[f"{name}.{variable}"] = values[0]
             else:
-                found = f"no input of the system feeds '{name}.{variable}', which the log has."
+                message = f"no input of the system feeds '{name}.{variable}', which the log has."
                 problems.append(
-                    Problem(system.file, found, "Connect an input of the system to it.")
+                    Problem(system.file, message, "Connect an input of the system to it.")
                 )
     if problems:
         raise ShipcosimError(problems)
@@ -316,8 +318,8 @@ def _weather(system, ship, record):
     if not sources or sources[0][0] is None:
         return _straight(system, ship, record), {}
     air = sources[0][0]
-    known = system.components[air].variables
-    values = {f"{air}.{name}": value for name, value in _CALM.items() if name in known}
+    variables = system.components[air].variables
+    values = {f"{air}.{name}": value for name, value in _CALM.items() if name in variables}
     names = [_input(system, air, name) for name in ("wind_speed", "wind_from")]
     if record.wind is None or None in names:
         return [], values | ({names[0]: 0.0} if names[0] else {f"{air}.wind_speed": 0.0})

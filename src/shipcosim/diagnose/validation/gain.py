@@ -146,19 +146,19 @@ def compare(
     models = _observed(problem, linear, fit.motion, seen, ship_models)
     if not fit.hypotheses and plain is None:
         models["extended"] = models["plain"]
-    found = {}
+    errors_by_model = {}
     predictors = {}
     # Errors of each model, with the held force of its observer where it has one.
     for name, held in _HELD.items():
         judged = _judged(models[name], inside[::2], rows, seen, held is not None)
         for label, (errors, _) in zip((name, held), judged, strict=False):
-            found[label] = errors
+            errors_by_model[label] = errors
         # Predictions without a force start from what the observer knew that does best so.
         predictors[name] = models[name].predictor(judged[0][1], ship_models[name])
     variables = {
         channel: (
             ("model", "horizon", "segment"),
-            np.stack([found[one][channel] for one in MODELS]),
+            np.stack([errors_by_model[label][channel] for label in MODELS]),
             {"units": unit},
         )
         for channel, unit in CHANNELS.items()
@@ -179,7 +179,7 @@ def _judged(model, inside, rows, seen, holds):
     # One pass over training and held-out starts; the observer is chosen by the longest horizon on
     # the training starts only.
     missed = model.missed(np.concatenate([inside, rows]), seen, holds)
-    found = []
+    by_model = []
     tuning = (missed["position"][-1, ..., : len(inside)] ** 2).mean(-1)
     for some in (slice(0, 1), slice(1, None)) if holds else (slice(0, 1),):
         fade, number = np.unravel_index(tuning[some].argmin(), tuning[some].shape)
@@ -187,8 +187,8 @@ def _judged(model, inside, rows, seen, holds):
             channel: values[:, some][:, fade, number, len(inside) :]
             for channel, values in missed.items()
         }
-        found.append((errors, number))
-    return found
+        by_model.append((errors, number))
+    return by_model
 
 
 def calibrated(fit: Fit) -> ShipModel:
@@ -231,11 +231,13 @@ class _Model:
         force = shares[..., None] * self.known.force[:, rows] if holds else None
         earth = np.array([frame == "earth" for frame, _ in self.choices])[:, None]
         horizons = in_rows(self.record)
-        found = predicted(
+        predictions = predicted(
             motion, rows, self.record, self.model, horizons, force, earth=earth, fades=fades
         )
         return missing(
-            readings(found, self.model), seen, (rows + np.array(horizons)[:, None])[:, None, None]
+            readings(predictions, self.model),
+            seen,
+            (rows + np.array(horizons)[:, None])[:, None, None],
         )
 
 
@@ -263,18 +265,18 @@ def _observed(problem, about_fit, motion, seen, ship_models):
     noise = replace(
         problem.noise, jolt=np.broadcast_to(problem.noise.jolt, walks.shape), walk=walks
     )
-    known = observed(
+    observers = observed(
         problems,
         noise,
         record,
         [about[n] for n, _, _ in each],
         [ship_models[n] for n, _, _ in each],
     )
-    found = {}
+    models = {}
     for name, model in ship_models.items():
         mine = [i for i, (owner, _, _) in enumerate(each) if owner == name]
-        found[name] = _Model(*replayable(record, model, seen), choices[name], known.of(mine))
-    return found
+        models[name] = _Model(*replayable(record, model, seen), choices[name], observers.of(mine))
+    return models
 
 
 def rms(errors: xarray.Dataset, channel: str, model: str, horizon: float = HORIZONS[-1]) -> float:

@@ -36,7 +36,9 @@ class HealthyErrors:
     @property
     def beyond(self) -> list[str]:
         """Errors that are larger than any healthy ship's."""
-        return [one for one, error in self.measured.items() if error > self.largest[one]]
+        return [
+            channel for channel, error in self.measured.items() if error > self.largest[channel]
+        ]
 
 
 def healthy_errors(comparison: Comparison) -> HealthyErrors:
@@ -57,8 +59,8 @@ def healthy_errors(comparison: Comparison) -> HealthyErrors:
     # All ships sail at once, from the same states with the same inputs; the plain model is the
     # reference.
     ships = drawn_within_tolerances(plain, (HEALTHY_SHIPS, 1), np.random.default_rng(0))
-    said = sailed(comparison, plain)
-    off = missing(sailed(comparison, ships), said, np.arange(comparison.rows.size))
+    plain_motion = sailed(comparison, plain)
+    off = missing(sailed(comparison, ships), plain_motion, np.arange(comparison.rows.size))
     # Errors beside the noise that no model is without.
     measured = {}
     largest = {}

@@ -54,27 +54,27 @@ def with_cosimulation(
     # Too few rows, or a system that could not be extended: predictions in array form stand.
     if log.comparison is None:
         return SimulatedLog(None, {}, False)
-    in_array_form = {name: one.errors for name, one in log.held_out.items()}
-    found = log.judged.explained.identification
-    craft = found.comparison.started_craft
+    in_array_form = {name: comparison.errors for name, comparison in log.held_out.items()}
+    identification = log.judged.explained.identification
+    craft = identification.comparison.started_craft
     if (log.comparison.fit.hypotheses or craft) and extended.extension is None:
         return SimulatedLog(log.comparison.errors, in_array_form, False)
-    run = partial(_cosimulated, extended, found.causes, craft)
+    run = partial(_cosimulated, extended, identification.causes, craft)
     count = 1 + len(log.held_out)
     say = progress or (lambda *_: None)
     # All rows first, then each held-out condition with half as many segments.
     try:
         errors = run(lambda done, of: say(done, count * of), log.comparison, MOST)
         held_out = {
-            name: run(lambda done, of, k=k: say(k * of + done, count * of), one, MOST // 2)
-            for k, (name, one) in enumerate(log.held_out.items(), start=1)
+            name: run(lambda done, of, k=k: say(k * of + done, count * of), comparison, MOST // 2)
+            for k, (name, comparison) in enumerate(log.held_out.items(), start=1)
         }
     except ShipcosimError as error:
         first = {
             (p.found, p.remedy): p for p in reversed(error.problems)
         }  # that of many segments is reported once
-        said = reversed(first.values())
-        remarks = tuple(f"The system was not co-simulated: {problem}" for problem in said)
+        problems = reversed(first.values())
+        remarks = tuple(f"The system was not co-simulated: {problem}" for problem in problems)
         return SimulatedLog(log.comparison.errors, in_array_form, False, remarks)
     return SimulatedLog(errors, held_out, True)
 

@@ -191,7 +191,7 @@ def conditions(
     # Degrees of heading with training rows, widened by 15 deg to both sides round the circle.
     used = np.bincount(np.degrees(seen.psi[train]).astype(int) % 360, minlength=360) > 0
     near = np.convolve(np.concatenate([used[-15:], used, used[:15]]), np.ones(31), "valid") > 0.0
-    found = {
+    coordinates = {
         "start_time": (
             "segment",
             record.time[rows],
@@ -204,9 +204,9 @@ def conditions(
     if record.wind is not None:
         # The wind direction relative to the bow.
         bow = seen.psi[rows] if model.wind_is_true else 0.0
-        found["wind_from"] = (
+        coordinates["wind_from"] = (
             "segment",
             np.degrees(record.wind[1][rows] - bow) % 360.0,
             {"units": "deg"},
         )
-    return found
+    return coordinates

@@ -100,7 +100,7 @@ def tracks_by_models(record: Record, models: Mapping[str, ShipModel], horizon: f
     horizon : float
         [s]
     """
-    rows, count, found = *_segments(record, horizon), {}
+    rows, count, by_model = *_segments(record, horizon), {}
     for name, model in models.items():
         # Smoothed measurements give the start; inputs are those of the log without delay.
         seen = _seen(record, horizon)
@@ -110,8 +110,8 @@ def tracks_by_models(record: Record, models: Mapping[str, ShipModel], horizon: f
         first = readings(start, model)
         # The start itself is the first row of each prediction.
         channels = [np.vstack([a[None], b]).T for a, b in zip(first, ahead, strict=True)]
-        found[name] = _dataset(channels, record.step * np.arange(count + 1), record.time[rows])
-    return Tracks(horizon, _measured(record), found)
+        by_model[name] = _dataset(channels, record.step * np.arange(count + 1), record.time[rows])
+    return Tracks(horizon, _measured(record), by_model)
 
 
 def tracks_by_systems(
@@ -150,30 +150,30 @@ def tracks_by_systems(
         if most is None
         else rows[np.unique(np.linspace(0, rows.size - 1, most).round().astype(int))]
     )
-    found = {}
+    predicted = {}
     total = rows.size * len(systems)
-    for number, (name, one) in enumerate(systems.items()):
+    for number, (name, replayed) in enumerate(systems.items()):
         each = (
             None
             if progress is None
             else lambda n, _, done=number: progress(done * rows.size + n, total)
         )
-        found[name] = _cosimulated(record, model, one, rows, horizon, each)
-    return Tracks(horizon, _measured(record), found)
+        predicted[name] = _cosimulated(record, model, replayed, rows, horizon, each)
+    return Tracks(horizon, _measured(record), predicted)
 
 
-def _cosimulated(record, model, one, rows, horizon, progress):
+def _cosimulated(record, model, replayed, rows, horizon, progress):
     """Predictions of one system from some rows."""
     seen = _seen(record, horizon)
     driven, neutral = replayable(record, model, seen)
     # The system's instruments have errors of their own: take them out of the start values.
-    errors, lag = _instruments(one)
-    own = model.with_values({f"instruments.{key}": value for key, value in errors.items()})
-    start = true_motion(at_rows(seen, rows), own)
+    errors, lag = _instruments(replayed)
+    showing = model.with_values({f"instruments.{key}": value for key, value in errors.items()})
+    start = true_motion(at_rows(seen, rows), showing)
     # Long enough for the instruments' delay.
-    known = Predictor(driven, neutral, own, start)
+    starts = Predictor(driven, neutral, showing, start)
     time, channels = sailed_from(
-        one, known, record.time[rows], horizon + lag, lag, progress=progress
+        replayed, starts, record.time[rows], horizon + lag, lag, progress=progress
     )
     # Unwrapped headings may differ by full turns from the log's: shift them to its start.
     channels[2] += (
@@ -186,11 +186,11 @@ def _cosimulated(record, model, one, rows, horizon, progress):
     )
 
 
-def _instruments(one: Replayed) -> tuple[dict[str, float], float]:
+def _instruments(replayed: Replayed) -> tuple[dict[str, float], float]:
     """Errors of the instruments of a system, and by how much they are late. [s]"""
-    if not one.signals:
+    if not replayed.signals:
         return {}, 0.0
-    part = one.system.components[one.signals["north"].rpartition(".")[0]]
+    part = replayed.system.components[replayed.signals["north"].rpartition(".")[0]]
     names = tuple(Instruments().errors)
     given = {name: number_of(part, name) for name in (*names, "lag") if name in part.variables}
     return given, given.pop("lag", 0.0)
@@ -201,8 +201,8 @@ def _segments(record: Record, horizon: float) -> tuple[np.ndarray, int]:
     # Walk along the log: a segment where all inputs are known, the next one behind it.
     count = int(horizon / record.step + 1e-6)
     if count < 1:
-        found = f"a prediction of {horizon:g} s is shorter than a step of {record.step:g} s."
-        raise error_at("replay", found, "Ask for longer predictions.")
+        message = f"a prediction of {horizon:g} s is shorter than a step of {record.step:g} s."
+        raise error_at("replay", message, "Ask for longer predictions.")
     whole = np.isfinite(record.measured[:, :3]).sum(axis=-1) == 3
     rows = []
     row = 0
@@ -213,8 +213,8 @@ def _segments(record: Record, horizon: float) -> tuple[np.ndarray, int]:
         else:
             row += 1
     if not rows:
-        found = f"no {horizon:g} s of the log have a position and heading, and everything that drives her throughout."
-        raise error_at("replay", found, "Ask for shorter predictions, or for a longer log.")
+        message = f"no {horizon:g} s of the log have a position and heading, and everything that drives her throughout."
+        raise error_at("replay", message, "Ask for shorter predictions, or for a longer log.")
     return np.array(rows), count
 
 
@@ -260,18 +260,18 @@ def errors_of(tracks: Tracks, shares: tuple[float, ...] = (1.0 / 6.0, 0.5, 1.0))
     # Times of the predictions that are nearest to the parts of the horizon.
     times = next(iter(tracks.predicted.values()))["time"].values
     after = [float(times[np.abs(times - share * tracks.horizon).argmin()]) for share in shares]
-    found = {
+    errors = {
         name: np.full((len(names), len(after)), np.nan) for name in ("position", *CHANNELS[2:])
     }
     for i, name in enumerate(names):
         for j, end in enumerate(after):
             for channel, value in _missed(tracks, tracks.predicted[name], end).items():
-                found[channel][i, j] = value
+                errors[channel][i, j] = value
     units = {"position": "m"} | {role: ROLES[role].unit for role in CHANNELS[2:]}
     return xarray.Dataset(
         {
             name: (("simulation", "after"), values, {"units": units[name]})
-            for name, values in found.items()
+            for name, values in errors.items()
         },
         coords={"simulation": names, "after": ("after", after, {"units": "s"})},
     )
@@ -285,23 +285,23 @@ def misses_at_end(tracks: Tracks, name: str) -> tuple[np.ndarray, np.ndarray]:
     starts, errors : (s,) array
         When each starts [s], and its error, NaN where the log has nothing [m].
     """
-    one = tracks.predicted[name]
-    return one["start_time"].values, _misses(tracks, one, tracks.horizon)["position"]
+    predicted = tracks.predicted[name]
+    return predicted["start_time"].values, _misses(tracks, predicted, tracks.horizon)["position"]
 
 
-def _missed(tracks: Tracks, one: xarray.Dataset, end: float) -> dict[str, float]:
+def _missed(tracks: Tracks, predicted: xarray.Dataset, end: float) -> dict[str, float]:
     """Root mean squares over the predictions of one simulation."""
-    whole = _misses(tracks, one, end)
+    whole = _misses(tracks, predicted, end)
     return {
         name: float(np.sqrt(np.nanmean(v**2))) if np.isfinite(v).any() else np.nan
         for name, v in whole.items()
     }
 
 
-def _misses(tracks: Tracks, one: xarray.Dataset, end: float) -> dict[str, np.ndarray]:
+def _misses(tracks: Tracks, predicted: xarray.Dataset, end: float) -> dict[str, np.ndarray]:
     """Errors of each prediction of one simulation after some time: distance of the positions, other channels."""
-    there = one.sel(time=end, method="nearest")
-    at = one["start_time"].values + float(there["time"])
+    there = predicted.sel(time=end, method="nearest")
+    at = predicted["start_time"].values + float(there["time"])
     # A channel of the log at some times, linear between rows; NaN where one of them has no value.
     off = {
         role: there[role].values

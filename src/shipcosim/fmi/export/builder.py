@@ -106,18 +106,18 @@ def build_all(
     """
     # Problems of all FMUs together; the others are built in any case.
     root = Path(root)
-    known = sorted(
+    available = sorted(
         folder.name for folder in root.glob("*") if (folder / f"{folder.name}.py").is_file()
     )
     problems = [
-        Problem(str(root), f"has no FMU '{name}'.", suggestion(name, known))
+        Problem(str(root), f"has no FMU '{name}'.", suggestion(name, available))
         for name in names
-        if name not in known
+        if name not in available
     ]
     built = []
     stems = {}
     # Names must differ also where file systems ignore case.
-    for name in sorted(set(names or known) & set(known)):
+    for name in sorted(set(names or available) & set(available)):
         other = stems.setdefault(name.lower(), name)
         if other != name:
             problems.append(
@@ -206,23 +206,27 @@ def _import(bundled: Bundle, folder: str) -> ModuleType:
 
 def _fmu_class(module: ModuleType, script: Path) -> type[Fmu]:
     """The only class of the script that is an FMU and no base class of another."""
-    own = [
+    fmu_classes = [
         item
         for item in vars(module).values()
         if isinstance(item, type) and item.__module__ == module.__name__
     ]
     # Classes defined in the script, without those that others extend.
-    own = [cls for cls in own if any(base.__name__ == "Fmi2Slave" for base in cls.__mro__)]
+    fmu_classes = [
+        cls for cls in fmu_classes if any(base.__name__ == "Fmi2Slave" for base in cls.__mro__)
+    ]
     leaves = [
-        cls for cls in own if not any(cls is not other and issubclass(other, cls) for other in own)
+        cls
+        for cls in fmu_classes
+        if not any(cls is not other and issubclass(other, cls) for other in fmu_classes)
     ]
     if len(leaves) != 1:
-        found = (
+        message = (
             f"has {len(leaves)} FMUs ({', '.join(cls.__name__ for cls in leaves)})."
             if leaves
             else "has no class that is an Fmu."
         )
-        raise error_at(str(script), found, "One file holds one FMU: class Name(Fmu).")
+        raise error_at(str(script), message, "One file holds one FMU: class Name(Fmu).")
     _check_class(leaves[0], script)
     return leaves[0]
 
@@ -248,8 +252,8 @@ def _check_class(cls: type[Fmu], script: Path) -> None:
             if not any(variable.required for variable in group.variables):
                 getattr(instance, group.name)
     except Exception as error:
-        found = f"its start values are refused: {type(error).__name__}: {error}"
-        raise error_at(f"{script}, class {cls.__name__}", found) from error
+        message = f"its start values are refused: {type(error).__name__}: {error}"
+        raise error_at(f"{script}, class {cls.__name__}", message) from error
 
 
 def _never_read(cls: type[Fmu], script: Path) -> list[str]:

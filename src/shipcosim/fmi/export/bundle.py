@@ -142,15 +142,15 @@ def _weights(folder: Path) -> dict[str, bytes]:
 def _collect(script: Path) -> dict[str, Module]:
     """All modules that the script imports, directly or indirectly, sorted by name."""
     # Follow imports until no new module turns up.
-    found = {}
+    modules = {}
     waiting = [(script.stem, script)]
     problems = []
     while waiting:
         name, path = waiting.pop()
-        if name in found:
+        if name in modules:
             continue
         try:
-            found[name] = module = _read(name, path)
+            modules[name] = module = _read(name, path)
         except ShipcosimError as error:
             problems += error.problems
             continue
@@ -171,7 +171,7 @@ def _collect(script: Path) -> dict[str, Module]:
                 )
     if problems:
         raise ShipcosimError(problems)
-    return dict(sorted(found.items()))
+    return dict(sorted(modules.items()))
 
 
 def _read(name: str, path: Path) -> Module:
@@ -197,7 +197,7 @@ def _locate(name: str, folder: Path) -> list[tuple[str, Path]]:
     """
     # Packages from the outside in, as Python imports them.
     parts = name.split(".")
-    found = []
+    modules = []
     base = SHIPCOSIM.parent if parts[0] == "shipcosim" else folder
     for length in range(1, len(parts) + 1):
         stem = base.joinpath(*parts[:length])
@@ -207,8 +207,8 @@ def _locate(name: str, folder: Path) -> list[tuple[str, Path]]:
         )
         if path is None:
             break
-        found.append((".".join(parts[:length]), path))
-    return found
+        modules.append((".".join(parts[:length]), path))
+    return modules
 
 
 def _imports(module: Module) -> Iterator[tuple[Import, str, bool]]:

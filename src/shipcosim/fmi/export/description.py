@@ -210,5 +210,5 @@ def _structure(root, variables):
         unknowns = xml.SubElement(structure, kind)
         for index in indices:
             # a step computes the outputs: an input that is set shows after it, so no algebraic loop goes through an FMU
-            known = {"dependencies": ""} if kind == "Outputs" else {}
-            xml.SubElement(unknowns, "Unknown", {"index": index, **known})
+            dependencies = {"dependencies": ""} if kind == "Outputs" else {}
+            xml.SubElement(unknowns, "Unknown", {"index": index, **dependencies})

@@ -40,18 +40,18 @@ def mutual_information(x: np.ndarray, y: np.ndarray) -> float:
     # matrices grow with the square of their number.
     rng = np.random.default_rng(1)
     taken = slice(None, None, max(1, -(-len(x) // MOST)))
-    spread = [one[taken] / (one.std() or 1.0) for one in (x, y)]
+    spread = [signal[taken] / (signal.std() or 1.0) for signal in (x, y)]
     # Distances within each signal. Tiny noise separates equal values, which the estimator excludes.
     apart = [
-        abs(one[:, None] - one[None])
-        for one in (v + 1e-8 * rng.normal(size=v.shape) for v in spread)
+        abs(signal[:, None] - signal[None])
+        for signal in (v + 1e-8 * rng.normal(size=v.shape) for v in spread)
     ]
     # Distance to the k-th neighbour in the joint space, in the maximum norm (Kraskov et al.).
     farther = np.maximum(*apart)
     np.fill_diagonal(farther, np.inf)
     radius = np.partition(farther, NEIGHBOURS - 1, axis=1)[:, NEIGHBOURS - 1]
     # Number of samples closer than that in each signal alone, n_x + 1 and n_y + 1.
-    near = [(one < radius[:, None]).sum(axis=1) for one in apart]  # itself among them
+    near = [(distances < radius[:, None]).sum(axis=1) for distances in apart]  # itself among them
     # I = psi(k) + psi(n) - <psi(n_x + 1) + psi(n_y + 1)>; noise may make it slightly negative.
     n = len(radius)
     return max(
@@ -85,7 +85,7 @@ def table(record: Record, features: np.ndarray) -> dict[str, dict[str, float]]:
     signals = {name: features[..., number] for number, name in enumerate(FEATURES)}
     for place, unit in zip(("bow", "stern", "main"), UNITS, strict=True):
         signals[f"{place} command"] = m[f"asked_{unit + 1}"]
-    found = {}
+    scaled = {}
     # Mean information over the shortest, middle and longest lag that a network sees.
     for axis, velocity in (("surge", m["u"]), ("sway", m["v"])):
         later = velocity[:, HISTORY:].ravel()
@@ -101,5 +101,8 @@ def table(record: Record, features: np.ndarray) -> dict[str, dict[str, float]]:
         # Scale to 0 to 1 over the inputs of this axis, as the table has it.
         least = min(lagged.values())
         most = max(lagged.values())
-        found[axis] = {name: float((one - least) / (most - least)) for name, one in lagged.items()}
-    return found
+        scaled[axis] = {
+            name: float((information - least) / (most - least))
+            for name, information in lagged.items()
+        }
+    return scaled

@@ -108,10 +108,10 @@ def reckoned(record: Record, law: Any, design: Any, valid: np.ndarray | None = N
         Of (worlds,) or (m, worlds) arrays.
     """
     valid = record.measured["valid"] if valid is None else valid
-    found = [law.start(measured_at(record, 0, valid), design=design)]
+    states = [law.start(measured_at(record, 0, valid), design=design)]
     for k in range(1, record.x.shape[1]):
-        found.append(law.step(found[-1], measured_at(record, k, valid), 1.0, design=design))
-    return found
+        states.append(law.step(states[-1], measured_at(record, k, valid), 1.0, design=design))
+    return states
 
 
 def design_of(change: np.ndarray) -> FilterNumbers:
@@ -127,14 +127,16 @@ def design_of(change: np.ndarray) -> FilterNumbers:
     FilterNumbers
         Of (...) arrays.
     """
-    found = {}
+    numbers = {}
     for position, name in enumerate(FilterNumbers._fields):
         # Parameters that may change sign move linearly; all others by
         # a factor exp(change), so they stay positive.
-        one = change[..., position]
+        moved = change[..., position]
         at_start = (KNOWN | GAINS)[name]
-        found[name] = at_start + one * abs(at_start) if name in SIGNED else at_start * np.exp(one)
-    return FilterNumbers(**found)
+        numbers[name] = (
+            at_start + moved * abs(at_start) if name in SIGNED else at_start * np.exp(moved)
+        )
+    return FilterNumbers(**numbers)
 
 
 def residuals(record: Record, change: np.ndarray) -> np.ndarray:
@@ -169,9 +171,11 @@ def residuals(record: Record, change: np.ndarray) -> np.ndarray:
             ) ** -0.25  # the cost grows as the distance
             errors += [shrunk * north, shrunk * east]
     # Prior: each parameter stays near its start by its assumed standard deviation.
-    found = np.concatenate(errors, axis=1)
+    position_errors = np.concatenate(errors, axis=1)
     spread = np.array([WEIGHT[name] for name in FilterNumbers._fields])
-    return np.concatenate([found / np.sqrt(found.shape[1] / 2), PRIOR * change / spread], axis=1)
+    return np.concatenate(
+        [position_errors / np.sqrt(position_errors.shape[1] / 2), PRIOR * change / spread], axis=1
+    )
 
 
 ROBUST = 1.0  # m; 1, assumed: 400 outages worth of metres against one prior
@@ -188,7 +192,7 @@ def fitted(
     record : Record
         To learn from.
     progress : callable
-        Is told how many iterations are done, and of how many.
+        Called with how many iterations are done, and of how many.
     iterations : int
         At most.
 
@@ -215,9 +219,9 @@ def _descended(
     history = []
     for number in range(1, iterations + 1):
         # Residuals at the present point and at one small change of each parameter: the Jacobian.
-        found = of(np.concatenate([change[None], change + 1e-4 * np.eye(size)]))
-        now = found[0]
-        slopes = (found[1:] - found[0]) / 1e-4
+        values = of(np.concatenate([change[None], change + 1e-4 * np.eye(size)]))
+        now = values[0]
+        slopes = (values[1:] - values[0]) / 1e-4
         # Cost and normal equations of Gauss-Newton: J^T J and J^T r.
         cost = float(now @ now)
         gradient = slopes @ now
@@ -226,7 +230,8 @@ def _descended(
         # Try five dampings at once, scaled by the diagonal as Marquardt does.
         dampings = damping * np.array([0.1, 1.0, 10.0, 100.0, 1000.0])
         steps = [
-            np.linalg.solve(normal + one * np.diag(np.diag(normal)), gradient) for one in dampings
+            np.linalg.solve(normal + damping * np.diag(np.diag(normal)), gradient)
+            for damping in dampings
         ]
         # Limit a change to a factor e^4: beyond that the filter is far from any ship.
         tried = np.clip(change - np.array(steps), -4.0, 4.0)

@@ -102,7 +102,7 @@ def features_of(record: Record) -> np.ndarray:
     """
     samples = [measured_at(record, k, record.measured["valid"]) for k in range(record.x.shape[1])]
     # One sample at a time, as the predictor computes its features aboard.
-    return np.stack([law.features(one, FULL_POWER, FULL_COMMAND) for one in samples], axis=1)
+    return np.stack([law.features(sample, FULL_POWER, FULL_COMMAND) for sample in samples], axis=1)
 
 
 def trained(
@@ -117,7 +117,7 @@ def trained(
     record : Record
         Of (worlds, n) arrays, with GNSS.
     progress : callable
-        Is told how many mini-batches are done, and of how many at most.
+        Called with how many mini-batches are done, and of how many at most.
 
     Returns
     -------
@@ -126,21 +126,23 @@ def trained(
     """
     # Train surge and sway one after the other; each uses the inputs that paper II selects.
     features = features_of(record)
-    found = {"full_power": FULL_POWER, "full_command": FULL_COMMAND}
+    networks = {"full_power": FULL_POWER, "full_command": FULL_COMMAND}
     epochs = []
     for number, (axis, name) in enumerate((("surge", "u"), ("sway", "v"))):
         velocity = record.measured[name]
 
-        def told(done: int, total: int, number: int = number) -> None:
+        def progress_of(done: int, total: int, number: int = number) -> None:
             progress(number * total + done, 2 * total)
 
-        arrays, losses = _one(recipe, number, features, velocity, INPUTS[axis], told)
-        found |= {f"{axis}.{key}": array for key, array in arrays.items()}
-        epochs += [{"network": number + 1} | one for one in losses]
-    return found, epochs
+        arrays, losses = _trained_axis(
+            recipe, number, features, velocity, INPUTS[axis], progress_of
+        )
+        networks |= {f"{axis}.{key}": array for key, array in arrays.items()}
+        epochs += [{"network": number + 1} | loss for loss in losses]
+    return networks, epochs
 
 
-def _one(recipe, number, features, velocity, names, progress):
+def _trained_axis(recipe, number, features, velocity, names, progress):
     """Network of one velocity: its arrays by name, and its losses."""
     # Standardise inputs and velocity; the scales are stored with the weights.
     inputs = np.array([law.FEATURES.index(name) for name in names])

@@ -59,7 +59,7 @@ def train(name: str, progress: Progress, size: Size | None = None) -> Trained:
     name : str
         One of `UNLEARNED`, `FILTER` or `paper_ii.RECIPES`.
     progress : callable
-        Is told how far it is, in thousandths.
+        Called with how far it is, in thousandths.
     size : Size, optional
         How much is trained on.
 
@@ -94,11 +94,11 @@ def design_of(name: str) -> FilterNumbers:
     FilterNumbers
         Numbers.
     """
-    known = FilterNumbers(**KNOWN, **GAINS)
+    learned_for = FilterNumbers(**KNOWN, **GAINS)
     return (
-        known._replace(surge_time=1e-3, sway_time=1e-3, **STILL)
+        learned_for._replace(surge_time=1e-3, sway_time=1e-3, **STILL)
         if name == "last-position"
-        else known
+        else learned_for
     )
 
 
@@ -141,8 +141,10 @@ def _networks(name, progress, size):
     arrays |= _region(apart, reckoned(apart, network_law, network_law.design(arrays)))
     # Mutual information by input, to compare with Table III of the paper.
     table = inputs.table(record, paper_ii.features_of(record))
-    told = {
-        f"mutual information with {axis} velocity": {key: round(one, 2) for key, one in row.items()}
+    facts = {
+        f"mutual information with {axis} velocity": {
+            key: round(information, 2) for key, information in row.items()
+        }
         for axis, row in table.items()
     }
     # What the report says of the network and its training.
@@ -157,7 +159,7 @@ def _networks(name, progress, size):
         "most epochs": recipe.most_epochs,
         "mini-batch": paper_ii.BATCH,
     }
-    about = _about(size, record, "stationkeeping with GNSS") | told
+    about = _about(size, record, "stationkeeping with GNSS") | facts
     return Trained(arrays, recipe.description, recipe.seed, about, settings, epochs, paper_ii.NOTES)
 
 
@@ -191,7 +193,7 @@ def _about(size: Size, record: Record, kind: str) -> dict:
 
 
 def _arrays(design: FilterNumbers) -> Arrays:
-    return {name: np.array(float(one)) for name, one in design._asdict().items()}
+    return {name: np.array(float(number)) for name, number in design._asdict().items()}
 
 
 KINDS: dict[str, tuple[str, Callable[[Progress], Trained]]] = {

@@ -33,7 +33,7 @@ def calibrated(lost_for: np.ndarray, sea: np.ndarray, error: np.ndarray) -> dict
         radii = np.maximum.accumulate(_radii(lost_for, sea, error, share))
         sizes = np.interp(lost_for, TIMES, radii) * (1.0 + share * np.sqrt(sea))
         tried.append((float(np.mean(sizes)), share, radii))
-    _, share, radii = min(tried, key=lambda one: one[:2])
+    _, share, radii = min(tried, key=lambda attempt: attempt[:2])
     return {
         "region.times": np.array(TIMES, dtype=float),
         "region.radii": radii,
@@ -45,8 +45,8 @@ def _radii(lost_for, sea, error, share):
     """Quantile of the scaled errors within 2.5 s of each time."""
     # Scaled errors: the sea widens all radii by the same factor.
     scaled = error / (1.0 + share * np.sqrt(sea))
-    found = []
+    radii = []
     for time in TIMES:
         # Conformal quantile, rank ceil(0.9 (n + 1)): it covers 90 % of new cases.
-        found.append(conformal(scaled[abs(lost_for - time) < 2.5], more=1))
-    return np.array(found)
+        radii.append(conformal(scaled[abs(lost_for - time) < 2.5], more=1))
+    return np.array(radii)

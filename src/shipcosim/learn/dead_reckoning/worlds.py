@@ -146,7 +146,7 @@ def drawn(seed: int) -> World:
     severity, before = rng.uniform(0.0, 3.0, 2)
     # Wave height and wind speed rise together, interpolated in Table IV.
     heights, speeds = zip(*SEA_STATES, strict=True)
-    first, last = (float(np.interp(one, range(4), speeds)) for one in (before, severity))
+    first, last = (float(np.interp(level, range(4), speeds)) for level in (before, severity))
     # Any direction before, and any after.
     start, end = map(float, rng.uniform(-math.pi, math.pi, 2))
     return world_of(
@@ -226,9 +226,9 @@ def scenario_of(
     }
     events = [Event(time=0.0, override=wind)]
     # Masking GNSS hands DP over to dead reckoning; it returns at the end of the drill.
-    for lost, found in losses:
+    for lost, regained in losses:
         events.append(Event(time=lost, override={"sensors.position_1_lost": True}))
-        events.append(Event(time=found, reset=["sensors.position_1_lost"]))
+        events.append(Event(time=regained, reset=["sensors.position_1_lost"]))
     return Scenario(
         description=f"World {world.seed}",
         system=SYSTEM,
@@ -256,7 +256,7 @@ def recorded(
     duration : float
         How long each. [s]
     progress : callable
-        Is told how many are done, and of how many.
+        Called with how many are done, and of how many.
     losses
         As in `scenario_of`.
 

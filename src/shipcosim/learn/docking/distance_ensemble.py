@@ -80,8 +80,8 @@ def targets(replay: Replay) -> np.ndarray:
     true = np.stack([replay.later[name][1:] for name in ("x", "y", "psi")], axis=1)
     north, east, turn = np.moveaxis(true - ahead, 1, 0)
     # In body axes at the start: the error then does not depend on the course.
-    found = np.stack([*to_body(replay.own.ship.psi, north, east), wrap(turn)])
-    return np.moveaxis(found, (0, 1), (2, 3))
+    errors = np.stack([*to_body(replay.own.ship.psi, north, east), wrap(turn)])
+    return np.moveaxis(errors, (0, 1), (2, 3))
 
 
 def distance(given: torch.Tensor, target: torch.Tensor, polynomials: torch.Tensor) -> torch.Tensor:
@@ -113,7 +113,7 @@ def scale() -> np.ndarray:
 
 
 def fit(
-    found: tuple[np.ndarray, np.ndarray],
+    training: tuple[np.ndarray, np.ndarray],
     choice: tuple[np.ndarray, np.ndarray],
     recipe: DockingTraining,
     progress: Progress,
@@ -122,12 +122,12 @@ def fit(
 
     Parameters
     ----------
-    found, choice : tuples of two arrays
+    training, choice : tuples of two arrays
         Features and targets, to train on and to choose the epoch by.
     recipe : DockingTraining
         How.
     progress : callable
-        Is told how many steps are done, and of how many.
+        Called with how many steps are done, and of how many.
 
     Returns
     -------
@@ -135,9 +135,9 @@ def fit(
         As `docking.trained_of` takes them; losses by member and epoch.
     """
     # Standardise features; clip outliers as the predictor does.
-    mean, std = standard(found[0])
-    x, held = (tensor(np.clip((one[0] - mean) / std, -CUT, CUT)) for one in (found, choice))
-    y = tensor(found[1])
+    mean, std = standard(training[0])
+    x, held = (tensor(np.clip((data[0] - mean) / std, -CUT, CUT)) for data in (training, choice))
+    y = tensor(training[1])
     sizes = tensor(scale())
     polynomials = tensor(docking.basis())
     # Add the mirror image of every docking: port and starboard then give mirrored corrections.
@@ -154,25 +154,25 @@ def fit(
         )
     arrays = {"mean": mean, "std": std, "scale": scale()} | weights
     # Largest features seen in training: beyond these the predictor trusts its ensemble less.
-    limits = np.append(abs((found[0] - mean) / std).reshape(-1, len(mean)).max(axis=0), np.inf)
+    limits = np.append(abs((training[0] - mean) / std).reshape(-1, len(mean)).max(axis=0), np.inf)
     # The same for the spread between members, which needs the trained members.
     trained = docking.trained_of(arrays | {"limits": limits})
-    spread = docking.spread(given_by(trained, found[0]))
+    spread = docking.spread(given_by(trained, training[0]))
     return arrays | {"limits": np.append(limits[:-1], max(float(spread.max()), 1e-6))}, epochs
 
 
-def standard(found: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def standard(inputs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Mean and standard deviation of features, equal for both sides of the ship."""
-    both = np.concatenate((found, (found * MIRROR_SIGNS)[..., MIRROR_ORDER]))
+    both = np.concatenate((inputs, (inputs * MIRROR_SIGNS)[..., MIRROR_ORDER]))
     return both.mean(axis=(0, 1)), both.std(axis=(0, 1)) + 1e-9
 
 
-def given_by(trained: docking.Trained, found: np.ndarray) -> np.ndarray:
+def given_by(trained: docking.Trained, inputs: np.ndarray) -> np.ndarray:
     """Outputs of members over (m, n) features, from empty memories: (members, m, n, 3 k) array."""
     memory = ()
     rows = []
-    inputs = docking.standardised(found, trained)
-    for k in range(found.shape[1]):
+    inputs = docking.standardised(inputs, trained)
+    for k in range(inputs.shape[1]):
         given, memory = docking.outputs(inputs[:, k], memory, trained)
         rows.append(given)
     return np.stack(rows, axis=2)

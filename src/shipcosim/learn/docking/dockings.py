@@ -164,9 +164,9 @@ def sail(docking: Docking) -> Record:
         )
     # Keep the last 1000 s before that; measurements and truth stay apart.
     last = slice(moored[0] + 1 - SAMPLES, moored[0] + 1)
-    known = {name: np.asarray(table[signal], float)[last] for name, signal in KNOWN.items()}
+    measured = {name: np.asarray(table[signal], float)[last] for name, signal in KNOWN.items()}
     truth = {name: np.asarray(table[f"vessel.{name}"], float)[last] for name in TRUTH}
-    return Record(docking.seed, docking.harbour, np.arange(float(SAMPLES)), known, truth)
+    return Record(docking.seed, docking.harbour, np.arange(float(SAMPLES)), measured, truth)
 
 
 def sail_all(
@@ -184,7 +184,7 @@ def sail_all(
     processes : int
         How many sail at a time. [1]
     progress : callable, optional
-        Is told how many are done, and of how many.
+        Called with how many are done, and of how many.
 
     Returns
     -------
@@ -248,8 +248,12 @@ def _without_predictor() -> System:
     """The system without the predictor, which acts on nothing."""
     system = system_with(SYSTEM, PARAMETERS, TRUE)
     # Remove the component and all connections into it.
-    components = {name: one for name, one in system.components.items() if name != PREDICTOR}
-    connections = tuple(one for one in system.connections if one.target[0] != PREDICTOR)
+    components = {
+        name: component for name, component in system.components.items() if name != PREDICTOR
+    }
+    connections = tuple(
+        connection for connection in system.connections if connection.target[0] != PREDICTOR
+    )
     return replace(system, components=components, connections=connections)
 
 
@@ -257,14 +261,14 @@ def _without_predictor() -> System:
 def _tolerated() -> tuple[tuple[str, float, float], ...]:
     """Name, value and tolerance of each parameter of ship and thrusters with a tolerance."""
     system = system_with(SYSTEM, PARAMETERS)
-    found = []
+    numbers = []
     for name in ("vessel", "port", "starboard", "tunnel"):
         component = system.components[name]
-        found += [
+        numbers += [
             (f"{name}.{variable}", float(component.start[variable]), tolerance)
             for variable, tolerance in sorted(component.tolerances.items())
         ]
-    return tuple(found)
+    return tuple(numbers)
 
 
 def _number(seed, rng):

@@ -14,7 +14,7 @@ Loss = Callable[[torch.Tensor, torch.Tensor], torch.Tensor]
 
 
 def fit(
-    found: tuple[torch.Tensor, torch.Tensor],
+    training: tuple[torch.Tensor, torch.Tensor],
     choice: tuple[torch.Tensor, torch.Tensor],
     loss: Loss,
     outputs: int,
@@ -25,7 +25,7 @@ def fit(
 
     Parameters
     ----------
-    found, choice : tuples of two tensors
+    training, choice : tuples of two tensors
         Inputs (m, n, inputs) and targets of dockings, to train on and to choose the epoch by.
     loss : callable
         What is minimised.
@@ -34,7 +34,7 @@ def fit(
     recipe : DockingTraining or PaperIIITraining
         With members, width, layers, dropout, epochs, batch, learning_rate, decay and noise.
     progress : callable
-        Is told how many steps are done, and of how many.
+        Called with how many steps are done, and of how many.
 
     Returns
     -------
@@ -50,19 +50,20 @@ def fit(
             progress(member * total + done, recipe.members * total)
 
         network = Recurrent(
-            found[0].shape[-1], recipe.width, recipe.layers, outputs, recipe.dropout
+            training[0].shape[-1], recipe.width, recipe.layers, outputs, recipe.dropout
         )
-        losses = _fit_one(network, found, choice, loss, recipe, tell)
+        losses = _fit_one(network, training, choice, loss, recipe, tell)
         history += [
-            {"member": member + 1.0, "epoch": k + 1.0, **one} for k, one in enumerate(losses)
+            {"member": member + 1.0, "epoch": k + 1.0, **of_epoch}
+            for k, of_epoch in enumerate(losses)
         ]
         weights |= arrays_of(network, f"member{member + 1}")
     return weights, history
 
 
-def _fit_one(network, found, choice, loss, recipe, progress):
+def _fit_one(network, training, choice, loss, recipe, progress):
     """Fit one member; return losses by epoch. The network keeps the weights of the best epoch."""
-    x, y = found
+    x, y = training
     batches = len(x) // recipe.batch
     steps = recipe.epochs * batches
     # AdamW with a learning rate that falls as a cosine over all steps; a network over 1000 s can have large gradients.

@@ -122,12 +122,12 @@ def _river(rng, number, heading, side):
     to = heading + rng.choice((0.0, pi)) - side * rng.uniform(0.0, 0.8)  # along the quay and off it
     # The mouth lies upstream of the berth, shifted across the flow.
     mouth = rng.uniform(50.0, 250.0)
-    beside = rng.uniform(-40.0, 80.0)
+    offset = rng.uniform(-40.0, 80.0)
     off = heading - side * 0.5 * pi
     return {
         "river_speed": speed,
         "river_to": to,
-        "river_x": -mouth * cos(to) + beside * cos(off),
-        "river_y": -mouth * sin(to) + beside * sin(off),
+        "river_x": -mouth * cos(to) + offset * cos(off),
+        "river_y": -mouth * sin(to) + offset * sin(off),
         "river_width": rng.uniform(40.0, 120.0),
     }

@@ -73,21 +73,21 @@ def replay(records: Sequence[Record], model: ShipModel) -> Replay:
     Replay
     """
     # Measurements of all dockings as (m, n) arrays, as the predictor reads them.
-    known = {name: np.stack([record.known[name] for record in records]) for name in helm.KNOWN}
-    aboard = helm.aboard_of(known, model.mast)
+    measured = {name: np.stack([record.known[name] for record in records]) for name in helm.KNOWN}
+    aboard = helm.aboard_of(measured, model.mast)
     # Measured positions, moved on by their age: these are the targets.
     place = helm.moved_on(aboard.ship, model.helm.position_age)
     # The state that the predictor estimates at each second.
-    start, own = _followed(aboard, model)
+    start, estimated = _followed(aboard, model)
     # Predict from the averaged start, and from the estimated state with its estimated load.
     laws = {"hull": model.hull, "wind": model.wind, "helm": model.helm}
     return Replay(
         np.array([record.harbour for record in records]),
         aboard,
         start,
-        own,
+        estimated,
         helm.predict(aboard._replace(ship=start), **laws),
-        helm.predict(aboard._replace(ship=own.ship), left=own.load, **laws),
+        helm.predict(aboard._replace(ship=estimated.ship), left=estimated.load, **laws),
         {name: ahead(getattr(place, name)) for name in ("x", "y", "psi")},
         {
             name: ahead(np.stack([record.truth[name] for record in records]))
@@ -99,15 +99,17 @@ def replay(records: Sequence[Record], model: ShipModel) -> Replay:
 def at_second(aboard: Aboard, k: int) -> Aboard:
     """Known quantities at second k, from (m, n) arrays."""
     ship, wind_speed, wind_from, *rest = aboard
-    parts = (tuple(one[:, k] for one in group) for group in rest)
-    return Aboard(Motion(*(one[:, k] for one in ship)), wind_speed[:, k], wind_from[:, k], *parts)
+    parts = (tuple(series[:, k] for series in group) for group in rest)
+    return Aboard(
+        Motion(*(series[:, k] for series in ship)), wind_speed[:, k], wind_from[:, k], *parts
+    )
 
 
 def _followed(aboard, model):
     """Averaged starts and estimated states at every second."""
     now = at_second(aboard, 0)
     latest: helm.Start = ()
-    own = docking.begin(now, model.helm.position_age)
+    estimate = docking.begin(now, model.helm.position_age)
     starts = []
     owns = []
     # Step through the records as the FMU does: each estimate uses only the past.
@@ -116,13 +118,13 @@ def _followed(aboard, model):
         now = at_second(aboard, k)
         # Update the estimated load from the last second's motion.
         if k:
-            own = docking.follow(
-                own, before, now, hull=model.hull, wind=model.wind, helm_=model.helm
+            estimate = docking.follow(
+                estimate, before, now, hull=model.hull, wind=model.wind, helm_=model.helm
             )
         # Average heading and velocity over three seconds: noise matters over 30 s.
         latest = helm.remembered(latest, now.ship)
         starts.append(helm.smoothed(latest, now.ship))
-        owns.append((*own.ship, *own.load))
+        owns.append((*estimate.ship, *estimate.load))
     # Stack the seconds; the first six columns are motion, the last three load.
     records = [np.stack(values, axis=1) for values in zip(*owns, strict=True)]
     start = Motion(*(np.stack(values, axis=1) for values in zip(*starts, strict=True)))
@@ -134,7 +136,7 @@ def ahead(values: np.ndarray) -> np.ndarray:
     """Values in 0 to `LONGEST` seconds from each second, (`LONGEST` + 1, m, n) array from (m, n); else no numbers."""
     m, n = values.shape
     # NaN where the record ends before the horizon.
-    found = np.full((LONGEST + 1, m, n), np.nan)
+    later = np.full((LONGEST + 1, m, n), np.nan)
     for horizon in range(LONGEST + 1):
-        found[horizon, :, : n - horizon] = values[:, horizon:]
-    return found
+        later[horizon, :, : n - horizon] = values[:, horizon:]
+    return later

@@ -72,11 +72,11 @@ def inputs_of(replay: Replay) -> np.ndarray:
 def targets(replay: Replay) -> np.ndarray:
     """Errors of the kinetic model: (m, n, 60) array, north in 1 to 30 s, then east. [m]"""
     # Error = measured later - predicted; time last, as outputs of the networks.
-    found = [
+    errors = [
         replay.later[name][1:] - np.stack([motion[k] for motion in replay.kinetic])
         for k, name in enumerate(("x", "y"))
     ]
-    return np.moveaxis(np.concatenate(found), 0, -1)
+    return np.moveaxis(np.concatenate(errors), 0, -1)
 
 
 def squares(given: torch.Tensor, target: torch.Tensor) -> torch.Tensor:
@@ -88,21 +88,21 @@ def squares(given: torch.Tensor, target: torch.Tensor) -> torch.Tensor:
 def draws(recipe: PaperIIITraining) -> list[PaperIIITraining]:
     """Settings that the search tries: uniform in the logarithms of learning rate and width."""
     rng = np.random.default_rng(recipe.seed)
-    found = []
+    settings = []
     for _ in range(recipe.trials):
         # Logarithmic draws: both ranges span orders of magnitude.
         bounds = RATES, (LEAST_NODES, recipe.most_nodes)
-        rate, nodes = (float(np.exp(rng.uniform(*np.log(one)))) for one in bounds)
+        rate, nodes = (float(np.exp(rng.uniform(*np.log(bound)))) for bound in bounds)
         layers = int(rng.integers(LAYERS[0], LAYERS[1] + 1))
         # Two digits of the learning rate are enough, and readable in the report.
-        found.append(
+        settings.append(
             replace(recipe, learning_rate=float(f"{rate:.2g}"), width=round(nodes), layers=layers)
         )
-    return found
+    return settings
 
 
 def fit(
-    found: tuple[np.ndarray, np.ndarray],
+    training: tuple[np.ndarray, np.ndarray],
     choice: tuple[np.ndarray, np.ndarray],
     recipe: PaperIIITraining,
     progress: Progress,
@@ -111,12 +111,12 @@ def fit(
 
     Parameters
     ----------
-    found, choice : tuples of two arrays
+    training, choice : tuples of two arrays
         Inputs and targets, to train on and to choose by.
     recipe : PaperIIITraining
         How.
     progress : callable
-        Is told how far it is, and of how much.
+        Called with how far it is, and of how much.
 
     Returns
     -------
@@ -124,25 +124,25 @@ def fit(
         As `paper_iii.ensemble_of` takes them; losses by member and epoch; what was tried, with its loss.
     """
     # Standardise inputs and targets; errors beyond the end of a record are NaN.
-    mean = found[0].mean(axis=(0, 1))
-    std = found[0].std(axis=(0, 1)) + 1e-9
-    target_mean = np.nanmean(found[1], axis=(0, 1))
-    target_std = np.nanstd(found[1], axis=(0, 1))
+    mean = training[0].mean(axis=(0, 1))
+    std = training[0].std(axis=(0, 1)) + 1e-9
+    target_mean = np.nanmean(training[1], axis=(0, 1))
+    target_std = np.nanstd(training[1], axis=(0, 1))
     # The same scales for data to train on and data to choose by.
     trained, held = (
         (tensor((x - mean) / std), tensor((y - target_mean) / target_std))
-        for x, y in (found, choice)
+        for x, y in (training, choice)
     )
     outputs = len(target_mean)
     tried = []
     # Random search: train one member briefly with each setting, keep the one with the least loss.
     with repeatable(recipe.seed):
-        for number, one in enumerate(draws(recipe)):
-            short = replace(one, members=1, epochs=recipe.trial_epochs)
+        for number, settings in enumerate(draws(recipe)):
+            short = replace(settings, members=1, epochs=recipe.trial_epochs)
             _, epochs = fitting.fit(
                 trained, held, squares, outputs, short, lambda done, total: None
             )
-            tried.append((one, min(epoch["choices"] for epoch in epochs)))
+            tried.append((settings, min(epoch["choices"] for epoch in epochs)))
             progress(number + 1, 2 * recipe.trials)
         best = min(tried, key=lambda pair: pair[1])[0]
 
@@ -155,7 +155,7 @@ def fit(
     return arrays | weights, epochs, tried
 
 
-def expected(arrays: Mapping[str, np.ndarray], found: np.ndarray) -> np.ndarray:
+def expected(arrays: Mapping[str, np.ndarray], inputs: np.ndarray) -> np.ndarray:
     """Errors that the ensemble predicts over (m, n) inputs: (m, n, 60) array. [m]
 
     Each docking starts from an empty memory.
@@ -164,7 +164,7 @@ def expected(arrays: Mapping[str, np.ndarray], found: np.ndarray) -> np.ndarray:
     ensemble = paper_iii.ensemble_of(arrays)
     memory = ()
     rows = []
-    for k in range(found.shape[1]):
-        given, memory = paper_iii.errors(found[:, k], memory, ensemble)
+    for k in range(inputs.shape[1]):
+        given, memory = paper_iii.errors(inputs[:, k], memory, ensemble)
         rows.append(given)
     return np.stack(rows, axis=1)

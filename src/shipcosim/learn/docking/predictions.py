@@ -48,10 +48,10 @@ def by_ours(replay: Replay, arrays: Mapping[str, np.ndarray], hull: HullParamete
     """By our hybrid."""
     trained = docking.trained_of(arrays)
     # Features and outputs of the ensemble at every second.
-    found = distance_ensemble.features(replay, hull)
-    given = distance_ensemble.given_by(trained, found)
+    inputs = distance_ensemble.features(replay, hull)
+    given = distance_ensemble.given_by(trained, inputs)
     # Trust in the ensemble falls outside the data it was trained on.
-    share = docking.share_of(found, given, trained)
+    share = docking.share_of(inputs, given, trained)
     # Correct the path by the equations of motion, then blend with the kinetic path.
     learned = docking.corrected(replay.own.ship, replay.ours, given)
     return Predicted(docking.blended(replay.kinetic, learned, share), share)
@@ -69,9 +69,9 @@ def own_record(places: Places, replay: Replay) -> tuple[np.ndarray, np.ndarray]:
         if k >= ahead:
             # What was predicted for now; velocities are not compared.
             foreseen = Motion._make(
-                (*(one[:, k - ahead] for one in places[ahead - 1]), 0.0, 0.0, 0.0)
+                (*(place[:, k - ahead] for place in places[ahead - 1]), 0.0, 0.0, 0.0)
             )
-            now = Motion(*(one[:, k] for one in ship))
+            now = Motion(*(series[:, k] for series in ship))
             # Exponential averages of position and heading errors (models.prediction.regions).
             errors = own_errors(errors, now, foreseen, 1.0, regions=RegionParameters())
         rows.append(errors)

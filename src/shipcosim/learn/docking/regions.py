@@ -35,12 +35,12 @@ def measured_later(replay: Replay) -> dict[str, np.ndarray]:
     slow error of the receiver, that no comparison with itself shows.
     """
     # Average the targets over three seconds; both ends keep their single measurement.
-    found = dict(replay.later)
+    later = dict(replay.later)
     for name in ("x", "y"):
-        values = found[name][0]
+        values = later[name][0]
         mean = (values[:, :-2] + values[:, 1:-1] + values[:, 2:]) / 3.0
-        found[name] = ahead(np.concatenate((values[:, :1], mean, values[:, -1:]), axis=1))
-    return found
+        later[name] = ahead(np.concatenate((values[:, :1], mean, values[:, -1:]), axis=1))
+    return later
 
 
 def calibrated(predicted: Predicted, replay: Replay) -> np.ndarray:
@@ -54,11 +54,11 @@ def calibrated(predicted: Predicted, replay: Replay) -> np.ndarray:
     errors = own_record(predicted.places, replay)
     after = measured_later(replay)
     # Ordinary errors: the medians over all starts.
-    ordinary = [float(np.median(one)) for one in errors]
+    ordinary = [float(np.median(error)) for error in errors]
     factors = [row[0] for row in docking.regions(np.array([*np.ones(6), *ordinary]), errors)]
     widths = []
     # Score = error over factor. Its quantile at rank ceil(0.9 n) is the width (split conformal).
-    for found, factor in zip(misses(predicted.places, after), factors, strict=True):
-        for one in found:
-            widths.append(conformal(one / factor))
+    for scores, factor in zip(misses(predicted.places, after), factors, strict=True):
+        for miss in scores:
+            widths.append(conformal(miss / factor))
     return np.array([*widths, *ordinary])

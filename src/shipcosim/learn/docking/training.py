@@ -68,7 +68,7 @@ def train(learn: Callable[..., Trained], recipe: Any, progress: Progress) -> Tra
     recipe : DockingTraining or PaperIIITraining
         How; that of `learn`.
     progress : callable
-        Is told how far it is.
+        Called with how far it is.
 
     Returns
     -------
@@ -96,7 +96,7 @@ def learn_ours(
     recipe : DockingTraining or PaperIIITraining
         How.
     progress : callable
-        Is told how far it is.
+        Called with how far it is.
 
     Returns
     -------
@@ -104,8 +104,8 @@ def learn_ours(
         Weights, regions of this predictor and of the kinetic one, and report.
     """
 
-    def inputs(one):
-        return distance_ensemble.features(one, model.hull)
+    def inputs(replay):
+        return distance_ensemble.features(replay, model.hull)
 
     replayed, pairs = _replayed(records, model, inputs, distance_ensemble.targets)
     # Train on some dockings; others decide which epoch to keep.
@@ -149,9 +149,9 @@ def learn_paper_iii(
     names = ("members", "dropout", "epochs", "batch", "trial_epochs")
     settings = settings_of(recipe, names, "Adam, cosine schedule")
     # The report lists every setting that the search tried, with its loss.
-    for one, loss in tried:
+    for trial, loss in tried:
         settings[
-            f"tried: {one.layers} layers of {one.width}, learning rate {one.learning_rate:g}"
+            f"tried: {trial.layers} layers of {trial.width}, learning rate {trial.learning_rate:g}"
         ] = round(loss, 4)
     data = about(records, pairs["training"][0])
     return Trained(arrays, recipe.description, recipe.seed, data, settings, epochs, NOTES)
@@ -160,15 +160,15 @@ def learn_paper_iii(
 def _replayed(records, model, inputs, targets):
     """Replayed records, and inputs and targets of the same replay, by what they are for."""
     replayed = {name: replay(some, model) for name, some in records.items()}
-    return replayed, {name: (inputs(one), targets(one)) for name, one in replayed.items()}
+    return replayed, {name: (inputs(replay), targets(replay)) for name, replay in replayed.items()}
 
 
 def about(records: dict[str, list[Record]], inputs: np.ndarray) -> dict[str, Any]:
     """Describe the data for the report."""
-    found = {}
+    rows = {}
     for name, some in records.items():
         seeds = [record.seed for record in some]
-        found[name] = (
+        rows[name] = (
             f"{len(seeds)} that end in time, of seeds {min(seeds)} to {max(seeds)}, learn/docking/dockings"
         )
-    return found | {"SHA-256 of the inputs to train on, rounded": digest(np.round(inputs, 3) + 0.0)}
+    return rows | {"SHA-256 of the inputs to train on, rounded": digest(np.round(inputs, 3) + 0.0)}

@@ -105,7 +105,7 @@ def learned_of(numbers: Arithmetic, library: ModuleType = np) -> Learned:
     # The numbers in order: means, standard deviations, other parameters.
     first = len(COEFFICIENTS)
     second = len(COEFFICIENTS) + len(STATES)
-    std, rest = (library.asarray(one, dtype=numbers.dtype) for one in (STD, REST))
+    std, rest = (library.asarray(scale, dtype=numbers.dtype) for scale in (STD, REST))
     # Logarithms keep standard deviations and rates positive.
     rest = rest * library.exp(numbers[..., second:])
     # Means in standard deviations, so that all numbers have one scale.
@@ -162,7 +162,7 @@ def fit(
     recipe : DriftTraining
         How.
     progress : callable
-        Is told how many steps are done, and of how many.
+        Called with how many steps are done, and of how many.
 
     Returns
     -------

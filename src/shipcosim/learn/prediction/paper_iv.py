@@ -93,7 +93,7 @@ def samples(sailed: Sailed, ship: Ship, first: int = 10) -> tuple[np.ndarray, np
         dot = paper_iv.model_acceleration(
             psi, tuple(nu), past.wind, past.thrusters, hull=ship.hull, wind=ship.wind
         )
-        before = [np.broadcast_to(one, np.shape(psi)) for one in (*nu, *dot, *past.residual)]
+        before = [np.broadcast_to(signal, np.shape(psi)) for signal in (*nu, *dot, *past.residual)]
         # After the step the residual is known: it is the target.
         past = paper_iv.step(past, now, hull=ship.hull, wind=ship.wind)
         # Leave out the first rows, where averages and residual are not yet settled.
@@ -115,7 +115,7 @@ def fit(
     recipe : PaperIVTraining
         How.
     progress : callable
-        Is told how many epochs are done, and of how many at most.
+        Called with how many epochs are done, and of how many at most.
 
     Returns
     -------
@@ -155,14 +155,14 @@ def fit(
             descent.step(squares(weights, x[rows], y[rows]))
         # Error on training and held-out samples after the epoch.
         with torch.no_grad():
-            found = {
+            losses = {
                 name: float(squares(weights, x[part], y[part]))
                 for name, part in (("training", slice(held, None)), ("held out", slice(held)))
             }
-        epochs.append(found)
+        epochs.append(losses)
         progress(number + 1, recipe.most_epochs)
         # Keep the best weights; stop after `patience` epochs without gain.
-        best.judge(found["held out"])
+        best.judge(losses["held out"])
         if best.since >= recipe.patience:
             break
     return arrays_of(best.kept) | scales, epochs
@@ -170,13 +170,13 @@ def fit(
 
 def first_weights(sizes: Sequence[int], members: int) -> list[torch.Tensor]:
     """Initial weights: uniform as by Glorot and Bengio, biases 0."""
-    found = []
+    weights = []
     for n, m in pairwise(sizes):
         # Glorot limit sqrt(6/(n + m)): keeps the variance from layer to layer.
         limit = (6.0 / (n + m)) ** 0.5
-        found += [limit * (2.0 * torch.rand(members, n, m, dtype=torch.float64) - 1.0)]
-        found += [torch.zeros(members, 1, m, dtype=torch.float64)]
-    return [one.requires_grad_() for one in found]
+        weights += [limit * (2.0 * torch.rand(members, n, m, dtype=torch.float64) - 1.0)]
+        weights += [torch.zeros(members, 1, m, dtype=torch.float64)]
+    return [weight.requires_grad_() for weight in weights]
 
 
 def squares(weights: list[torch.Tensor], x: torch.Tensor, y: torch.Tensor) -> torch.Tensor:
@@ -191,7 +191,7 @@ def arrays_of(weights: list[torch.Tensor]) -> Arrays:
     """Weights and biases by their names."""
     pairs = zip(weights[::2], weights[1::2], strict=True)
     return {
-        f"{k}.{name}": one.numpy().copy()
+        f"{k}.{name}": array.numpy().copy()
         for k, pair in enumerate(pairs, 1)
-        for name, one in zip(("weights", "bias"), pair, strict=True)
+        for name, array in zip(("weights", "bias"), pair, strict=True)
     }

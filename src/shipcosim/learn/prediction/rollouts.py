@@ -133,7 +133,7 @@ def followed(
     # The filter begins with the learned priors and follows the records row by row.
     now = mapped(lambda array: array[rows[0]], everything)
     record = own_record.begin(now, learned=learned, hull=ship.hull)
-    found = []
+    by_start = []
     for before, row in pairwise(rows):
         now = mapped(lambda array, row=row: array[row], everything)
         record = own_record.step(
@@ -141,14 +141,14 @@ def followed(
         )
         # Keep the state at each start.
         if row - lost in starts:
-            found.append((record, now))
+            by_start.append((record, now))
     # Starts become the first axis; quantities per filter keep their axis in front.
-    record = stacked([one for one, _ in found], library)
+    record = stacked([of_start for of_start, _ in by_start], library)
     first = {
         name: library.moveaxis(getattr(record, name), 1, 0)
         for name in ("mean", "covariance", "likelihood")
     }
-    return record._replace(**first), stacked([one for _, one in found], library)
+    return record._replace(**first), stacked([now for _, now in by_start], library)
 
 
 def ahead(
@@ -202,14 +202,14 @@ def errors(motions: Sequence[Motion], sailed: Sailed, starts: Sequence[int]) -> 
     """
     # Compare with the record at each start plus horizon.
     rows = sailed.lost + np.array(starts)
-    found = []
+    errors = []
     for horizon, motion in zip(HORIZONS, motions, strict=True):
         x, y, psi = torch.from_numpy(
             np.moveaxis(sailed.known[rows + int(horizon), :, :3], -1, 0).copy()
         )
         # Heading error wrapped by atan2, which has a gradient everywhere.
         turned = motion.psi - psi
-        found.append(
+        errors.append(
             torch.stack([motion.x - x, motion.y - y, torch.atan2(turned.sin(), turned.cos())], -1)
         )
-    return torch.stack(found)
+    return torch.stack(errors)

@@ -72,7 +72,7 @@ def sail(seeds: Sequence[int], progress: Progress) -> list[worlds.Record]:
     seeds : sequence of int
         Theirs, all of `worlds.TRAINING`.
     progress : callable
-        Is told how many are sailed, of how many.
+        Called with how many are sailed, of how many.
 
     Returns
     -------
@@ -97,7 +97,7 @@ def train(
     recipe : DriftTraining or PaperIVTraining
         How; that of `learn`.
     progress : callable
-        Is told how far it is.
+        Called with how far it is.
 
     Returns
     -------
@@ -120,7 +120,7 @@ def ours(
     recipe : DriftTraining or PaperIVTraining
         How.
     progress : callable
-        Is told how far it is.
+        Called with how far it is.
 
     Returns
     -------
@@ -172,8 +172,8 @@ def limits(learned: Learned, sailed: Sailed, about: Ship) -> np.ndarray:
     options = {"horizons": HORIZONS, "steps": drift_off.STEPS, "learned": learned}
     last = own_record.predict(record, known, **options, hull=about.hull, wind=about.wind)[-1]
     # The largest of each measure over all starts and worlds.
-    found = drift_off.measures(record, known, last, learned)
-    return found.reshape(len(drift_off.MEASURES), -1).max(axis=1)
+    measures = drift_off.measures(record, known, last, learned)
+    return measures.reshape(len(drift_off.MEASURES), -1).max(axis=1)
 
 
 def as_paper_iv(
@@ -188,7 +188,7 @@ def as_paper_iv(
     recipe : DriftTraining or PaperIVTraining
         How.
     progress : callable
-        Is told how far it is.
+        Called with how far it is.
 
     Returns
     -------

@@ -221,10 +221,12 @@ def sail(world: World) -> Record:
     # Signals that the predictor sees, and apart from these the truth.
     what = scenario(world)
     table = simulate(system_of(what), what)
-    known = [np.asarray(table[_source(name)], float) for name in KNOWN]
+    measured = [np.asarray(table[_source(name)], float) for name in KNOWN]
     truth = [np.asarray(table[f"vessel.{name}"], float) for name in TRUTH]
     time = np.asarray(table["time"], float)
-    return Record(world.seed, world.lost_at, time, np.column_stack(known), np.column_stack(truth))
+    return Record(
+        world.seed, world.lost_at, time, np.column_stack(measured), np.column_stack(truth)
+    )
 
 
 def sail_all(
@@ -242,7 +244,7 @@ def sail_all(
     processes : int
         How many sail at a time. [1]
     progress : callable, optional
-        Is told how many are done, and of how many.
+        Called with how many are done, and of how many.
 
     Returns
     -------
@@ -264,24 +266,24 @@ def _nominal() -> dict[str, tuple[float, float]]:
     """Value and tolerance of each number of `TOLERATED`, `NOISY` and `HULL`."""
     # Read the nominal system once; worlds differ from it.
     system = system_with(SYSTEM, PARAMETERS)
-    found = {}
+    nominal = {}
     # Numbers without a tolerance keep their value.
     for signal in (*TOLERATED, *NOISY, *HULL):
         name, variable = signal.split(".")
         component = system.components[name]
-        found[signal] = float(component.start[variable]), component.tolerances.get(variable, 0.0)
-    return found
+        nominal[signal] = float(component.start[variable]), component.tolerances.get(variable, 0.0)
+    return nominal
 
 
 def _parameters(rng: np.random.Generator, distance: float) -> dict[str, float]:
     """Numbers of hull, wind and thrusters off by their tolerances, errors of sensors by their share."""
     nominal = _nominal()
     # Parameters: normal, tolerance as standard deviation. Sensor errors: uniform share.
-    found = {
+    numbers = {
         name: nominal[name][0] + distance * nominal[name][1] * rng.standard_normal()
         for name in TOLERATED
     }
-    return found | {
+    return numbers | {
         name: nominal[name][0] * (1.0 + distance * NOISE * rng.uniform(-1.0, 1.0)) for name in NOISY
     }
 

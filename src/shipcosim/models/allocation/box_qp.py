@@ -226,9 +226,9 @@ def _goes_on(more, done):
 
 def _round(request, commands, slack, zero, count, x, side, freed, done, multipliers):
     """The state of `_solve_many` after one more round, to the digit as a round of `_solve_floats`."""
-    found = _multipliers(request, commands, slack, x, side)
+    at_active = _multipliers(request, commands, slack, x, side)
     # Optimum of the free commands, loss of each bound, and how far each command may go.
-    best, loss, steps = _towards(commands, found, x, side)
+    best, loss, steps = _towards(commands, at_active, x, side)
     # Smallest allowed step and largest loss, over all commands.
     share = zero + 1.0
     worst = zero
@@ -252,19 +252,21 @@ def _round(request, commands, slack, zero, count, x, side, freed, done, multipli
         moved = where(hit & ~again, bound, old + share * (new - old))
         after.append((where(done, old, moved), where(done | again, at, kept), drop))
     x, side, freed = zip(*after, strict=True)
-    multipliers = tuple(where(done, old, new) for old, new in zip(multipliers, found, strict=True))
+    multipliers = tuple(
+        where(done, old, new) for old, new in zip(multipliers, at_active, strict=True)
+    )
     # A whole step without a loss is the optimum.
     done = done | again | (whole & (worst <= 0.0))
     return count + 1.0, x, side, freed, done, multipliers
 
 
-def _first(flags, asked):
+def _first(flags, wanted):
     """The first flag that is set of each element, where one is asked for."""
-    found = []
+    first = []
     for flag in flags:
-        found.append(flag & asked)
-        asked = asked & ~flag
-    return found
+        first.append(flag & wanted)
+        wanted = wanted & ~flag
+    return first
 
 
 def _multipliers(request, commands, slack, x, side):

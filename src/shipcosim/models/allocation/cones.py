@@ -204,10 +204,10 @@ def cones_at_rest(state: Turned, tau: Load, *, design: OptimalProblem) -> Turned
     if design.choice is None:
         return state._replace(memory=detours_at_rest(tau, design=design))
     none = (zero,) * len(design.units)
-    cones = tuple(tuple(zero + cone for cone in one) for one in design.choice.cones)
+    cones = tuple(tuple(zero + cone for cone in pair) for pair in design.choice.cones)
     plans = []
-    for one in design.choice.cones:
-        units = zip(_within(design, one).units, state.azimuths, strict=True)
+    for combination in design.choice.cones:
+        units = zip(_within(design, combination).units, state.azimuths, strict=True)
         angles = tuple(clip(zero + angle, unit.first, unit.last) for unit, angle in units)
         plans.append(resting(tau, angles))
     costs = (zero,) * len(plans)
@@ -308,13 +308,13 @@ def _cheapest(memory, costs):
     zero = 0.0 * memory.waited
     present = zero
     least = costs[0]
-    found = memory.cones[0]
+    best = memory.cones[0]
     for cones, cost in zip(memory.cones, costs, strict=True):
         present = where(_differ(cones, memory.wanted), present, cost)
         less = cost < least
         least = where(less, cost, least)
-        found = tuple(where(less, cone, old) for cone, old in zip(cones, found, strict=True))
-    return found, least, present
+        best = tuple(where(less, cone, old) for cone, old in zip(cones, best, strict=True))
+    return best, least, present
 
 
 def _differ(cones, others):
@@ -324,16 +324,16 @@ def _differ(cones, others):
 
 def _aimed(memory):
     """Plan of the wanted cones."""
-    found = memory.plans[0]
-    azimuths = found.azimuths
-    thrusts = found.thrusts
+    aimed = memory.plans[0]
+    azimuths = aimed.azimuths
+    thrusts = aimed.thrusts
     for cones, plan in zip(memory.cones, memory.plans, strict=True):
         other = _differ(cones, memory.wanted)
         rows = zip(azimuths, plan.azimuths, strict=True)
         azimuths = tuple(where(other, old, new) for old, new in rows)
         rows = zip(thrusts, plan.thrusts, strict=True)
         thrusts = tuple(where(other, old, new) for old, new in rows)
-    return found._replace(thrusts=thrusts, azimuths=azimuths)
+    return aimed._replace(thrusts=thrusts, azimuths=azimuths)
 
 
 def _strayed(memory, state, aimed, h, design):

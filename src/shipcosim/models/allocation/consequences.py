@@ -291,14 +291,14 @@ def failures_of(parameters: ConsequenceParameters) -> tuple:
     most = parameters.of_units("thrust_max")
     groups = parameters.of_units("group")
     units = range(UNITS)
-    found = [
+    failures = [
         tuple(0.0 if unit == lost else 1.0 for unit in units) if acts(most[lost]) else ()
         for lost in units
     ]
     for group in range(1, GROUPS + 1):
         left = tuple(where(of_unit == group, 0.0, 1.0) for of_unit in groups)
-        found.append(left if any(acts(one, neutral=1.0) for one in left) else ())
-    return tuple(found)
+        failures.append(left if any(acts(share, neutral=1.0) for share in left) else ())
+    return tuple(failures)
 
 
 def _furthest(normal, usable, units, heading):
@@ -338,8 +338,8 @@ def _cross(a, b):
 
 
 def _minus(a, b):
-    return tuple(one - other for one, other in zip(a, b, strict=True))
+    return tuple(first - other for first, other in zip(a, b, strict=True))
 
 
 def _either(condition, a, b):
-    return tuple(where(condition, one, other) for one, other in zip(a, b, strict=True))
+    return tuple(where(condition, first, other) for first, other in zip(a, b, strict=True))

@@ -145,14 +145,15 @@ def evaluate(network: Network, inputs: tuple) -> tuple:
     Huang, Zhu, Siew, Extreme learning machine: a new learning scheme of feedforward neural networks, IJCNN, 2004.
     """
     # Inputs over their size in the exercise, as in training.
-    x = [one / size for one, size in zip(inputs, network.scale, strict=True)]
+    x = [signal / size for signal, size in zip(inputs, network.scale, strict=True)]
     hidden = []
     # Hidden layer of sigmoids; the clip avoids an overflow of exp.
     for weights, bias in zip(network.hidden, network.bias, strict=True):
-        z = clip(sum(w * one for w, one in zip(weights, x, strict=True)) + bias, -50.0, 50.0)
+        z = clip(sum(w * signal for w, signal in zip(weights, x, strict=True)) + bias, -50.0, 50.0)
         hidden.append(1.0 / (1.0 + exp(-z)))
     return tuple(
-        sum(w * one for w, one in zip(weights, hidden, strict=True)) for weights in network.output
+        sum(w * signal for w, signal in zip(weights, hidden, strict=True))
+        for weights in network.output
     )
 
 
@@ -219,20 +220,24 @@ def step(
     """
     # Allocator 2 also sees its last commands.
     seen = state.commands[: parameters.signals] if parameters.allocator == 2 else ()
-    found = evaluate(design, (*tau, *seen))
+    outputs = evaluate(design, (*tau, *seen))
     # With five signals units 5 and 6 share one command.
-    found = (*found, found[-1]) if parameters.signals < UNITS else found
+    outputs = (*outputs, outputs[-1]) if parameters.signals < UNITS else outputs
     # A missing unit gives nothing; the others do not take over.
-    commands = tuple(where(on, one, 0.0 * one) for one, on in zip(found, available, strict=True))
+    commands = tuple(
+        where(on, output, 0.0 * output) for output, on in zip(outputs, available, strict=True)
+    )
     # Thrust of each command, for the load that is reported.
     weakest = parameters.of_units("thrust_min")
     strongest = parameters.of_units("thrust_max")
     limits = tuple(zip(design.least, design.most, weakest, strongest, strict=True))
-    thrusts = tuple(_thrust(one, *limit) for one, limit in zip(commands, limits, strict=True))
+    thrusts = tuple(
+        _thrust(command, *limit) for command, limit in zip(commands, limits, strict=True)
+    )
     # Saturated: a command beyond the range of the exercise, or a missing unit.
     over = sum(
-        where(one < low, 1.0, where(one > high, 1.0, 0.0))
-        for one, (low, high, *_) in zip(found, limits, strict=True)
+        where(output < low, 1.0, where(output > high, 1.0, 0.0))
+        for output, (low, high, *_) in zip(outputs, limits, strict=True)
     )
     missing = sum(where(on, 0.0, 1.0) for on in available)
     effect = tuple(map(unit_effect, *map(parameters.of_units, ("x", "y", "azimuth"))))

@@ -189,7 +189,7 @@ def step(
 def _solve(tau, free, inverses):
     """Thrusts of the free units for a load, 0 for the others."""
     # Number of the set of free units: bit i stands for unit i.
-    chosen = sum(2.0**unit * one for unit, one in enumerate(free))
+    chosen = sum(2.0**unit * is_free for unit, is_free in enumerate(free))
     # One number: pick the inverse of this set.
     if is_single(chosen):
         return [
@@ -197,11 +197,11 @@ def _solve(tau, free, inverses):
             for a, b, c in row_of(inverses, math.floor(chosen)).tolist()
         ]
     # Many numbers: elements may have different sets, so try them all.
-    found = [0.0 * tau[0]] * UNITS
+    thrusts = [0.0 * tau[0]] * UNITS
     for k in range(1, 1 << UNITS):
         rows = inverses[k].tolist()
-        found = [
+        thrusts = [
             where(chosen == k, a * tau[0] + b * tau[1] + c * tau[2], old)
-            for (a, b, c), old in zip(rows, found, strict=True)
+            for (a, b, c), old in zip(rows, thrusts, strict=True)
         ]
-    return found
+    return thrusts

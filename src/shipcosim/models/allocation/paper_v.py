@@ -170,8 +170,10 @@ def step(
     since = state.since
     if since > design.sample_time * (1.0 - _TOLERANCE):
         # Standardise the load, and scale the outputs to thrusts and angles.
-        found, memory = evaluate(design.encoder, (np.array(tau) - design.mean) / design.std, memory)
-        commands = tuple((found * design.ranges).tolist())
+        outputs, memory = evaluate(
+            design.encoder, (np.array(tau) - design.mean) / design.std, memory
+        )
+        commands = tuple((outputs * design.ranges).tolist())
         since = 0.0
     # Order of the thrusters here: port, starboard, tunnel.
     tunnel, port, port_azimuth, starboard, starboard_azimuth = commands

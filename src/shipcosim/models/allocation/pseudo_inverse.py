@@ -130,7 +130,7 @@ def inverses_of(effect: tuple, price: np.ndarray, levers: tuple, unit_of: tuple)
     As `design`.
     """
     matrix = np.stack(np.broadcast_arrays(*(_vector(*column) for column in effect)), -1)
-    found = []
+    inverses = []
     for lever in levers:
         scale = _vector(1.0, 1.0, 1.0 / lever)
         for k in range(8):
@@ -139,13 +139,13 @@ def inverses_of(effect: tuple, price: np.ndarray, levers: tuple, unit_of: tuple)
             weighted = scale[..., :, None] * matrix * (price * free)[..., None, :]
             inverse = np.linalg.pinv(weighted, rcond=1e-6)
             inverse = price[..., :, None] * inverse * scale[..., None, :]
-            found.append(
+            inverses.append(
                 tuple(
                     tuple(_float(inverse[..., row, axis]) for axis in range(3))
                     for row in range(len(unit_of))
                 )
             )
-    return tuple(found)
+    return tuple(inverses)
 
 
 def missing_units(available: tuple) -> Arithmetic:
@@ -198,14 +198,14 @@ def solved(tau: Load, free: list, missing: Arithmetic, inverses: tuple) -> list:
     if is_single(chosen):
         return [a * X + b * Y + c * N for a, b, c in row_of(inverses, math.floor(chosen))]
     # Many numbers: elements may have different sets, so try all sixteen.
-    found = [0.0 * X] * len(inverses[0])
+    forces = [0.0 * X] * len(inverses[0])
     for number, rows in enumerate(inverses):
         here = chosen == number
-        found = [
+        forces = [
             where(here, a * X + b * Y + c * N, old)
-            for (a, b, c), old in zip(rows, found, strict=True)
+            for (a, b, c), old in zip(rows, forces, strict=True)
         ]
-    return found
+    return forces
 
 
 def at_rest(tau: Load, *, parameters: AllocationParameters) -> Allocated:
@@ -335,10 +335,10 @@ def within_limits(
     def solved_once(state):
         rounds, held, free, *_ = state
         # Solve for the free units, with the load that the held ones leave.
-        found = solve(missed(tau, held, effect), free)
-        given = [clip(f, *limit) for f, limit in zip(found, limits, strict=True)]
+        wanted = solve(missed(tau, held, effect), free)
+        given = [clip(f, *limit) for f, limit in zip(wanted, limits, strict=True)]
         thrusts = [f + g for f, g in zip(held, given, strict=True)]
-        over = [abs(f - g) > tolerance for f, g in zip(found, given, strict=True)]
+        over = [abs(f - g) > tolerance for f, g in zip(wanted, given, strict=True)]
         held = [where(o, g, f) for o, g, f in zip(over, given, held, strict=True)]
         free = [where(o, 0.0, f) for o, f in zip(over, free, strict=True)]
         return rounds + 1, held, free, thrusts, functools.reduce(operator.or_, over)

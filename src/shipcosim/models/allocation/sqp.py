@@ -251,7 +251,7 @@ def power_step(
     # A missed moment counts as a missed force at the lever; shorter levers put position first.
     lever = where(whole, design.yaw_lever, design.yaw_lever_degraded)
     slacks = (design.slack, design.slack, design.slack * lever * lever)
-    found, marginal = solve(unmet, changes, slacks)
+    solution, marginal = solve(unmet, changes, slacks)
     # Second program: thrusts alone at the new angles, which removes the error of linearising.
     turned = []
     forces = []
@@ -259,23 +259,24 @@ def power_step(
     unmet = tau
     for at in around:
         # Command of this unit's thrust in the list of both kinds of changes.
-        command = changes[len(changes) - len(found)]
-        near = [*near, found[0]]
-        found = found[1:]
+        command = changes[len(changes) - len(solution)]
+        near = [*near, solution[0]]
+        solution = solution[1:]
         angle = at.azimuth
         # Apply the change of angle within the interval.
         if at.unit.kind == "turning":
-            angle = clip(angle + found[0], at.first, at.last)
-            found = found[1:]
+            angle = clip(angle + solution[0], at.first, at.last)
+            solution = solution[1:]
         # Effect at the new angle.
         effect = X, Y, N = _effect(at.unit, *sincos(angle))
         turned.append(angle)
         forces.append(command._replace(X=X, Y=Y, N=N))
         unmet = _less(unmet, effect, at.thrust)
     # Start from the first solution: it is near the second.
-    found = solve(unmet, forces, slacks, near)[0]
+    solution = solve(unmet, forces, slacks, near)[0]
     thrusts = [
-        clip(at.thrust + change, at.low, at.high) for at, change in zip(around, found, strict=True)
+        clip(at.thrust + change, at.low, at.high)
+        for at, change in zip(around, solution, strict=True)
     ]
     return _commanded(state, tau, around, thrusts, turned, forces, marginal, h, design)
 
@@ -367,7 +368,7 @@ class _Around(NamedTuple):
 
 def _around(state, available, whole, h, design, shares):
     """Units that exist, with their effects and bounds."""
-    found = []
+    bounded_units = []
     units = zip(design.units, state.thrusts, state.azimuths, available, shares, strict=True)
     for index, (unit, f, angle, on, share) in enumerate(units):
         if unit.kind == "none":
@@ -385,8 +386,8 @@ def _around(state, available, whole, h, design, shares):
             share * unit.most,
             h,
         )
-        found.append(_Around(index, unit, f, angle, _effect(unit, s, c), turning, *bounds))
-    return found
+        bounded_units.append(_Around(index, unit, f, angle, _effect(unit, s, c), turning, *bounds))
+    return bounded_units
 
 
 def _bounds(unit, f, angle, on, least, most, h):

@@ -181,11 +181,11 @@ def step(
         for turn, time in zip(moved, state.unchanged, strict=True)
     ]
     limit = p.compass_freeze_time
-    rests = zip(headings, (first, second), (second, first), strict=True)
+    neighbours = zip(headings, (first, second), (second, first), strict=True)
     usable = tuple(
         [
             where((time >= limit) & (minimum(quiet, other) < limit), 0.0, new.valid)
-            for new, time, other in rests
+            for new, time, other in neighbours
         ]
     )
     difference = wrap(headings[0].psi - headings[1].psi - state.apart)
@@ -221,11 +221,11 @@ def _passed(state, usable, memory, disagree, p):
     # With two compasses a majority cannot decide. The gyro is the third opinion: the compass
     # farther from it is out.
     apart = disagree & (first * second > 0.5)
-    one = abs(memory[0])
+    first_turn = abs(memory[0])
     two = abs(memory[1])
     return (
-        where((one > p.compass_gyro_max) | (apart & (one >= two)), 0.0, first),
-        where((two > p.compass_gyro_max) | (apart & (two > one)), 0.0, second),
+        where((first_turn > p.compass_gyro_max) | (apart & (first_turn >= two)), 0.0, first),
+        where((two > p.compass_gyro_max) | (apart & (two > first_turn)), 0.0, second),
     )
 
 

@@ -107,11 +107,11 @@ def progress(
             break
         leg += 1
     # Cross-track error in the axes of the leg, positive to starboard.
-    beside = (y - y_0) * cos(course) - (x - x_0) * sin(course)
+    cross_track = (y - y_0) * cos(course) - (x - x_0) * sin(course)
     # Length of the legs after this one. [m]
     rest = points[leg + 1 :]
     beyond = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in zip(rest, rest[1:], strict=False))
-    return Progress(leg, left + beyond, beside, course)
+    return Progress(leg, left + beyond, cross_track, course)
 
 
 def _early(points: Sequence, leg: int, course: float, u: float, yaw_rate: float) -> float:

@@ -266,8 +266,8 @@ def _off_berth(ship, fairway):
     c = cos(fairway.berth_heading)
     s = sin(fairway.berth_heading)
     ahead = ship.x * c + ship.y * s
-    beside = ship.y * c - ship.x * s
-    return ahead, -fairway.berth_side * beside, wrap(ship.psi - fairway.berth_heading)
+    off_line = ship.y * c - ship.x * s
+    return ahead, -fairway.berth_side * off_line, wrap(ship.psi - fairway.berth_heading)
 
 
 def _stage(stage, way, ship, who):
@@ -330,11 +330,11 @@ def _near(stage, ship, mood, who):
     # Speed proportional to the distance near the place, limited far from it.
     speed = min(most * mood, distance / manner.place_time) / max(distance, 1e-3)
     along = -speed * ahead
-    beside = speed * off * fairway.berth_side
+    lateral = speed * off * fairway.berth_side
     # From the axes of the berth into those of the ship.
     c = cos(turned)
     s = sin(turned)
-    return c * along + s * beside, c * beside - s * along, fairway.berth_heading
+    return c * along + s * lateral, c * lateral - s * along, fairway.berth_heading
 
 
 def _force(mind, seen, wanted, since, who):
@@ -350,8 +350,8 @@ def _force(mind, seen, wanted, since, who):
     # Trim: an integral of this force, limited, learns the mean load of wind and current.
     most = 0.3 * hand.ahead_max, 0.6 * hand.tunnel_max, 0.4 * hand.tunnel_max * hand.bow_x
     trim = tuple(
-        clip(one + more * since / manner.trim_time, -limit, limit)
-        for one, more, limit in zip(mind.trim, push, most, strict=True)
+        clip(trim + more * since / manner.trim_time, -limit, limit)
+        for trim, more, limit in zip(mind.trim, push, most, strict=True)
     )
     # Resistance at the wanted speed, quadratic.
     X = push[0] + trim[0] + hand.resistance * wanted[0] * abs(wanted[0])
@@ -416,7 +416,7 @@ def _moved(before, wanted, who):
 
 def _notch(before, wanted, scale, step):
     """Thrust of a lever in notches; its position is proportional to the root of thrust. [N]"""
-    then, now = (copysign(sqrt(abs(one) / scale), one) for one in (before, wanted))
+    then, now = (copysign(sqrt(abs(force) / scale), force) for force in (before, wanted))
     if abs(now - then) < 0.8 * step:
         return before
     notch = step * round(now / step)

@@ -144,7 +144,9 @@ def linear_loop(
     transitions = []
     # One transition per sample of the period; only the first one has a new position.
     for sample in range(period):
-        own, measured = _controller(ship, parameters, law, wave_frequency, float(sample == 0))
+        controller_matrix, measured = _controller(
+            ship, parameters, law, wave_frequency, float(sample == 0)
+        )
         # The ship and her past: the newest motion enters the queue, the others move on.
         a = np.zeros((n, n))
         a[body, body] = plant
@@ -152,7 +154,7 @@ def linear_loop(
         a[past, past] = np.eye(6 * later, k=-6)
         # Observer and law get motions of the age at which messages arrive: positions and headings
         # differ.
-        a[controller, controller] = own
+        a[controller, controller] = controller_matrix
         for i, age in enumerate((later, later, late) * 2):
             a[controller, past.start + 6 * (age - 1) + i] = measured[:, i]
         # Requested loads wait in the queue of commands, then pass the thrusters' lag of first
@@ -289,7 +291,7 @@ def _controller(ship, parameters, law, wave_frequency, new):
     scale = np.concatenate([np.full(_ESTIMATE, _SMALL), np.full(_CONTROL, 1.0), np.full(6, _SMALL)])
     scale[6:9] = 1.0
     x = np.concatenate([np.diag(scale), -np.diag(scale)], axis=1)
-    own = _ESTIMATE + _CONTROL
+    states = _ESTIMATE + _CONTROL
     measured = x[_ESTIMATE + _CONTROL :]
     zero = np.zeros(x.shape[1])
     # The frequency of the wave filter is held: it follows the sea slowly.
@@ -297,7 +299,7 @@ def _controller(ship, parameters, law, wave_frequency, new):
     estimate = StateEstimate(*x[:_ESTIMATE])._replace(
         wave_frequency=zero + wave_frequency, wave_power=zero, pace=pace
     )
-    state = ControlState(*x[_ESTIMATE:own])
+    state = ControlState(*x[_ESTIMATE:states])
     allocated = state[-3:]
     estimate = observer.step(
         estimate,
@@ -311,10 +313,10 @@ def _controller(ship, parameters, law, wave_frequency, new):
     calm = (0.0, 0.0, 0.0)
     h = parameters.sample_period
     state = pid.step(state, estimate, desired, calm, h, ship=ship, parameters=law)
-    found = np.array([*estimate[:_ESTIMATE], *state])
+    later = np.array([*estimate[:_ESTIMATE], *state])
     # Slope = (f(x + d) - f(x - d)) / 2 d.
-    slopes = (found[:, : len(scale)] - found[:, len(scale) :]) / (2.0 * scale)
-    return slopes[:, :own], slopes[:, own:]
+    slopes = (later[:, : len(scale)] - later[:, len(scale) :]) / (2.0 * scale)
+    return slopes[:, :states], slopes[:, states:]
 
 
 def responses(

@@ -314,16 +314,20 @@ def _innovation(state, fix, predicted):
 def _memory(state, fixes, innovations, rates, dt, p):
     """Movement of each reference beyond the velocity; for a new one its innovation."""
     keep = exp(-dt / p.position_memory)
-    found = []
+    memory = []
     # Displacement by the trapezoidal rule from the measured velocity.
     north = 0.5 * dt * (state.north_rate + rates[0])
     east = 0.5 * dt * (state.east_rate + rates[1])
     # Movement of the reference minus that displacement, summed with forgetting.
     for i, (new, old, fresh) in enumerate(zip(fixes, state.fixes, innovations, strict=True)):
-        known = old.valid > 0.5
-        found.append(where(known, keep * state.memory[2 * i] + new.x - old.x - north, fresh[0]))
-        found.append(where(known, keep * state.memory[2 * i + 1] + new.y - old.y - east, fresh[1]))
-    return tuple(found)
+        was_valid = old.valid > 0.5
+        memory.append(
+            where(was_valid, keep * state.memory[2 * i] + new.x - old.x - north, fresh[0])
+        )
+        memory.append(
+            where(was_valid, keep * state.memory[2 * i + 1] + new.y - old.y - east, fresh[1])
+        )
+    return tuple(memory)
 
 
 def _pairs(state, fixes, usable, dt, p):
@@ -355,13 +359,13 @@ def _near_if_any(candidates, disagree, near):
     near = [
         where(is_near, candidate, 0.0) for is_near, candidate in zip(near, candidates, strict=True)
     ]
-    found = sum(near) > 0.5
+    is_any_near = sum(near) > 0.5
     kept = []
     # A candidate stays if it is near, or agrees with one that is near. If none is near, the
     # prediction may be wrong: keep all.
-    for i, ((k, one), (n, two)) in enumerate(_PAIRS_OF):
-        beside = maximum(near[one] * (1.0 - disagree[k]), near[two] * (1.0 - disagree[n]))
-        kept.append(where(found, candidates[i] * maximum(near[i], beside), candidates[i]))
+    for i, ((k, first), (n, two)) in enumerate(_PAIRS_OF):
+        agreeing = maximum(near[first] * (1.0 - disagree[k]), near[two] * (1.0 - disagree[n]))
+        kept.append(where(is_any_near, candidates[i] * maximum(near[i], agreeing), candidates[i]))
     return tuple(kept)
 
 
@@ -386,14 +390,14 @@ def _without_worst(candidates, disagree, memory):
 
 def _agreed(state, usable, used, disagree, too_far, dt):
     """How long each reference has agreed with the used ones, else with the prediction."""
-    found = []
+    durations = []
     alone = sum(used) < 0.5
-    for i, ((k, one), (n, two)) in enumerate(_PAIRS_OF):
+    for i, ((k, first), (n, two)) in enumerate(_PAIRS_OF):
         # Against any used reference means no agreement; the time then starts anew.
-        against = disagree[k] * used[one] + disagree[n] * used[two]
+        against = disagree[k] * used[first] + disagree[n] * used[two]
         off = where(alone, too_far[i], against - 0.5)
-        found.append(where(off <= 0.0, usable[i], 0.0) * (state.agreed[i] + dt))
-    return tuple(found)
+        durations.append(where(off <= 0.0, usable[i], 0.0) * (state.agreed[i] + dt))
+    return tuple(durations)
 
 
 def believed_again(

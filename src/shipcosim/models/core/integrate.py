@@ -39,9 +39,9 @@ def substeps(h: float, longest: float) -> int:
     (1, 4)
     """
     # Recorded numbers have their own functions; the rounding margin is the same.
-    own = getattr(h, "maths", None)
-    if own is not None:
-        return own.maximum(own.whole(ceil(h / longest - _EXACT)), 1)
+    maths = getattr(h, "maths", None)
+    if maths is not None:
+        return maths.maximum(maths.whole(ceil(h / longest - _EXACT)), 1)
     return max(1, ceil(h / longest - _EXACT))
 
 

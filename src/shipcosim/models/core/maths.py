@@ -42,8 +42,8 @@ def library_of(*values: Arithmetic) -> ModuleType:
     for value in values:
         if isinstance(value, np.ndarray) and value.dtype == object and value.size:
             value = value.flat[0]
-        if (own := getattr(value, "maths", None)) is not None:
-            return own
+        if (maths := getattr(value, "maths", None)) is not None:
+            return maths
     # Only if torch is imported already can a value be a tensor.
     torch = sys.modules.get("torch")
     if torch is not None and any(isinstance(value, torch.Tensor) for value in values):
@@ -310,8 +310,8 @@ def number(x: Arithmetic) -> Arithmetic:
     """
     if isinstance(x, (bool, int, float)):
         return float(x)
-    own = getattr(x, "maths", None)
-    return x * 1.0 if own is None else own.number(x)
+    maths = getattr(x, "maths", None)
+    return x * 1.0 if maths is None else maths.number(x)
 
 
 def is_single(x: Any) -> bool:
@@ -354,9 +354,9 @@ def choose(condition: Any, then: Callable[[], Any], otherwise: Callable[[], Any]
     >>> choose(2 > 1, lambda: "larger", lambda: "smaller")
     'larger'
     """
-    own = getattr(condition, "maths", None)
-    if own is not None:
-        return own.choose(condition, then, otherwise)
+    maths = getattr(condition, "maths", None)
+    if maths is not None:
+        return maths.choose(condition, then, otherwise)
     return then() if condition else otherwise()
 
 
@@ -385,8 +385,8 @@ def repeat(going: Callable[[Any], Any], turn: Callable[[Any], Any], state: Any) 
     while True:
         condition = going(state)
         # A recorded condition must become a loop in the compiled code, at whatever turn it begins.
-        if (own := getattr(condition, "maths", None)) is not None:
-            return own.repeat(going, turn, state)
+        if (maths := getattr(condition, "maths", None)) is not None:
+            return maths.repeat(going, turn, state)
         if not condition:
             return state
         state = turn(state)
@@ -415,14 +415,14 @@ def times(count: Any, turn: Callable[[Any], Any], state: Any) -> Any:
     40
     """
     # Recorded numbers may be anywhere in the state: look at the first number of each part.
-    own = getattr(count, "maths", None)
+    maths = getattr(count, "maths", None)
     for part in state if isinstance(state, tuple) else (state,):
         while isinstance(part, tuple):
             part = part[0]
-        own = own or getattr(part, "maths", None)
+        maths = maths or getattr(part, "maths", None)
     # The count is carried along in the state of a recorded loop.
-    if own is not None:
-        return own.repeat(
+    if maths is not None:
+        return maths.repeat(
             lambda now: now[0] < count, lambda now: (now[0] + 1.0, turn(now[1])), (0.0, state)
         )[1]
     for _ in range(count if is_single(count) else int(count.max())):
@@ -454,9 +454,9 @@ def mapped(function: Callable[..., Any], *columns: Any) -> list[Any]:
     >>> mapped(lambda a, b: a + b, (1, 2, 3), (10, 20, 30))
     [11, 22, 33]
     """
-    own = library_of(*(column[0] for column in columns))
-    if hasattr(own, "mapped"):
-        return own.mapped(function, columns)
+    maths = library_of(*(column[0] for column in columns))
+    if hasattr(maths, "mapped"):
+        return maths.mapped(function, columns)
     return [function(*row) for row in zip(*columns, strict=True)]
 
 
@@ -475,8 +475,8 @@ def row_of(table: Any, index: Any) -> Any:
     like table[0]
         The row; several rows for an array of numbers. [the units of table]
     """
-    own = getattr(index, "maths", None)
-    return table[index] if own is None else own.row_of(table, index)
+    maths = getattr(index, "maths", None)
+    return table[index] if maths is None else maths.row_of(table, index)
 
 
 def _many(x):

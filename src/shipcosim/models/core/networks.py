@@ -104,7 +104,7 @@ def network_of(arrays: Mapping[str, np.ndarray], name: str) -> Network:
     layers = sum(key.startswith(f"{name}.lstm.") and key.endswith(".bias") for key in arrays)
     names = [*(f"lstm.{number}" for number in range(1, layers + 1)), "dense"]
     *lstm, last = (
-        Layer(arrays[f"{name}.{one}.weights"], arrays[f"{name}.{one}.bias"]) for one in names
+        Layer(arrays[f"{name}.{layer}.weights"], arrays[f"{name}.{layer}.bias"]) for layer in names
     )
     return Network(tuple(lstm), last)
 

@@ -208,6 +208,6 @@ def acts(value: Any, neutral: float = 0.0) -> bool:
     (False, True, False)
     """
     # Compiled code may get other values: there the recording decides.
-    if (own := getattr(value, "maths", None)) is not None:
-        return own.acts(value, neutral)
+    if (maths := getattr(value, "maths", None)) is not None:
+        return maths.acts(value, neutral)
     return not isinstance(value, (int, float)) or value != neutral

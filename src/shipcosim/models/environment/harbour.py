@@ -151,12 +151,12 @@ def local_current(
     x_mouth = x - harbour.river_x
     y_mouth = y - harbour.river_y
     ahead = x_mouth * c_river + y_mouth * s_river
-    beside = y_mouth * c_river - x_mouth * s_river
+    across = y_mouth * c_river - x_mouth * s_river
     # Plane jet: the half-width grows linearly, and the speed on the axis falls with its root
     # (momentum is constant).
     width = 1.0 + harbour.river_spread * maximum(ahead, 0.0) / harbour.river_width
     river = (
-        harbour.river_speed / sqrt(width) * exp(-((beside / (width * harbour.river_width)) ** 2))
+        harbour.river_speed / sqrt(width) * exp(-((across / (width * harbour.river_width)) ** 2))
     )
     # Between open sea and channel the tide changes with the distance; the river is added.
     return (

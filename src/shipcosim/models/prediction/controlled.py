@@ -144,8 +144,8 @@ def _start(known, around, wind, loop):
     units = loop.units
     # Feedforward of the wind, as far as the controller believes its anemometer.
     fed = [
-        known.wind_believed * one
-        for one in wind_loads(known.wind_speed, known.wind_from, wind=wind)
+        known.wind_believed * load
+        for load in wind_loads(known.wind_speed, known.wind_from, wind=wind)
     ]
     # A long step lets the allocation reach the present load, whatever its rate limits.
     rest = pseudo_inverse.at_rest(known.thrusters, parameters=units)
@@ -177,7 +177,7 @@ def _later(now, known, around, available, h, hull, wind, loop):
     # Wind load at the new state; the same functions run on board.
     load = wind_loads(*apparent_wind(psi, u, v, around.wind_north, around.wind_east), wind=wind)
     bias = _bias(now, motion, known, around, load, h, hull, loop)
-    fed = tuple(known.wind_believed * one for one in load)
+    fed = tuple(known.wind_believed * part for part in load)
     pace = observer.pace(known.wave_frequency, loop.observer.full_frequency)
     # The estimate is taken as perfect, apart from the bias.
     estimate = StateEstimate(*motion[:6], *bias, pace=pace)

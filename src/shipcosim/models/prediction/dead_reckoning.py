@@ -116,9 +116,9 @@ def at_horizons(
         steps = ceil((horizon - before) / longest_step)
         h = (horizon - before) / steps
         state = times(steps, lambda now: later(now, h), state)
-        found = motion_of(state)
+        motion = motion_of(state)
         predictions = tuple(
-            Motion(*(where(number == place, *pair) for pair in zip(found, old, strict=True)))
+            Motion(*(where(number == place, *pair) for pair in zip(motion, old, strict=True)))
             for place, old in enumerate(predictions)
         )
         return number + 1, horizon, state, predictions

@@ -114,7 +114,7 @@ def begin(aboard: Aboard, age: float) -> Own:
 
 
 def follow(
-    own: Own,
+    estimate: Own,
     before: Aboard,
     now: Aboard,
     *,
@@ -126,7 +126,7 @@ def follow(
 
     Parameters
     ----------
-    own : Own
+    estimate : Own
         A second ago.
     before, now : Aboard
         Inputs of the predictor then and now.
@@ -140,7 +140,12 @@ def follow(
     """
     # Predict one second with the load known so far.
     (foreseen,) = helm.predict(
-        before._replace(ship=own.ship), left=own.load, hull=hull, wind=wind, helm=helm_, seconds=1
+        before._replace(ship=estimate.ship),
+        left=estimate.load,
+        hull=hull,
+        wind=wind,
+        helm=helm_,
+        seconds=1,
     )
     # Compare with the measurement, moved on by its age.
     measured = helm.moved_on(now.ship, helm_.position_age)
@@ -149,26 +154,26 @@ def follow(
     # Correct position and velocity by fixed shares of the innovation.
     gains = (PLACE_GAIN,) * 3 + (VELOCITY_GAIN,) * 3
     ship = [
-        thought + gain * one for thought, gain, one in zip(foreseen, gains, missed, strict=True)
+        thought + gain * miss for thought, gain, miss in zip(foreseen, gains, missed, strict=True)
     ]
     ship[2] = wrap(ship[2])
     # A velocity error means a missing load: acceleration times mass, by a small share.
     i11, i22, _, _, i66 = hull.inverse_mass
     load = tuple(
-        load + LOAD_GAIN * one / inverse
-        for load, one, inverse in zip(own.load, missed[3:], (i11, i22, i66), strict=True)
+        load + LOAD_GAIN * miss / inverse
+        for load, miss, inverse in zip(estimate.load, missed[3:], (i11, i22, i66), strict=True)
     )
     return Own(Motion(*ship), load)
 
 
-def features(aboard: Aboard, own: Own, ahead: Motion, hull: HullParameters) -> np.ndarray:
+def features(aboard: Aboard, estimate: Own, ahead: Motion, hull: HullParameters) -> np.ndarray:
     """Inputs of the ensemble, in the ship's axes.
 
     Parameters
     ----------
     aboard : Aboard
         Inputs of the predictor now; floats or (...) arrays.
-    own : Own
+    estimate : Own
         The record.
     ahead : Motion
         The ship in 30 s by the equations of motion with the load of the record.
@@ -181,11 +186,11 @@ def features(aboard: Aboard, own: Own, ahead: Motion, hull: HullParameters) -> n
         Where the quay is now and in 30 s [1], velocities now and then [m/s, rad/s], turn [rad], load [m/s2, rad/s2],
         wind [m/s], commands and feedback of thrusters [N, rpm, rad].
     """
-    ship = own.ship
+    ship = estimate.ship
     (i11, i22, _, _, i66) = hull.inverse_mass
     # Quay now and in 30 s, velocities now and then, and the turn between: the manoeuvre that is
     # under way.
-    found = [
+    inputs = [
         *quay(ship),
         *quay(ahead),
         *ship[3:],
@@ -193,18 +198,18 @@ def features(aboard: Aboard, own: Own, ahead: Motion, hull: HullParameters) -> n
         wrap(np.asarray(ahead.psi - ship.psi)),
     ]
     # The load as an acceleration, so that it does not depend on the ship's size.
-    found += [own.load[0] * i11, own.load[1] * i22, own.load[2] * i66]
-    found += [aboard.wind_speed * cos(aboard.wind_from), aboard.wind_speed * sin(aboard.wind_from)]
+    inputs += [estimate.load[0] * i11, estimate.load[1] * i22, estimate.load[2] * i66]
+    inputs += [aboard.wind_speed * cos(aboard.wind_from), aboard.wind_speed * sin(aboard.wind_from)]
     # Commands and feedback of both azimuths as vectors: an angle alone would jump at ±180 degrees.
     for k in (0, 1):
         for size, angle in (
             (aboard.thrust_cmd[k], aboard.azimuth_cmd[k]),
             (aboard.rpm[k], aboard.azimuth[k]),
         ):
-            found += [size * cos(angle), size * sin(angle)]
-        found += [aboard.azimuth[k]]
-    found += [aboard.thrust_cmd[2], aboard.rpm[2]]
-    return np.stack(np.broadcast_arrays(*found), axis=-1)
+            inputs += [size * cos(angle), size * sin(angle)]
+        inputs += [aboard.azimuth[k]]
+    inputs += [aboard.thrust_cmd[2], aboard.rpm[2]]
+    return np.stack(np.broadcast_arrays(*inputs), axis=-1)
 
 
 def quay(ship: Motion) -> Triple:
@@ -251,12 +256,12 @@ def outputs(
     return trained.scale * np.stack(given), memory
 
 
-def standardised(found: np.ndarray, trained: Trained) -> np.ndarray:
+def standardised(inputs: np.ndarray, trained: Trained) -> np.ndarray:
     """Features standardised by mean and deviation of the training, cut at `CUT`.
 
     Parameters
     ----------
-    found : (..., n) array
+    inputs : (..., n) array
         As `features`. [their units]
     trained : Trained
         The ensemble.
@@ -266,7 +271,7 @@ def standardised(found: np.ndarray, trained: Trained) -> np.ndarray:
     (..., n) array
         [1]
     """
-    return np.clip((found - trained.mean) / trained.std, -CUT, CUT)
+    return np.clip((inputs - trained.mean) / trained.std, -CUT, CUT)
 
 
 def basis() -> np.ndarray:
@@ -317,12 +322,12 @@ def spread(given: np.ndarray) -> np.ndarray:
     return np.hypot(forward[..., -1].std(axis=0), starboard[..., -1].std(axis=0))
 
 
-def share_of(found: np.ndarray, given: np.ndarray, trained: Trained) -> Arithmetic:
+def share_of(inputs: np.ndarray, given: np.ndarray, trained: Trained) -> Arithmetic:
     """Share of the learned correction that is used.
 
     Parameters
     ----------
-    found : (..., n) array
+    inputs : (..., n) array
         As `features`. [their units]
     given : (members, ..., 3 k) array
         Outputs of the members. [m, m, rad]
@@ -335,7 +340,7 @@ def share_of(found: np.ndarray, given: np.ndarray, trained: Trained) -> Arithmet
         1 within the limits of training, 0 far outside. [1]
     """
     # Inputs outside the training range, or members that disagree, reduce the share.
-    sizes = abs((found - trained.mean) / trained.std)
+    sizes = abs((inputs - trained.mean) / trained.std)
     return trust(
         np.moveaxis(np.concatenate((sizes, np.asarray(spread(given))[..., None]), axis=-1), -1, 0),
         trained.limits,
@@ -361,13 +366,13 @@ def corrected(ship: Motion, motions: Sequence[Motion], given: np.ndarray) -> lis
     """
     # Mean of the members; the correction is in the ship's axes of now.
     forward, starboard, turn = corrections(given.mean(axis=0))
-    found = []
+    places = []
     for k, motion in enumerate(motions):
         north, east = to_ned(ship.psi, forward[..., k], starboard[..., k])
-        found.append(
+        places.append(
             (motion.x + north, motion.y + east, wrap(np.asarray(motion.psi + turn[..., k])))
         )
-    return found
+    return places
 
 
 def blended(kinetic: Sequence[Motion], learned: Sequence[tuple], share: Arithmetic) -> list[tuple]:
@@ -387,15 +392,15 @@ def blended(kinetic: Sequence[Motion], learned: Sequence[tuple], share: Arithmet
     list of tuples of three
         North, east, heading, one a second. [m, m, rad]
     """
-    found = []
+    places = []
     # Blend along the shorter arc of the heading. `where` keeps the kinetic value to the last bit.
-    for one, other in zip(kinetic, learned, strict=True):
-        away = other[0] - one.x, other[1] - one.y, wrap(np.asarray(other[2] - one.psi))
+    for motion, other in zip(kinetic, learned, strict=True):
+        away = other[0] - motion.x, other[1] - motion.y, wrap(np.asarray(other[2] - motion.psi))
         x, y, psi = (
-            where(share > 0.0, a + share * d, a) for a, d in zip(one[:3], away, strict=True)
+            where(share > 0.0, a + share * d, a) for a, d in zip(motion[:3], away, strict=True)
         )
-        found.append((x, y, where(share > 0.0, wrap(np.asarray(psi)), one.psi)))
-    return found
+        places.append((x, y, where(share > 0.0, wrap(np.asarray(psi)), motion.psi)))
+    return places
 
 
 def regions(widths: np.ndarray, errors: Vector) -> tuple[list[Arithmetic], list[Arithmetic]]:
@@ -415,10 +420,10 @@ def regions(widths: np.ndarray, errors: Vector) -> tuple[list[Arithmetic], list[
         Radii and half-widths. [m, rad]
     """
     # The widths were fitted offline; recent errors of the predictor scale them.
-    known = RegionParameters(
+    without_time = RegionParameters(
         ordinary_position_error=float(widths[6]), ordinary_heading_error=float(widths[7])
     )
-    position, heading = widening(errors, 0.0, regions=known)
-    return [position * float(one) for one in widths[:3]], [
-        heading * float(one) for one in widths[3:6]
+    position, heading = widening(errors, 0.0, regions=without_time)
+    return [position * float(width) for width in widths[:3]], [
+        heading * float(width) for width in widths[3:6]
     ]

@@ -94,8 +94,8 @@ class PaperIii(Kinetic):
     ensemble: Ensemble
 
     def predict(self, state: State, model: Model) -> tuple[list[tuple], float, State]:
-        found = paper_iii.inputs(state.aboard)
-        expected, memory = paper_iii.errors(found, state.memory, self.ensemble)
+        inputs = paper_iii.inputs(state.aboard)
+        expected, memory = paper_iii.errors(inputs, state.memory, self.ensemble)
         return (
             paper_iii.corrected(kinetic(state, model), expected),
             1.0,
@@ -118,32 +118,32 @@ class Ours(Kinetic):
     trained: Trained
 
     def begin(self, aboard: Aboard, model: Model) -> State:
-        own = docking.begin(aboard, model.helm.position_age)
-        return super().begin(aboard, model)._replace(own=own)
+        estimate = docking.begin(aboard, model.helm.position_age)
+        return super().begin(aboard, model)._replace(own=estimate)
 
     def follow(self, state: State, aboard: Aboard, model: Model) -> State:
         laws = {"hull": model.hull, "wind": model.wind, "helm_": model.helm}
-        own = docking.follow(
+        estimate = docking.follow(
             state.own or docking.begin(state.aboard, model.helm.position_age),
             state.aboard,
             aboard,
             **laws,
         )
-        return super().follow(state, aboard, model)._replace(own=own)
+        return super().follow(state, aboard, model)._replace(own=estimate)
 
     def predict(self, state: State, model: Model) -> tuple[list[tuple], float, State]:
-        own = state.own or docking.begin(state.aboard, model.helm.position_age)
+        estimate = state.own or docking.begin(state.aboard, model.helm.position_age)
         # Equations of motion with the observed load, then the ensemble's correction on top.
         motions = helm.predict(
-            state.aboard._replace(ship=own.ship), left=own.load, **model._asdict()
+            state.aboard._replace(ship=estimate.ship), left=estimate.load, **model._asdict()
         )
-        found = docking.features(state.aboard, own, motions[-1], model.hull)
+        inputs = docking.features(state.aboard, estimate, motions[-1], model.hull)
         given, memory = docking.outputs(
-            docking.standardised(found, self.trained), state.memory, self.trained
+            docking.standardised(inputs, self.trained), state.memory, self.trained
         )
         # Outside of the training the kinetic prediction takes over.
-        share = float(docking.share_of(found, given, self.trained))
-        places = docking.corrected(own.ship, motions, given)
+        share = float(docking.share_of(inputs, given, self.trained))
+        places = docking.corrected(estimate.ship, motions, given)
         if share < 1.0:
             places = docking.blended(kinetic(state, model), places, share)
         return places, share, state._replace(memory=memory)

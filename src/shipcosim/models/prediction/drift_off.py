@@ -202,41 +202,41 @@ def predict(
         "hull": hull,
         "wind": wind,
     }
-    found = _ahead(state.own, known, options)
+    motions = _ahead(state.own, known, options)
     # Trust in the filters; without a believed wind they have none.
     share = (
-        trust(measures(state.own, known, found[-1], trained.learned), trained.limits)
+        trust(measures(state.own, known, motions[-1], trained.learned), trained.limits)
         * known.wind_believed
     )
-    mixed = (own_record.mixed(state.own, one) for one in found)
+    mixed = (own_record.mixed(state.own, motion) for motion in motions)
     # The filters' predictions are averaged by their weights, then blended with the kinetic one.
     return tuple(blended(a, b, share) for a, b in zip(alone, mixed, strict=True)), share
 
 
-def _ahead(own, known, options):
+def _ahead(record, known, options):
     """Predictions of all filters; for one ship in floats, one after the other, which is faster."""
-    if own.mean.ndim > 2:
-        return own_record.predict(own, known, **options)
+    if record.mean.ndim > 2:
+        return own_record.predict(record, known, **options)
     try:
-        found = [
-            own_record.predict(own_record.member(own, k), known, **options)
-            for k in range(len(own.mean))
+        by_filter = [
+            own_record.predict(own_record.member(record, k), known, **options)
+            for k in range(len(record.mean))
         ]
     except (
         ValueError,
         IndexError,
         OverflowError,
     ):  # what is no number stops floats; in arrays it goes on as NaN
-        return own_record.predict(own, known, **options)
-    return [Motion(*np.array(motions).T) for motions in zip(*found, strict=True)]
+        return own_record.predict(record, known, **options)
+    return [Motion(*np.array(motions).T) for motions in zip(*by_filter, strict=True)]
 
 
-def measures(own: Record, known: Known, last: Motion, learned: Learned) -> np.ndarray:
+def measures(record: Record, known: Known, last: Motion, learned: Learned) -> np.ndarray:
     """How far the ship is from usual conditions: `MEASURES`.
 
     Parameters
     ----------
-    own : Record
+    record : Record
         Of the filters.
     known : Known
         Inputs of the predictor now.
@@ -251,9 +251,9 @@ def measures(own: Record, known: Known, last: Motion, learned: Learned) -> np.nd
         [units of `MEASURES`]
     """
     # Weighted mean state of the filters: current, force, moment, coefficients.
-    share = own_record.weights(own)
+    share = own_record.weights(record)
     (x, y) = last[:2]
-    states = (share[..., None] * own.mean).sum(axis=0)
+    states = (share[..., None] * record.mean).sum(axis=0)
     u_r, v_r = through_water(
         known.ship.psi, known.ship.u, known.ship.v, *np.moveaxis(states[..., CURRENT], -1, 0)
     )
@@ -262,20 +262,20 @@ def measures(own: Record, known: Known, last: Motion, learned: Learned) -> np.nd
     force = states[..., FORCE] / learned.std[..., FORCE]
     # Weighted spread of the filters' positions at the last horizon.
     apart = share * ((x - (share * x).sum(axis=0)) ** 2 + (y - (share * y).sum(axis=0)) ** 2)
-    found = [
+    numbers = [
         u_r,
         v_r,
         known.ship.r,
-        hypot(own.wind_north, own.wind_east),
+        hypot(record.wind_north, record.wind_east),
         _size(states[..., CURRENT]),
         _size(force),
     ]
-    found += [
+    numbers += [
         states[..., MOMENT] / learned.std[..., MOMENT],
         sqrt((off * off).mean(axis=-1)),
         sqrt(apart.sum(axis=0)),
     ]
-    return np.abs(np.stack(np.broadcast_arrays(*found)))
+    return np.abs(np.stack(np.broadcast_arrays(*numbers)))
 
 
 def _size(vectors):
@@ -283,12 +283,12 @@ def _size(vectors):
     return hypot(vectors[..., 0], vectors[..., 1])
 
 
-def trust(found: np.ndarray, limits: np.ndarray) -> Arithmetic:
+def trust(numbers: np.ndarray, limits: np.ndarray) -> Arithmetic:
     """Share of the learned part that is used: 1 within all limits, 0 from `OUT` of any limit.
 
     Parameters
     ----------
-    found : (9, ...) array
+    numbers : (9, ...) array
         `MEASURES`. [their units]
     limits : (9,) array
         Largest in training. [their units]
@@ -299,7 +299,7 @@ def trust(found: np.ndarray, limits: np.ndarray) -> Arithmetic:
         0 also where a measure is no number. [1]
     """
     # The worst measure decides. NaN fails the comparison and gives 0.
-    worst = (found.T / limits).T.max(axis=0)
+    worst = (numbers.T / limits).T.max(axis=0)
     return where(worst < OUT, clip((OUT - worst) / (OUT - 1.0), 0.0, 1.0), 0.0 * limits[0])
 
 

@@ -145,12 +145,12 @@ KNOWN = (
 """Inputs of a predictor of dockings, by name."""
 
 
-def aboard_of(known: Mapping[str, Arithmetic], mast: MastParameters) -> Aboard:
+def aboard_of(inputs: Mapping[str, Arithmetic], mast: MastParameters) -> Aboard:
     """Measured values aboard, from the inputs of a predictor.
 
     Parameters
     ----------
-    known : mapping of str to float or (...) array
+    inputs : mapping of str to float or (...) array
         By the names of `KNOWN`. [m, rad, m/s, N, rpm]
     mast : MastParameters
         Where the anemometer stands.
@@ -160,18 +160,18 @@ def aboard_of(known: Mapping[str, Arithmetic], mast: MastParameters) -> Aboard:
     Aboard
         [as its fields]
     """
-    ship = Motion(*(known[name] for name in KNOWN[:6]))
+    ship = Motion(*(inputs[name] for name in KNOWN[:6]))
     # The wind loads refer to 10 m above the origin, the anemometer stands elsewhere.
     wind = wind_from_mast(
-        known["wind_speed_meas"], known["wind_from_meas"], ship.u, ship.v, ship.r, mast=mast
+        inputs["wind_speed_meas"], inputs["wind_from_meas"], ship.u, ship.v, ship.r, mast=mast
     )
     return Aboard(
         ship,
         *wind,
-        (known["port_thrust_cmd"], known["starboard_thrust_cmd"], known["tunnel_thrust_cmd"]),
-        (known["port_azimuth_cmd"], known["starboard_azimuth_cmd"]),
-        (known["port_rpm"], known["starboard_rpm"], known["tunnel_rpm"]),
-        (known["port_azimuth"], known["starboard_azimuth"]),
+        (inputs["port_thrust_cmd"], inputs["starboard_thrust_cmd"], inputs["tunnel_thrust_cmd"]),
+        (inputs["port_azimuth_cmd"], inputs["starboard_azimuth_cmd"]),
+        (inputs["port_rpm"], inputs["starboard_rpm"], inputs["tunnel_rpm"]),
+        (inputs["port_azimuth"], inputs["starboard_azimuth"]),
     )
 
 
@@ -233,8 +233,8 @@ def smoothed(latest: Start, ship: Motion) -> Motion:
     """
     # Headings are averaged as deviations from the newest one, since they wrap.
     share = 1.0 / len(latest)
-    psi = wrap(ship.psi + share * sum(wrap(one[0] - ship.psi) for one in latest))
-    u, v, r = (share * sum(one[k] for one in latest) for k in (1, 2, 3))
+    psi = wrap(ship.psi + share * sum(wrap(start[0] - ship.psi) for start in latest))
+    u, v, r = (share * sum(start[k] for start in latest) for k in (1, 2, 3))
     return Motion(ship.x, ship.y, psi, u, v, r)
 
 
@@ -317,8 +317,8 @@ def _azimuth(aboard, k, y, water, helm):
     return load
 
 
-def _towards(now, told, most):
-    return now + clip(told - now, -most, most)
+def _towards(now, commanded, most):
+    return now + clip(commanded - now, -most, most)
 
 
 def predict(
@@ -362,15 +362,15 @@ def predict(
     # Hull loads depend on the velocity through the water, so it is integrated.
     u_r, v_r = through_water(psi, ship.u, ship.v, *current)
     loads = thruster_loads(aboard, (u_r, v_r), helm=helm)
-    found = []
+    motions = []
     for second in range(seconds):
         # Loads at the middle of each second: second-order accuracy with one step a second.
         rates = _rates(loads(second + 0.5), psi + 0.5 * r, current, air, left, hull, wind)
         x, y, psi, u_r, v_r, r = midpoint_motion(rates, x, y, psi, u_r, v_r, r, 1.0, *current)
         psi = wrap(psi)
         u_c, v_c = to_body(psi, *current)
-        found.append(Motion(x, y, psi, u_r + u_c, v_r + v_c, r))
-    return tuple(found)
+        motions.append(Motion(x, y, psi, u_r + u_c, v_r + v_c, r))
+    return tuple(motions)
 
 
 def _rates(thrusters, heading, current, air, left, hull, wind):

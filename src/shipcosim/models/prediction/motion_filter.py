@@ -182,7 +182,9 @@ def step(state: State, measured: Measured, h: float, *, design: FilterNumbers) -
     x = state.x + north
     y = state.y + east
     # Innovations of position and velocity in body axes; zero while GNSS is lost.
-    ahead, beside = (valid * one for one in to_body(psi, measured.x - x, measured.y - y))
+    ahead, sideways_error = (
+        valid * error for error in to_body(psi, measured.x - x, measured.y - y)
+    )
     faster = valid * (measured.u - u)
     sideways = valid * (measured.v - v)
     # Variance of the velocity innovation: mostly waves. A rough sea lowers all gains.
@@ -194,18 +196,18 @@ def step(state: State, measured: Measured, h: float, *, design: FilterNumbers) -
     north, east = to_ned(
         psi,
         k * (d.position_by_position * ahead + d.position_by_velocity * faster),
-        k * (d.position_by_position * beside + d.position_by_velocity * sideways),
+        k * (d.position_by_position * sideways_error + d.position_by_velocity * sideways),
     )
     x = x + north
     y = y + east
     k = h / (1.0 + d.velocity_in_sea * sea)
     u = u + k * (d.velocity_by_position * ahead + d.velocity_by_velocity * faster)
-    v = v + k * (d.velocity_by_position * beside + d.velocity_by_velocity * sideways)
+    v = v + k * (d.velocity_by_position * sideways_error + d.velocity_by_velocity * sideways)
     k = h / (1.0 + d.load_in_sea * sea)
     north, east = to_ned(
         psi,
         k * (d.load_by_position * ahead + d.load_by_velocity * faster),
-        k * (d.load_by_position * beside + d.load_by_velocity * sideways),
+        k * (d.load_by_position * sideways_error + d.load_by_velocity * sideways),
     )
     # Without GNSS the load fades to its mean; with GNSS the mean follows the load slowly.
     fades = (1.0 - valid) * (1.0 - exp(-h / d.load_time))

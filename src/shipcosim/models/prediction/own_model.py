@@ -145,14 +145,14 @@ def thrust_told(thrusters: Load, hull: HullParameters) -> Thrust:
     return Thrust(0.5 * (Y + turning), X, 0.5 * (Y - turning))
 
 
-def delivered(thrust: Thrust, told: Thrust, h: float, *, learned: Learned) -> Thrust:
+def delivered(thrust: Thrust, command: Thrust, h: float, *, learned: Learned) -> Thrust:
     """Thrust a step later: it follows the command; without any command the propellers run down.
 
     Parameters
     ----------
     thrust : Thrust
         Delivered now; floats, (...) arrays or tensors.
-    told : Thrust
+    command : Thrust
         Commanded thrust.
     h : float
         Step. [s]
@@ -174,7 +174,7 @@ def delivered(thrust: Thrust, told: Thrust, h: float, *, learned: Learned) -> Th
     Newton's law for a shaft with quadratic torque.
     """
     # All commands exactly zero means that power is lost.
-    lost = (abs(told.bow) + abs(told.stern_X) + abs(told.stern_Y)) == 0.0
+    lost = (abs(command.bow) + abs(command.stern_X) + abs(command.stern_Y)) == 0.0
     share = 1.0 - exp(-h / learned.lag)
     # Shaft speed is proportional to the root of thrust, 1/n grows evenly: T(t) = T0 / (1 + t/τ)², τ ∝ 1/n.
     stern = sqrt((hypot(thrust.stern_X, thrust.stern_Y) + _TINY) / HELD)
@@ -183,7 +183,7 @@ def delivered(thrust: Thrust, told: Thrust, h: float, *, learned: Learned) -> Th
     slowed_bow = 1.0 + h * bow / learned.run_down_bow
     factors = slowed_bow**-2, slowed_stern**-2, slowed_stern**-2
     # Lag of first order while there is power, run-down without.
-    values = zip(thrust, told, factors, strict=True)
+    values = zip(thrust, command, factors, strict=True)
     return Thrust(
         *[where(lost, now * factor, now + share * (then - now)) for now, then, factor in values]
     )
@@ -331,5 +331,5 @@ def moved(
     # coefficients stay.
     force = exp(-h / learned.force_time)
     moment = exp(-h / learned.moment_time)
-    faded = [force * one for one in states[FORCE]]
+    faded = [force * state for state in states[FORCE]]
     return [*place, *speeds, *states[CURRENT], *faded, moment * states[MOMENT], *coefficients]

@@ -118,7 +118,7 @@ def begin(known: Known, *, learned: Learned, hull: HullParameters) -> Record:
     mean = library.stack(_believed(known, learned, like))
     std = learned.std + like[..., None]
     covariance = (std * std)[..., None] * library.eye(len(STATES), dtype=std.dtype)
-    air = [like + one for one in air_velocity(known)]
+    air = [like + speed for speed in air_velocity(known)]
     covariance = library.stack([covariance] * len(DIRECTIONS))
     return Record(
         mean, covariance, 0.0 * mean[..., 0], thrust_told(known.thrusters, hull), *air, *air
@@ -167,7 +167,7 @@ def mixed(record: Record, motions: Motion) -> Motion:
     """
     # Headings are averaged as unit vectors, since they wrap.
     share = weights(record)
-    x, y, _, u, v, r = ((share * one).sum(0) for one in motions)
+    x, y, _, u, v, r = ((share * motion).sum(0) for motion in motions)
     psi = atan2((share * sin(motions.psi)).sum(0), (share * cos(motions.psi)).sum(0))
     return Motion(x, y, psi, u, v, r)
 
@@ -214,7 +214,7 @@ def step(
     Sorenson, Nonlinear Bayesian estimation using Gaussian sum approximations, IEEE Trans. Automatic Control 17, 1972.
     """
     library = library_of(record.mean)
-    told = thrust_told(known.thrusters, hull)
+    command = thrust_told(known.thrusters, hull)
     # A disbelieved wind is replaced by its mean.
     believed = known.wind_believed > 0.5
     air = air_velocity(known)
@@ -223,7 +223,7 @@ def step(
         for now, mean in zip(air, (record.wind_north, record.wind_east), strict=True)
     ]
     # Thrust and wind at the middle of the step, as the midpoint rule needs them.
-    thrust = delivered(record.thrust, told, h, learned=learned)
+    thrust = delivered(record.thrust, command, h, learned=learned)
     held = Thrust(*[0.5 * (a + b) for a, b in zip(record.thrust, thrust, strict=True)])
     over = 0.5 * (record.air_north + air[0]), 0.5 * (record.air_east + air[1])
     # Extended Kalman filter: predict mean and covariance, P ← F P Fᵀ + Q, then correct by the
@@ -293,16 +293,16 @@ def predict(
     single = record.mean.ndim == 1  # in Python's floats it takes a tenth of the time
     states = record.mean.tolist() if single else [record.mean[..., k] for k in range(len(STATES))]
     thrust = record.thrust
-    told = thrust_told(known.thrusters, hull)
+    command = thrust_told(known.thrusters, hull)
     air = (record.wind_north, record.wind_east)
     model = {"learned": learned, "hull": hull, "wind": wind}
-    found = []
+    motions = []
     before = 0.0
     for horizon, count in zip(horizons, steps, strict=True):
         # Equal steps up to each horizon; thrust and states advance together.
         h = (horizon - before) / count
         for _ in range(count):
-            then = delivered(thrust, told, h, learned=learned)
+            then = delivered(thrust, command, h, learned=learned)
             states = moved(
                 states,
                 air,
@@ -311,9 +311,9 @@ def predict(
                 **model,
             )
             thrust = then
-        found.append(Motion(*states[: len(MEASURED)]))
+        motions.append(Motion(*states[: len(MEASURED)]))
         before = horizon
-    return tuple(found)
+    return tuple(motions)
 
 
 def member(record: Record, index: int) -> Record:
@@ -345,9 +345,9 @@ def member(record: Record, index: int) -> Record:
 def _believed(known, learned, like):
     """Prior means of the states, for each filter."""
     library = library_of(like)
-    found = []
+    means = []
     for directions in DIRECTIONS:
-        current = [learned.current_away * one for one in directions]
+        current = [learned.current_away * direction for direction in directions]
         others = [
             *current,
             0.0,
@@ -355,8 +355,8 @@ def _believed(known, learned, like):
             0.0,
             *(learned.mean[..., k] for k in range(len(COEFFICIENTS))),
         ]
-        found.append(library.stack([like + one for one in (*known.ship, *others)], -1))
-    return found
+        means.append(library.stack([like + state for state in (*known.ship, *others)], -1))
+    return means
 
 
 def _mean(a, b):

@@ -90,7 +90,7 @@ def inputs(aboard: Aboard) -> np.ndarray:
     turn = 2.0 * pi
     # Course and speed over ground, as paper III has them.
     north, east = to_ned(ship.psi, ship.u, ship.v)
-    found = [
+    signals = [
         ship.x,
         ship.y,
         ship.psi % turn,
@@ -100,19 +100,19 @@ def inputs(aboard: Aboard) -> np.ndarray:
         aboard.wind_from % turn,
         aboard.wind_speed,
     ]
-    found += [atan2(east, north) % turn, hypot(north, east)]
-    found += [aboard.rpm[0], aboard.azimuth[0], aboard.rpm[1], aboard.azimuth[1], aboard.rpm[2]]
-    return np.stack(np.broadcast_arrays(*found), axis=-1)
+    signals += [atan2(east, north) % turn, hypot(north, east)]
+    signals += [aboard.rpm[0], aboard.azimuth[0], aboard.rpm[1], aboard.azimuth[1], aboard.rpm[2]]
+    return np.stack(np.broadcast_arrays(*signals), axis=-1)
 
 
 def errors(
-    found: np.ndarray, memory: Sequence[tuple[Memory, ...]], ensemble: Ensemble
+    signals: np.ndarray, memory: Sequence[tuple[Memory, ...]], ensemble: Ensemble
 ) -> tuple[np.ndarray, tuple[tuple[Memory, ...], ...]]:
     """Errors of the kinetic model as the ensemble expects them: the mean of its members.
 
     Parameters
     ----------
-    found : (..., 15) array
+    signals : (..., 15) array
         As `inputs`. [their units]
     memory : sequence of tuples of Memory
         Of the sample before; empty before the first one. [1]
@@ -124,7 +124,7 @@ def errors(
     (..., 2 `LONGEST`) array and tuple
         North in 1 to 30 s, then east; memory after the sample. [m; 1]
     """
-    x = (found - ensemble.mean) / ensemble.std
+    x = (signals - ensemble.mean) / ensemble.std
     # Standardise, evaluate all members, average, and scale back.
     given, memory = evaluate_members(ensemble.networks, x, memory)
     mean = sum(given) / len(given)
@@ -148,6 +148,6 @@ def corrected(motions: Sequence[Motion], expected: np.ndarray) -> list[tuple]:
     """
     # The outputs are all errors north, then all errors east.
     return [
-        (one.x + expected[..., k], one.y + expected[..., LONGEST + k], one.psi)
-        for k, one in enumerate(motions)
+        (motion.x + expected[..., k], motion.y + expected[..., LONGEST + k], motion.psi)
+        for k, motion in enumerate(motions)
     ]

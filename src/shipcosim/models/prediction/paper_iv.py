@@ -219,11 +219,11 @@ def predict(
     the networks. Wind and thrust are held.
     """
     # Start from averages over the last seconds, which removes noise and waves.
-    psi, *nu = (sum(one) / WINDOW for one in zip(*past.states, strict=True))
+    psi, *nu = (sum(rate) / WINDOW for rate in zip(*past.states, strict=True))
     x = known.ship.x
     y = known.ship.y
     residual = past.residual
-    found = []
+    motions = []
     for _ in range(seconds):
         # Acceleration by the model, then the correction by the mean of the networks.
         dot = model_acceleration(psi, tuple(nu), past.wind, past.thrusters, hull=hull, wind=wind)
@@ -241,5 +241,5 @@ def predict(
         y = y + PERIOD * east
         psi = psi + PERIOD * r
         nu = then
-        found.append(Motion(x, y, psi, *nu))
-    return found
+        motions.append(Motion(x, y, psi, *nu))
+    return motions

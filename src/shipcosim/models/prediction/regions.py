@@ -160,7 +160,7 @@ def widening(errors: Vector, lost_for: Arithmetic, *, regions: RegionParameters)
     tuple of two, like errors
         For radii and for half-widths of heading. [1]
     """
-    found = []
+    factors = []
     for error, ordinary, first, later in (
         (
             errors[0],
@@ -180,5 +180,5 @@ def widening(errors: Vector, lost_for: Arithmetic, *, regions: RegionParameters)
         grown = sqrt(1.0 + (error / ordinary) * (error / ordinary))
         # No region while thrusters act; then by the time since they were lost.
         drifting = where(lost_for > JUST_LOST, where(lost_for > LONG_LOST, later, 1.0), first)
-        found.append(grown * where(lost_for < 0.0, 0.0, drifting))
-    return found[0], found[1]
+        factors.append(grown * where(lost_for < 0.0, 0.0, drifting))
+    return factors[0], factors[1]

@@ -168,11 +168,11 @@ def features(measured: Measured, full_power: np.ndarray, full_command: np.ndarra
         By `FEATURES`. Power is that of the cubed command, so it does not tell which way a thruster pushes, nor how fast
         the water flows through it. [rad, rad, m/s, and W, units of the maps]
     """
-    found = [measured.psi, measured.wind_from, measured.wind_speed]
+    signals = [measured.psi, measured.wind_from, measured.wind_speed]
     for unit, power, most in zip(UNITS, full_power, full_command, strict=True):
         action = measured.commands[unit]
-        found += [power * abs(action / most) ** 3, action]
-    return np.stack(np.broadcast_arrays(*found), axis=-1)
+        signals += [power * abs(action / most) ** 3, action]
+    return np.stack(np.broadcast_arrays(*signals), axis=-1)
 
 
 def start(measured: Measured, *, design: VelocityNetworks) -> State:

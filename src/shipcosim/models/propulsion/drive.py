@@ -141,9 +141,9 @@ def drive_step(
     # Shaft: I 2π ṅ = Q_motor - Q_propeller - friction; integral z as in the module's docstring.
     def rates(n, integral, n_d, forward):
         thrust, load = loads(n)
-        asked, given = motor(n, integral, forward, load)
+        torque_wanted, given = motor(n, integral, forward, load)
         n_dot = (given - load - friction * n) / inertia
-        return n_dot, integral_gain * (n_d - speed(sign * thrust)) + ratio * (given - asked)
+        return n_dot, integral_gain * (n_d - speed(sign * thrust)) + ratio * (given - torque_wanted)
 
     # Sub-steps, because the shaft with its drive is faster than the step of an FMU.
     parts = substeps(h, _LONGEST_SUBSTEP)
@@ -159,8 +159,8 @@ def drive_step(
     # Outputs at the end of the step; saturated means a limit of thrust, rate or motor was active.
     reached = start + change
     thrust, load = loads(n)
-    asked, given = motor(n, integral, now[1], load)
-    at_limit = ((abs(reached - thrust_cmd) > _THRUST_TOLERANCE) | (asked != given)) & (
+    wanted_torque, given = motor(n, integral, now[1], load)
+    at_limit = ((abs(reached - thrust_cmd) > _THRUST_TOLERANCE) | (wanted_torque != given)) & (
         running > 0.0
     )
     return Thruster(n, running * integral, reached, azimuth, given, at_limit, sign * thrust)
@@ -219,13 +219,13 @@ def _motor(drive, gain, running, sign, power_limit):
     def motor(n, integral, forward, load):
         # PI law on shaft speed with feedforward of the bollard torque; the sensor may have the
         # wrong sign.
-        asked = forward - gain * (sign * n) + integral
+        torque_wanted = forward - gain * (sign * n) + integral
         # Power limit as a torque limit, Q ≤ P / (2π n); near rest only torque limits.
         most = minimum(torque_max, power / maximum(abs(n), _SLOW))
         # Speed limit: the net torque is at most k_p 2π (n_max - n), so the shaft approaches n_max
         # at the rate k_p/I.
         least = maximum(-most, load - gain * (n_max + n))
         most = minimum(most, load + gain * (n_max - n))
-        return asked, running * clip(asked, least, most)
+        return torque_wanted, running * clip(torque_wanted, least, most)
 
     return motor

@@ -142,7 +142,7 @@ def pairs(parameters: InteractionParameters) -> tuple[Pair, ...]:
     Definition; of unequal units the diameter is that of the front one (assumed).
     """
     units = list(zip(*(parameters.of_units(name) for name in ("x", "y", "diameter")), strict=True))
-    found = []
+    unit_pairs = []
     # Each unit may be in front of each other one; a unit without diameter does not exist.
     for front, (x, y, diameter) in enumerate(units):
         for behind, (other_x, other_y, other) in enumerate(units):
@@ -155,12 +155,12 @@ def pairs(parameters: InteractionParameters) -> tuple[Pair, ...]:
                     f"units {front + 1} and {behind + 1} are in the same place: x {x} m, y {y} m"
                 )
             bearing = atan2(other_y - y, other_x - x)
-            found.append(Pair(front, behind, bearing, tandem_share(distance / diameter)))
-    return tuple(found)
+            unit_pairs.append(Pair(front, behind, bearing, tandem_share(distance / diameter)))
+    return tuple(unit_pairs)
 
 
 def thrust_shares(
-    azimuths: tuple, washes: tuple, *, found: tuple[Pair, ...], loss_scale: float = 1.0
+    azimuths: tuple, washes: tuple, *, unit_pairs: tuple[Pair, ...], loss_scale: float = 1.0
 ) -> tuple[Arithmetic, ...]:
     """Share of its thrust that the slipstreams of the others leave to each unit.
 
@@ -171,7 +171,7 @@ def thrust_shares(
     washes : like azimuths
         Speeds of the slipstreams: shaft speed times diameter, negative astern. The slipstream goes opposite to the
         thrust. [m/s]
-    found : tuple of Pair
+    unit_pairs : tuple of Pair
         Made by `pairs`.
     loss_scale : float
         Factor on all losses. [1]
@@ -187,7 +187,7 @@ def thrust_shares(
     """
     shares = [1.0 + 0.0 * azimuth for azimuth in azimuths]
     # The slipstream goes opposite to the thrust. Several of them multiply.
-    for front, behind, bearing, tandem in found:
+    for front, behind, bearing, tandem in unit_pairs:
         wash = washes[front]
         towards = where(wash > 0.0, azimuths[front] + pi, azimuths[front])
         # Compare the slipstreams' speeds; the small number avoids a division by zero.

@@ -309,13 +309,13 @@ def _curves(thrust_polynomial, thrust_factors, torque_polynomial, torque_factors
 def _coefficient(of_series, degrees, factors, polynomial):
     """CT or CQ over the whole circle: factors on the series, polynomial up to its end; the end."""
     at, factor = columns(factors, 2)
-    found = of_series * np.interp(degrees, at, factor)
+    coefficient = of_series * np.interp(degrees, at, factor)
     ((end, *k),) = parse(polynomial)
     # In the first quadrant the propeller's own polynomial applies: J = 0.7 π tan β.
     first = (degrees > -0.5 * _STEP) & (degrees < end + 0.5 * _STEP)
     J = _TIP * np.tan(np.radians(degrees[first]))
     # From KT(J) to CT(β): divide by π/8 ((0.7 π)² + J²) = π/8 (0.7 π)² / cos² β.
-    found[first] = (
+    coefficient[first] = (
         np.polyval(k[::-1], J) * np.cos(np.radians(degrees[first])) ** 2 / (0.5 * _AREA * _TIP**2)
     )
-    return found, end
+    return coefficient, end

@@ -185,7 +185,7 @@ class HullParameters:
         return tuple(
             name
             for name, (_, names) in CONTRIBUTIONS.items()
-            if any(acts(getattr(self, one)) for one in names)
+            if any(acts(getattr(self, coefficient)) for coefficient in names)
         )
 
     @cached_property

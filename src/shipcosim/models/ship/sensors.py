@@ -434,7 +434,7 @@ def _fixes(channel, numbers, truth, failures, p):
     (fixes, wander, drift) = _last(channel)
     p_std = p.position_noise_std
     v_std = p.velocity_noise_std
-    found = []
+    samples = []
     # Measured = true + wander (correlated) + drift (failure) + white noise + offset (failure).
     for i, (failure, last) in enumerate(zip(failures.positions, fixes, strict=True)):
         n = 2 * i
@@ -446,21 +446,21 @@ def _fixes(channel, numbers, truth, failures, p):
             truth.u + v_std * c,
             truth.v + v_std * d,
         )
-        found.append(Fix._make(_held(failure, fresh, last)))
-    return tuple(found)
+        samples.append(Fix._make(_held(failure, fresh, last)))
+    return tuple(samples)
 
 
 def _headings(channel, numbers, truth, failures, p):
     """Sample of both compasses and the gyro; numbers: two Gauss-Markov errors, compasses, gyro."""
     (headings, _), wander, drift = _last(channel)
-    found = []
+    samples = []
     for i, (failure, last) in enumerate(zip(failures.compasses, headings, strict=True)):
         # Measured = true + wander + drift + white noise + offset, wrapped.
         fresh = wrap(
             truth.psi + wander[i] + drift[i] + p.heading_noise_std * numbers[2 + i] + failure.offset
         )
-        found.append(Heading._make(_held(failure, (fresh,), last)))
-    return tuple(found), truth.r + p.yaw_rate_noise_std * numbers[4]
+        samples.append(Heading._make(_held(failure, (fresh,), last)))
+    return tuple(samples), truth.r + p.yaw_rate_noise_std * numbers[4]
 
 
 def _wind(anemometer, numbers, failures, p):

@@ -24,10 +24,10 @@ class _OrNumPy:
         self._module = module
 
     def __getattr__(self, name: str) -> Any:
-        found = getattr(self._module, name)
-        if isinstance(found, type) or not callable(found):
-            return found
-        return lambda *values, **named: as_symbols(found(*values, **named))
+        attribute = getattr(self._module, name)
+        if isinstance(attribute, type) or not callable(attribute):
+            return attribute
+        return lambda *values, **named: as_symbols(attribute(*values, **named))
 
 
 def _each(function: Callable, *matrices: np.ndarray) -> np.ndarray:
@@ -112,10 +112,10 @@ class _Generator:
         self._drawn += [kind, int(np.prod(shape, dtype=int))]
         symbol = first_symbol(self._seeds)
         assert symbol is not None
-        found = primitive(
+        numbers = primitive(
             symbol, "random_numbers", shape, [len(self._seeds), *self._seeds, *self._drawn]
         )
-        return found if shape else found.item()
+        return numbers if shape else numbers.item()
 
 
 class _Random(_OrNumPy):
@@ -146,8 +146,8 @@ def _interpolated(x, xs, ys):
     ys = np.asarray(ys)
     # The primitive's arguments: both sizes, the points x, then the table of xs and ys.
     given = [x.size, xs.size, *x.ravel().tolist(), *xs.tolist(), *ys.tolist()]
-    found = primitive(symbol, "interpolated_in", x.shape, given)
-    return found if x.ndim else found.item()
+    numbers = primitive(symbol, "interpolated_in", x.shape, given)
+    return numbers if x.ndim else numbers.item()
 
 
 def _as_array(value, dtype=None, **_):

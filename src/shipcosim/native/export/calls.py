@@ -75,7 +75,7 @@ def procedure_of(call: Call) -> Procedure:
         ]
         for place, symbol in zip(call.changing, symbols, strict=True):
             numbers[place] = symbol
-        found: list[Any] = Flat(call.function(*made_like(call.arguments, iter(numbers)))).numbers
-        return list(enumerate(found))
+        results: list[Any] = Flat(call.function(*made_like(call.arguments, iter(numbers)))).numbers
+        return list(enumerate(results))
 
     return Procedure(recording, recording.record(run))

@@ -135,25 +135,25 @@ def _both(in_python, in_c, when, compiled, is_near) -> bool:
     done = in_c()
     # Random parameters may need a variant that was not compiled. The FMU refuses them, as it
     # should.
-    if not done and NOT_FOR_THESE in compiled.said and is_near:
+    if not done and NOT_FOR_THESE in compiled.message and is_near:
         return False
     if done == (not refused):
         return done
-    who = ("Python", "C", refused) if refused else ("C", "Python", compiled.said)
+    who = ("Python", "C", refused) if refused else ("C", "Python", compiled.message)
     raise Untraceable(f"{when} {who[0]} fails and {who[1]} does not: {who[2][:300]}")
 
 
 def _compare(cls, python, compiled, when):
-    for name, found in compiled.outputs().items():
+    for name, result in compiled.outputs().items():
         # Relative above one, absolute below: outputs near zero have no relative error.
         expected = float(getattr(python, name))
-        if abs(found - expected) > LARGEST * max(abs(expected), 1.0):
-            raise Untraceable(f"{when} {name} is {found:.12g} in C and {expected:.12g} in Python")
+        if abs(result - expected) > LARGEST * max(abs(expected), 1.0):
+            raise Untraceable(f"{when} {name} is {result:.12g} in C and {expected:.12g} in Python")
 
 
 def _near(cls, example, random) -> dict[str, Any]:
     """All parameters of an example; with a random generator, near them and within their bounds."""
-    found = {}
+    parameters = {}
     for v in cls.variables:
         if v.causality != "parameter":
             continue
@@ -167,8 +167,8 @@ def _near(cls, example, random) -> dict[str, Any]:
             and abs(value) < 1e12
         ):
             value = within_bounds(v, value * (1.0 + SPREAD * random.standard_normal()))
-        found[v.name] = value
-    return found
+        parameters[v.name] = value
+    return parameters
 
 
 def _is_lost(cls, python):
@@ -217,7 +217,7 @@ class _Compiled:
 
     def __init__(self, cls, library, guid):
         self._library = library
-        self.said = ""
+        self.message = ""
         # FMI sets and gets values by type, so group the variables by type once.
         self._of_type = {
             kind: [
@@ -233,7 +233,7 @@ class _Compiled:
             library.fmi2Instantiate(b"it", 1, guid.encode(), b"", callbacks, 0, 0)
         )
         if not self._o:
-            raise Untraceable(f"the compiled FMU cannot be instantiated: {self.said}")
+            raise Untraceable(f"the compiled FMU cannot be instantiated: {self.message}")
 
     def setup(self, time):
         number = ctypes.c_double
@@ -241,17 +241,19 @@ class _Compiled:
 
     def set(self, values):
         for kind, variables in self._of_type.items():
-            found = [(reference, values[name]) for name, reference in variables if name in values]
-            if found:
-                given = [value.encode() if kind == "String" else value for _, value in found]
+            settable = [
+                (reference, values[name]) for name, reference in variables if name in values
+            ]
+            if settable:
+                given = [value.encode() if kind == "String" else value for _, value in settable]
                 self._done(
                     getattr(self._library, f"fmi2Set{kind}")(
-                        *self._lists(kind, [r for r, _ in found], given)
+                        *self._lists(kind, [r for r, _ in settable], given)
                     )
                 )
 
     def outputs(self) -> dict[str, float]:
-        found = {}
+        numbers = {}
         for kind, variables in self._of_type.items():
             wanted = [(name, reference) for name, reference in variables if name in self._outputs]
             if wanted and kind != "String":
@@ -259,10 +261,10 @@ class _Compiled:
                     kind, [r for _, r in wanted], [0] * len(wanted)
                 )
                 self._done(getattr(self._library, f"fmi2Get{kind}")(o, references, n, values))
-                found |= {
+                numbers |= {
                     name: float(value) for (name, _), value in zip(wanted, values, strict=True)
                 }
-        return found
+        return numbers
 
     def initialise(self) -> bool:
         self._library.fmi2EnterInitializationMode(self._o)
@@ -284,10 +286,10 @@ class _Compiled:
 
     def _done(self, status):
         if status != 0:
-            raise Untraceable(f"the compiled FMU refuses what Python takes: {self.said}")
+            raise Untraceable(f"the compiled FMU refuses what Python takes: {self.message}")
 
     def _log(self, environment, name, status, category, text, words):
-        self.said = (words or b"").decode(errors="replace")
+        self.message = (words or b"").decode(errors="replace")
 
 
 _LOGGER = ctypes.CFUNCTYPE(

@@ -60,9 +60,9 @@ def build_native_fmu(
         # Record all variants and write the C text while the FMU's modules accept symbols.
         words = sys.modules[f"{bundled.package}.shipcosim.fmi.failures"].text_of
         with understood(bundled.package):
-            found = list(_variants(cls, examples))
-            variants = [variant for variant, _ in found]
-            values = [given for _, given in found]
+            recorded = list(_variants(cls, examples))
+            variants = [variant for variant, _ in recorded]
+            values = [given for _, given in recorded]
             text = source_of_model(cls, script.stem, variants, words)
         try:
             # The GUID is the hash of description and text without a GUID: the same model gives the
@@ -76,12 +76,12 @@ def build_native_fmu(
             raise error_at(f"{script}, class {cls.__name__}", str(error)) from None
         text = text.replace('#define GUID ""', f'#define GUID "{guid}"')
         # Compare on this machine before anything is written. Other targets have the same source.
-        own = compiled(text, own_target())
-        refuse_other_results(cls, own, guid, values)
+        own_binary = compiled(text, own_target())
+        refuse_other_results(cls, own_binary, guid, values)
     files["sources/all.c"] = text.encode()
     for name in targets or [own_target()]:
         path = f"binaries/{TARGETS[name].folder}/{script.stem}{TARGETS[name].suffix}"
-        files[path] = own if name == own_target() else compiled(text, name)
+        files[path] = own_binary if name == own_target() else compiled(text, name)
     return write_archive(Path(out) / f"{script.stem}.fmu", files)
 
 

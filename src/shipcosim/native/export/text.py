@@ -43,19 +43,19 @@ def source_of_model(cls: Any, identifier: str, variants: Sequence[Variant], word
     kept = []
     others = {}
     written = set()
-    found = []
+    parts_written = []
     for variant in variants:
         # Variants often record the same code, for example where a flag has no effect. Equal ones
         # are written once.
-        text, size = _functions(variant, len(found), words, others)
+        text, size = _functions(variant, len(parts_written), words, others)
         plain = (*variant.fixed.items(), _plain(text))
         if plain in written:
             continue
         written.add(plain)
-        found.append(variant)
+        parts_written.append(variant)
         functions.append(text)
         kept.append(size)
-    variants = found
+    variants = parts_written
     # The runtime checks after each step that all real outputs are finite.
     outputs = [
         str(i) for i, v in enumerate(cls.variables) if v.causality == "output" and v.type == "Real"
@@ -192,27 +192,31 @@ class ModelWriter(Writer):
 
     def _say(self, text: str) -> str:
         """Write C statements that report a text with its values."""
-        said = []
+        statements = []
         for words, how in parts(text):
             if not how:
-                said.append(f"say(o, {c_text(words)});")
+                statements.append(f"say(o, {c_text(words)});")
                 continue
-            symbol = self.recording.said[int(words)]
+            symbol = self.recording.named[int(words)]
             value = self.operand(symbol)
             # A value with a format goes to printf; integers are doubles in C, so `d` becomes `.0f`.
             if how != "r":
-                said.append(f"say_number(o, {value}, {c_text('%' + how.replace('d', '.0f'))});")
+                statements.append(
+                    f"say_number(o, {value}, {c_text('%' + how.replace('d', '.0f'))});"
+                )
             elif symbol.kind == "i":
-                said.append(f'say_number(o, {value}, "%.0f");')
+                statements.append(f'say_number(o, {value}, "%.0f");')
             else:
-                said.append(f"{'say_truth' if symbol.kind == 'b' else 'say_float'}(o, {value});")
-        return "".join(f"{one} " for one in said)
+                statements.append(
+                    f"{'say_truth' if symbol.kind == 'b' else 'say_float'}(o, {value});"
+                )
+        return "".join(f"{statement} " for statement in statements)
 
-    def _other(self, symbol, found):
-        said = f'say(o, "this native FMU was built where a number that shapes its code is "); say_float(o, {found});'
-        said += f' say(o, ", and not for "); say_float(o, {self.operand(symbol)});'
-        said += ' say(o, ": take the FMU in Python, or build it again"); o->is_for_others = 1;'
-        return f"{{ {said} return GIVEN_UP; }}"
+    def _other(self, symbol, expected):
+        message = f'say(o, "this native FMU was built where a number that shapes its code is "); say_float(o, {expected});'
+        message += f' say(o, ", and not for "); say_float(o, {self.operand(symbol)});'
+        message += ' say(o, ": take the FMU in Python, or build it again"); o->is_for_others = 1;'
+        return f"{{ {message} return GIVEN_UP; }}"
 
     def _value(self, symbol: Symbol, depth):
         if symbol.op != "primitive":
@@ -259,9 +263,9 @@ class _Procedure(ModelWriter):
 def _plain(text: str) -> str:
     """Rename the variables of a text in order: equal for functions that compute the same."""
     numbers = {
-        found: f"v{place}" for place, found in enumerate(dict.fromkeys(_VALUES.findall(text)))
+        number: f"v{place}" for place, number in enumerate(dict.fromkeys(_VALUES.findall(text)))
     }
-    return _VALUES.sub(lambda found: numbers[found[0]], text)
+    return _VALUES.sub(lambda match: numbers[match[0]], text)
 
 
 def _forget_recorder(error: Exception):

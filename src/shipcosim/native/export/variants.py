@@ -179,8 +179,8 @@ def _derived(flat: Flat, recording: Recording) -> set[int]:
 
 def _refuse_changing_choices(step: Step, flat: Flat) -> None:
     """Refuse code that relies on a number of the state which its own steps change."""
-    sources = (one for symbol in step.recording.relied_on for one in symbol.sources())
-    relied = {one.operands[0] for one in sources if one.op == "load"}
+    sources = (source for symbol in step.recording.relied_on for source in symbol.sources())
+    relied = {source.operands[0] for source in sources if source.op == "load"}
     for end in ends(step.root):
         for place, _ in end.result if isinstance(end.result, list) else ():
             if place in relied:
@@ -269,15 +269,15 @@ def _with_symbols(cls, fixed, recording: Recording):
 
 def _numbers(flat, recording):
     """The numbers of an example after its start; zero where they are unknown."""
-    found = []
+    numbers = []
     for number in flat.numbers:
         try:
-            found.append(recording.example(number))
+            numbers.append(recording.example(number))
         except (Untraceable, ArithmeticError, ValueError, RecursionError):
             # The value may depend on a loop. Zero is enough: it only answers questions for whole
             # numbers.
-            found.append(0.0)
-    return found
+            numbers.append(0.0)
+    return numbers
 
 
 def _widest(flat: Flat, root) -> Flat:

@@ -91,17 +91,17 @@ def _page(ship: CalibratedShip) -> CalibrationPage:
 def _key_figures(ship: CalibratedShip) -> tuple[KeyFigure, ...]:
     errors = errors_by_log(ship).values()
     most = max(ship.reference.numbers, key=lambda number: abs(moved(number)))
-    found = [
+    figures = [
         KeyFigure(
             signed(moved(most)),
             f"tolerances: most that a number moved, {most.name}",
         )
     ]
     if errors:
-        worst = max(errors, key=lambda one: one.position["after"][-1])
+        worst = max(errors, key=lambda log: log.position["after"][-1])
         by = "by the other logs" if worst.fitted_on else "by the first part of the log"
         after = f"position error after {worst.horizon[-1]:.2g} s"
-        found += [
+        figures += [
             KeyFigure(metres(worst.position["before"][-1]), f"{after}, as the system is"),
             KeyFigure(
                 metres(worst.position["after"][-1]),
@@ -109,7 +109,7 @@ def _key_figures(ship: CalibratedShip) -> tuple[KeyFigure, ...]:
             ),
             KeyFigure(metres(worst.position["floor"][-1]), "the same, with this log fitted too"),
         ]
-    return tuple(found)
+    return tuple(figures)
 
 
 def _moved_figure(ship: CalibratedShip) -> Figure:

@@ -29,7 +29,7 @@ def sentence(ship: CalibratedShip) -> str:
     errors = errors_by_log(ship).values()
     text = f"{len(ship.reference.numbers)} numbers of the ship are fitted to {logs}."
     if errors:
-        worst = max(errors, key=lambda one: one.position["after"][-1])
+        worst = max(errors, key=lambda log: log.position["after"][-1])
         judged = f"by the other log{'s' * (count > 2)}" if worst.fitted_on else "by its first part"
         before, after = (metres(worst.position[label][-1]) for label in ("before", "after"))
         text += (

@@ -30,7 +30,7 @@ def capability_figures(capability: Capability) -> Figures:
         _curve("worst single failure", capability.worst(), palette.VERMILLION, dash="dot"),
     )
     # Compare both methods with the same conditions and dynamic factor.
-    beside = (
+    comparison = (
         _curve("Level 1, intact", numbers[LEVEL_1][0], palette.BLUE),
         _curve("Level 1, one thruster lost", single[LEVEL_1], palette.BLUE, dash="dot"),
         _curve("simulator, intact", numbers[SIMULATOR][0], palette.PURPLE),
@@ -45,7 +45,7 @@ def capability_figures(capability: Capability) -> Figures:
     other = "The same conditions and dynamic factor; loads and thrust as the simulator has them."
     return (
         _polar("Level 1: intact, and after the worst single failure", level_1, note),
-        _polar("Level 1 beside the simulator's own models", beside, other),
+        _polar("Level 1 beside the simulator's own models", comparison, other),
         _polar(
             "Level 1 after each failure",
             each,

@@ -71,11 +71,11 @@ def page_of(capability: Capability) -> CapabilityPage:
     vessel = capability.vessel
     figures = (*plots, *loads)
     # Neutral particulars change nothing and are left out.
-    said = [
-        (file, one)
+    stated = [
+        (file, quantity)
         for file, quantities in vessel.particulars.items()
-        for one in quantities.values()
-        if one.origin != "neutral"
+        for quantity in quantities.values()
+        if quantity.origin != "neutral"
     ]
     facts = {
         "Ship": vessel.description or vessel.name,
@@ -84,7 +84,7 @@ def page_of(capability: Capability) -> CapabilityPage:
     }
     rows = [
         (file, p.description, f"{p.value} {p.unit if p.unit != '1' else ''}".strip(), p.origin)
-        for file, p in said
+        for file, p in stated
     ]
     particulars = Table(rows, ("file", "what", "value", "from"), tight=(2,))
     return CapabilityPage(
@@ -101,8 +101,8 @@ def page_of(capability: Capability) -> CapabilityPage:
         conditions=_conditions(),
         particulars=particulars,
         simulated=", ".join(map(str, capability.elements(SIMULATOR))),
-        assumed=sum("assumed" in one.origin for _, one in said),
-        total=len(said),
+        assumed=sum("assumed" in parameter.origin for _, parameter in stated),
+        total=len(stated),
     )
 
 
@@ -187,14 +187,14 @@ def _thrusters(capability: Capability) -> Table:
     rows = []
     # Effective thrust in the limiting condition: losses and ventilation by direction.
     for thruster in capability.vessel.thrusters:
-        asked = limits[thruster.name]
+        limit = limits[thruster.name]
         left = BETA_MISC * ventilation(thruster, hull, condition, DIRECTIONS) * thruster.ahead / 1e3
         ends = (plain(left.min()), plain(left.max()))
         # Directions in which a thruster must not push, since its race would hit another that works.
-        found = sectors(thruster, capability.vessel.thrusters, ())
+        narrowed = sectors(thruster, capability.vessel.thrusters, ())
         forbidden = (
             ", ".join(
-                f"{np.degrees(s.middle) % 360:.0f}° ± {np.degrees(s.half):.0f}°" for s in found
+                f"{np.degrees(s.middle) % 360:.0f}° ± {np.degrees(s.half):.0f}°" for s in narrowed
             )
             or "–"
         )
@@ -206,7 +206,7 @@ def _thrusters(capability: Capability) -> Table:
                 f"{thruster.x:g}, {thruster.y:g} m",
                 f"{plain(thruster.ahead / 1e3)} kN",
                 f"{' to '.join(dict.fromkeys(ends))} kN",
-                f"{plain(asked.ahead / 1e3)} kN",
+                f"{plain(limit.ahead / 1e3)} kN",
                 forbidden,
             )
         )

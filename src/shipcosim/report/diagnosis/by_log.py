@@ -8,7 +8,7 @@ from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 from shipcosim.diagnose.reference.log_errors import LogErrors
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.track_figures import track_figure
-from shipcosim.report.diagnosis.words import listed, title, told
+from shipcosim.report.diagnosis.words import finding_text, listed, title
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import bars
 from shipcosim.report.theme.numbers import metres, plain
@@ -37,56 +37,60 @@ def error_table(errors: Mapping[str, LogErrors], after: str = WITH_CAUSES) -> Ta
     looks = _looks(errors, after)
     head = [f"{channel}, {name}" for channel in CHANNELS for name, _ in looks.values()]
     rows = []
-    for log, one in errors.items():
-        horizons = " / ".join(f"{horizon:.2g}" for horizon in one.horizon)
+    for log, error in errors.items():
+        horizons = " / ".join(f"{horizon:.2g}" for horizon in error.horizon)
         cells = []
-        for sizes, unit in zip((one.position, one.heading), CHANNELS.values(), strict=True):
+        for sizes, unit in zip((error.position, error.heading), CHANNELS.values(), strict=True):
             for label in looks:
                 by_horizon = " / ".join(plain(value, 2) for value in sizes.get(label, ()))
                 cells.append(f"{by_horizon} {unit}".replace(" °", "°") if by_horizon else "–")
-        fitted_on = _fitted_on(one) if "after" in one.position else ""
+        fitted_on = _fitted_on(error) if "after" in error.position else ""
         rows.append((log, f"{horizons} s", *cells, fitted_on))
     return Table(rows, ("Log", "After", *head, "Numbers by"), tuple(range(2 + len(head))))
 
 
 def _looks(errors: Mapping[str, LogErrors], after: str) -> dict[str, tuple[str, str]]:
     """Name and colour of the ships that any log was predicted by."""
-    found = {label for one in errors.values() for label in one.position}
+    labels = {label for error in errors.values() for label in error.position}
     return {
         label: (name.format(after), colour)
         for label, (name, colour) in LOOKS.items()
-        if label in found
+        if label in labels
     }
 
 
-def _fitted_on(one: LogErrors) -> str:
+def _fitted_on(errors: LogErrors) -> str:
     """Logs that the ship after has her numbers from."""
-    many = len(one.fitted_on) > 2
-    text = "all other logs" if many else ", ".join(one.fitted_on) or "its first part"
-    own = listed([title(cause).lower() for cause in one.own]) if one.own else ""
-    if not own:
+    many = len(errors.fitted_on) > 2
+    text = "all other logs" if many else ", ".join(errors.fitted_on) or "its first part"
+    causes = listed([title(cause).lower() for cause in errors.own]) if errors.own else ""
+    if not causes:
         return text
-    return f"{text}; {own} by this log itself" if one.fitted_on else f"{own} by this log itself"
+    return (
+        f"{text}; {causes} by this log itself"
+        if errors.fitted_on
+        else f"{causes} by this log itself"
+    )
 
 
-def log_table(found: Diagnosis) -> Table:
+def log_table(diagnosis: Diagnosis) -> Table:
     """Rows for each log alone: verdict, faults, causes, largest discrepancy, error; empty for a single log."""
-    if not isinstance(found, JointDiagnosis):
+    if not isinstance(diagnosis, JointDiagnosis):
         return Table(())
     rows = []
-    for name, one in found.logs.items():
-        faults = [fault.sentence or told(fault) for fault in found.own_faults(name)]
-        causes = [told(finding, found.causes) for finding in one.physics]
-        first = one.discrepancies[0].what if one.discrepancies else "none"
-        said = ("; ".join(texts) or "none" for texts in (faults, causes))
-        rows.append((name, one.verdict, *said, first, error_after(one)))
+    for name, log in diagnosis.logs.items():
+        faults = [fault.sentence or finding_text(fault) for fault in diagnosis.own_faults(name)]
+        causes = [finding_text(finding, diagnosis.causes) for finding in log.physics]
+        first = log.discrepancies[0].what if log.discrepancies else "none"
+        cells = ("; ".join(texts) or "none" for texts in (faults, causes))
+        rows.append((name, log.verdict, *cells, first, error_after(log)))
     head = ("Log", "Verdict", "Faults of its own", "Causes", "Largest discrepancy", "Error")
     return Table(rows, head, (0, 5))
 
 
-def error_after(found: Diagnosis) -> str:
+def error_after(diagnosis: Diagnosis) -> str:
     """Position error of the simulation after the longest horizon."""
-    base = found.baseline
+    base = diagnosis.baseline
     if not base:
         return "not measured"
     return f"{metres(base['position_error_m'][-1])} after {base['horizon_s'][-1]:.4g} s"
@@ -96,10 +100,10 @@ def error_figures(errors: Mapping[str, LogErrors], after: str = WITH_CAUSES) -> 
     """Errors after the longest horizon by log, in position and heading; arguments as for `error_table`."""
     figures = []
     layout = {"barmode": "group", "xaxis": {"type": "category"}}
-    names = [f"{log}, {one.horizon[-1]:.2g} s" for log, one in errors.items()]
+    names = [f"{log}, {error.horizon[-1]:.2g} s" for log, error in errors.items()]
     for channel, unit in CHANNELS.items() if errors else ():
         traces = []
-        every = [getattr(one, channel.lower()) for one in errors.values()]
+        every = [getattr(error, channel.lower()) for error in errors.values()]
         for label, (name, colour) in _looks(errors, after).items():
             last = [sizes.get(label, (math.nan,))[-1] for sizes in every]
             traces.append(bars(name, names, last, colour, unit))

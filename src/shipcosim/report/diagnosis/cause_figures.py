@@ -34,12 +34,13 @@ def evidence_figure(evidence: Evidence) -> Figure:
     # The best sets, the best one on top; the chosen one in colour.
     sets = evidence.sets[:MOST_SETS][::-1]
     names = [
-        "\n+ ".join(title(cause, component) for cause, component in one.causes) for one in sets
+        "\n+ ".join(title(cause, component) for cause, component in cause_set.causes)
+        for cause_set in sets
     ]
-    colours = [palette.BLUE if one.is_chosen else palette.FAINT for one in sets]
-    bars = _bars(names, [one.gain for one in sets], colours) | {
+    colours = [palette.BLUE if cause_set.is_chosen else palette.FAINT for cause_set in sets]
+    bars = _bars(names, [cause_set.gain for cause_set in sets], colours) | {
         "hovertemplate": "%{y}: %{x:.1f} nats",
-        "text": [f"{one.gain:.1f}" for one in sets],
+        "text": [f"{cause_set.gain:.1f}" for cause_set in sets],
         "textposition": "auto",
     }
     note = (
@@ -47,7 +48,9 @@ def evidence_figure(evidence: Evidence) -> Figure:
         "times likelier. More causes have to pay for themselves. Blue is the set that the verdict rests on."
     )
     # Room for a line for each cause of a set.
-    height = 90 + (12 + 16 * max([1, *(len(one.causes) for one in sets)])) * max(len(sets), 2)
+    height = 90 + (12 + 16 * max([1, *(len(cause_set.causes) for cause_set in sets)])) * max(
+        len(sets), 2
+    )
     axes = {
         "xaxis": {"title": {"text": "nats"}, "rangemode": "tozero"},
         "yaxis": {"automargin": True},
@@ -105,30 +108,30 @@ def estimate_figure(evidence: Evidence) -> Figure:
     )
 
 
-def course_figures(found: CourseFound) -> tuple[Figure, ...]:
+def course_figures(course: CourseFound) -> tuple[Figure, ...]:
     """The size of a cause over the log, each part by itself, and the course that was found."""
-    finding = found.finding
+    finding = course.finding
     figures = []
-    for one in found.sizes:
+    for size in course.sizes:
         unit, factor = (
-            ("%", 100.0) if one.unit == "1" else shown_unit(one.unit, np.abs(one.size).max())
+            ("%", 100.0) if size.unit == "1" else shown_unit(size.unit, np.abs(size.size).max())
         )
-        marks = line("each part of the log by itself", one.time, factor * one.size, palette.BLUE)
+        marks = line("each part of the log by itself", size.time, factor * size.size, palette.BLUE)
         marks |= {
             "mode": "markers",
             "error_y": {
                 "type": "data",
-                "array": rounded(2.0 * factor * one.std, 3),
+                "array": rounded(2.0 * factor * size.std, 3),
                 "thickness": 2,
             },
         }
         # The course is drawn from nothing to the size that all rows together give.
-        neutral, full = found.neutral[one.parameter], finding.parameters[one.parameter].estimate
-        time, share = found.drawn
+        neutral, full = course.neutral[size.parameter], finding.parameters[size.parameter].estimate
+        time, share = course.drawn
         curve = factor * (neutral + (full - neutral) * share)
         figures.append(
             Figure(
-                f"{title_of(finding)}: {one.parameter.replace('_', ' ')} over time",
+                f"{title_of(finding)}: {size.parameter.replace('_', ' ')} over time",
                 unit,
                 (line(f"as found: {course_of(finding)}", time, curve, palette.VERMILLION), marks),
                 {"xaxis": TIME},

@@ -79,19 +79,19 @@ class CauseSection:
 def cause_section(diagnosis: Diagnosis, evidence: Evidence | None) -> CauseSection:
     """Section 3 of the page for the template."""
     named = {(f.cause, f.component) for f in diagnosis.findings}
-    alike = diagnosis.indistinguishable
+    rivals = diagnosis.indistinguishable
     # Candidates that are neither named nor indistinguishable.
     others = [
-        c for c in diagnosis.candidates if (c.cause, c.component) not in named and c not in alike
+        c for c in diagnosis.candidates if (c.cause, c.component) not in named and c not in rivals
     ]
     # Causes that this log could not show, and why.
     hidden = diagnosis.form.hides if diagnosis.form else ()
     silent = () if diagnosis.is_assumed else diagnosis.not_testable
     weak = not_testable_rows(silent, diagnosis.causes, diagnosis.facts, hidden)
     section = CauseSection(
-        found=_found(diagnosis),
+        found=_found_text(diagnosis),
         estimates=_estimates(diagnosis),
-        alike=_chances(alike),
+        alike=_chances(rivals),
         others=_chances(others),
         is_unknown=diagnosis.verdict == "unknown",
         sail=_sail(diagnosis),
@@ -116,7 +116,7 @@ def cause_section(diagnosis: Diagnosis, evidence: Evidence | None) -> CauseSecti
     )
 
 
-def _found(diagnosis: Diagnosis) -> str:
+def _found_text(diagnosis: Diagnosis) -> str:
     if diagnosis.is_assumed:
         return "not sought"
     names = [title_of(f) for f in diagnosis.physics]
@@ -141,9 +141,9 @@ def _estimates(diagnosis: Diagnosis) -> Table:
     rows = []
     for finding in physics:
         named = [(title_of(finding), finding, percent(finding.probability))]
-        named += [(f"{log} alone", one, "") for log, one in by_log(finding)]
-        for name, one, sure in named:
-            for parameter, value, std, unit in estimate_rows(one):
+        named += [(f"{log} alone", estimates, "") for log, estimates in by_log(finding)]
+        for name, estimated, sure in named:
+            for parameter, value, std, unit in estimate_rows(estimated):
                 rows.append((name, parameter, value, f"± {std}", unit, sure))
     head = ("Cause", "Parameter", "Estimate", "Std", "Unit", "Probability")
     return Table(rows, head, tight=(1, 2, 3, 4, 5))
@@ -154,9 +154,11 @@ def _gains(evidence: Evidence) -> Table:
     rows = []
     # Where the gain is far above chance, healthy logs were not simulated.
     for of in evidence.gains:
-        known = of.null_gain is not None
+        is_limited = of.null_gain is not None
         healthy = (
-            f"up to {plain(of.null_gain, 2)} nats" if known else "far above what healthy ships show"
+            f"up to {plain(of.null_gain, 2)} nats"
+            if is_limited
+            else "far above what healthy ships show"
         )
         rows.append((title_of(of), plain(of.gain), healthy))
     head = ("Cause", "Makes the log likelier by [nats]", "The same on healthy ships on this track")

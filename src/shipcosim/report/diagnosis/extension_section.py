@@ -44,7 +44,7 @@ def extension_section(diagnosis: Diagnosis) -> ExtensionSection:
     extension = diagnosis.extension
     # Nothing was extended: no cause of the ship was found, or the extension failed.
     if extension is None:
-        of_ship = any(one.logs != (one.component,) for one in diagnosis.physics)
+        of_ship = any(finding.logs != (finding.component,) for finding in diagnosis.physics)
         return ExtensionSection("none", "failed" if of_ship else "no cause")
     rows = tuple(
         (of.name, "–" if of.before is None else plain(of.before, 5), plain(of.after, 5), of.unit)

@@ -22,7 +22,7 @@ class FormSection:
 def form_section(form: LoadForm) -> FormSection:
     """The part on the form of loads for the template."""
     head = ("Number", "In the model", "As logged", "Std", "Unit")
-    numbers = Table([_row(one) for one in form.numbers], head, tight=(1, 2, 3, 4))
+    numbers = Table([_row(number) for number in form.numbers], head, tight=(1, 2, 3, 4))
     if not form.differs:
         return FormSection("Numbers of the ship lie beyond their tolerances.", Table(()), numbers)
     # How unusual the difference is, compared with other ships.

@@ -79,17 +79,17 @@ def gain_section(diagnosis: Diagnosis) -> GainSection:
     models = models_to_show(tuple(MODELS), diagnosis)
     if diagnosis.extension is None or gain is None:
         models = [model for model in models if not model.startswith("extended")]
-    found = "nothing to gain" if diagnosis.verdict == "consistent" else "none"
+    message = "nothing to gain" if diagnosis.verdict == "consistent" else "none"
     if gain and gain["share_of_explainable"] is not None:
-        found = f"{percent(gain['share_of_explainable'])} of the explainable error"
+        message = f"{percent(gain['share_of_explainable'])} of the explainable error"
     is_extended = "extended" in models
     if errors is None:
         logs = gain["logs"] if gain and "logs" in gain else ()
-        return GainSection(found, False, is_extended, errors=_errors(gain), logs=", ".join(logs))
+        return GainSection(message, False, is_extended, errors=_errors(gain), logs=", ".join(logs))
     # Conditions that the log has too little of to measure a gain.
-    held_out = {one.condition for one in errors.held_out}
+    held_out = {condition_errors.condition for condition_errors in errors.held_out}
     return GainSection(
-        found,
+        message,
         errors.is_simulated,
         is_extended,
         errors=_errors(gain),
@@ -148,12 +148,12 @@ def craft_table(craft: LearnedCraft | None) -> Table:
     if craft is None:
         return Table(())
     rows = []
-    for one in craft.numbers:
-        number = one.number
+    for learned_number in craft.numbers:
+        number = learned_number.number
         unit = "of the file's" if number.is_factor else number.unit
         given = "1" if number.is_factor else plain(number.given)
-        learned = f"{plain(one.value)} ± {plain(one.std, 2)} {unit}"
-        larger = one.gain - 1.0
+        learned = f"{plain(learned_number.value)} ± {plain(learned_number.std, 2)} {unit}"
+        larger = learned_number.gain - 1.0
         without = f"+ {percent(larger)}" if craft.errors and larger >= 0.005 else ""
         rows.append((capitalised(number.name), given, learned, without))
     return Table(tuple(rows), head=_LEARNED, tight=(1, 2, 3))

@@ -78,11 +78,11 @@ def track_figure(clean: Dataset) -> Figure | None:
     thin, _ = thinned(_on_log_time(clean)[["north", "east"]], MOST_ROWS["track"])
     north = thin["north"].values
     east = thin["east"].values
-    known = np.flatnonzero(np.isfinite(north) & np.isfinite(east))
-    if not known.size:
+    fixes = np.flatnonzero(np.isfinite(north) & np.isfinite(east))
+    if not fixes.size:
         return None
     # Mark start and end: the direction of the track is not visible otherwise.
-    ends = [(known[0], "start", "circle-open"), (known[-1], "end", "circle")]
+    ends = [(fixes[0], "start", "circle-open"), (fixes[-1], "end", "circle")]
     marks = [
         {
             "type": "scatter",
@@ -118,17 +118,17 @@ def _on_log_time(clean: Dataset) -> Dataset:
 def _shown(table: Dataset) -> Dataset:
     """The table in the form that `thinned` needs."""
     # Only numbers can be drawn.
-    found = table.drop_vars([n for n in table.data_vars if table[n].dtype.kind not in "fiu"])
-    for name in found.data_vars:
-        about = found[name].attrs
-        values = np.asarray(found[name].values, float)
-        found[name] = as_variable(values, about.get("units"), about.get("long_name", ""))
-    return found
+    numeric = table.drop_vars([n for n in table.data_vars if table[n].dtype.kind not in "fiu"])
+    for name in numeric.data_vars:
+        about = numeric[name].attrs
+        values = np.asarray(numeric[name].values, float)
+        numeric[name] = as_variable(values, about.get("units"), about.get("long_name", ""))
+    return numeric
 
 
 def _thrusters(names: Sequence[str], log: Dataset) -> list[tuple[str, tuple[str, ...], str]]:
     """Groups of the thrusters' channels, by quantity and size."""
-    found = []
+    groups = []
     # A main propeller and a small thruster on one axis would hide the small one.
     for suffix, title, unit in (
         ("_rpm", "Shaft speed", "rpm"),
@@ -140,8 +140,8 @@ def _thrusters(names: Sequence[str], log: Dataset) -> list[tuple[str, tuple[str,
         large = [name for name in mine if top[name] > 5.0 * min(top.values())]
         for group in ([name for name in mine if name not in large], large):
             heading = f"{title}, {group[0].removesuffix(suffix)}" if len(group) == 1 else title
-            found.append((heading, tuple(group), unit))
-    return found
+            groups.append((heading, tuple(group), unit))
+    return groups
 
 
 def _traces(raw: Dataset, used: Dataset, channel: str, colour: str, unit: str) -> list[PlotlyDict]:

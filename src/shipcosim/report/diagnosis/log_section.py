@@ -6,7 +6,7 @@ from shipcosim.diagnose.hypotheses.catalogue import read_faults
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.by_log import log_table
 from shipcosim.report.diagnosis.log_figures import log_figures, track_figure
-from shipcosim.report.diagnosis.words import title, told, where
+from shipcosim.report.diagnosis.words import finding_text, title, where
 from shipcosim.report.theme.views import Figure, Table
 
 
@@ -47,8 +47,8 @@ def log_section(diagnosis: Diagnosis) -> LogSection:
         if fault.put_right and not fault.alternatives:
             done += f"; in {', '.join(fault.put_right)} too"
         channels = ", ".join(fault.channels) or "all"
-        said = fault.sentence or told(fault)
-        rows.append((title(fault.cause), channels, where(fault), said, done))
+        sentence = fault.sentence or finding_text(fault)
+        rows.append((title(fault.cause), channels, where(fault), sentence, done))
     track = track_figure(log.repaired) if log else None
     channels = log_figures(log.measured, log.repaired, findings) if log else ()
     return LogSection(

@@ -19,12 +19,12 @@ def manoeuvre_steps(manoeuvre: Manoeuvre) -> list[tuple[str, str]]:
     list of (str, str)
     """
     # Legs of the ship, except where she drifts freely.
-    found: list[tuple[float, float, str]] = []
+    steps: list[tuple[float, float, str]] = []
     start = 0.0
     before = (0.0, 0.0, 0.0)
     for duration, *there in manoeuvre.legs:
         if not any(a <= start and start + duration <= b for a, b in manoeuvre.free):
-            found.append((start, start + duration, _leg(tuple(there), before)))
+            steps.append((start, start + duration, _leg(tuple(there), before)))
         start = start + duration
         before = tuple(there)
     # Pushes of single thrusters, with their force and direction.
@@ -37,12 +37,12 @@ def manoeuvre_steps(manoeuvre: Manoeuvre) -> list[tuple[str, str]]:
         )
         force = f"{'−' * (push.force < 0.0)}{plain(abs(push.force) / 1e3, 2)} kN"
         doing = f"{push.thruster} pushes with {force} along its axis"
-        found.append((push.start, push.end, doing + towards))
+        steps.append((push.start, push.end, doing + towards))
     # Free drift may end with the manoeuvre.
-    found += [
+    steps += [
         (a, min(b, start), "DP off, thrusters idle, the ship drifts") for a, b in manoeuvre.free
     ]
-    return [(span(a, b), doing) for a, b, doing in sorted(found, key=lambda entry: entry[:2])]
+    return [(span(a, b), doing) for a, b, doing in sorted(steps, key=lambda entry: entry[:2])]
 
 
 def _leg(there: tuple[float, ...], before: tuple[float, ...]) -> str:

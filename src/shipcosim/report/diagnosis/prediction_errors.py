@@ -101,9 +101,9 @@ def error_figures(overall: ConditionErrors, models: Sequence[str]) -> list[Figur
     return figures
 
 
-def _last(one: ConditionErrors, channel: str, model: str) -> float:
+def _last(errors: ConditionErrors, channel: str, model: str) -> float:
     """Root mean square error at the longest horizon."""
-    return float(one.rms[channel].sel(model=model).isel(horizon=-1))
+    return float(errors.rms[channel].sel(model=model).isel(horizon=-1))
 
 
 def error_table(errors: PredictionErrors, models: Sequence[str] = ("plain", "floor")) -> Table:
@@ -114,12 +114,12 @@ def error_table(errors: PredictionErrors, models: Sequence[str] = ("plain", "flo
     head = ("", "Segments", *(f"{title} [{unit}]" for title, unit in CHANNELS.values()))
     rows = []
     # All predictions together, then by what the ship did.
-    for one in (errors.overall, *errors.by_regime):
+    for condition in (errors.overall, *errors.by_regime):
         cells = [
-            " / ".join(plain(_last(one, channel, model), 2) for model in models)
+            " / ".join(plain(_last(condition, channel, model), 2) for model in models)
             for channel in CHANNELS
         ]
-        rows.append((one.condition, str(one.predictions), *cells))
+        rows.append((condition.condition, str(condition.predictions), *cells))
     return Table(rows, head, tight=tuple(range(2, 9)))
 
 
@@ -129,13 +129,13 @@ def condition_table(errors: PredictionErrors) -> Table:
     models = (f"{name} [m]" for name, _ in MODELS.values())
     head = ("Held out", "Predictions", *models, "explainable error removed")
     groups = {"the later part": errors.overall} | {
-        f"of it {one.condition}": one for one in errors.by_regime
+        f"of it {condition.condition}": condition for condition in errors.by_regime
     }
-    groups |= {HELD[one.condition]: one for one in errors.held_out}
+    groups |= {HELD[condition.condition]: condition for condition in errors.held_out}
     rows = []
-    for name, one in groups.items():
-        cells = [plain(_last(one, "position", model), 2) for model in MODELS]
-        rows.append((name, str(one.predictions), *cells, removed(one.gain)))
+    for name, group in groups.items():
+        cells = [plain(_last(group, "position", model), 2) for model in MODELS]
+        rows.append((name, str(group.predictions), *cells, removed(group.gain)))
     return Table(rows, head, tight=tuple(range(1, 8)))
 
 
@@ -155,14 +155,14 @@ def removed(entry: Mapping[str, Any] | None) -> str:
 def gain_figures(errors: PredictionErrors, models: Sequence[str]) -> list[Figure]:
     """Errors at the longest horizon with each model: by regime, and of each prediction."""
     last = errors.each.isel(horizon=-1)
-    names = [one.condition for one in errors.by_regime]
+    names = [condition.condition for condition in errors.by_regime]
     by_regime = []
     each = []
     # Mean errors by regime, and every single prediction over time.
     for model in models:
         (name, colour) = MODELS[model]
         position = last["position"].sel(model=model)
-        sizes = [_last(one, "position", model) for one in errors.by_regime]
+        sizes = [_last(condition, "position", model) for condition in errors.by_regime]
         by_regime.append(bars(name, names, sizes, colour, "m"))
         dots = {"mode": "markers", "marker": {"color": colour, "size": 5}}
         each.append(line(name, last["start_time"].values, position.values, colour, **dots))

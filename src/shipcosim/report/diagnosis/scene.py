@@ -74,9 +74,9 @@ def make_scene(
     time = tracks.measured["time"].values
     runs = [_run("measured", time, seen, size, force)]
     # Predictions one after the other: at its end each jumps to where the next one starts.
-    for name, one in tracks.predicted.items():
-        starts = one["start_time"].values[:, None] + one["time"].values
-        joined = {role: one[role].values.ravel() for role in SIGNALS}
+    for name, prediction in tracks.predicted.items():
+        starts = prediction["start_time"].values[:, None] + prediction["time"].values
+        joined = {role: prediction[role].values.ravel() for role in SIGNALS}
         runs.append(_run(name, starts.ravel(), joined, size, None))
     shown = zip(runs, COLOURS, strict=False)
     return tuple(replace(run, colour=colour) for run, colour in shown if run is not None)
@@ -85,11 +85,11 @@ def make_scene(
 def _size(system: System | None) -> dict[str, float]:
     """Length and breadth of the ship, as start values of the scene's vessel. [m]"""
     for component in system.components.values() if system else ():
-        known = {name: component.start.get(name) for name in ("length", "breadth")}
+        sizes = {name: component.start.get(name) for name in ("length", "breadth")}
         size = {
-            f"vessel.{name}": value for name, value in known.items() if isinstance(value, float)
+            f"vessel.{name}": value for name, value in sizes.items() if isinstance(value, float)
         }
-        if len(size) == len(known):
+        if len(size) == len(sizes):
             return size
     return {}
 
@@ -107,7 +107,7 @@ def _run(
         for role, (signal, unit) in SIGNALS.items()
     }
     # The force of a single row is mostly noise: means over stretches, drawn like a thruster amidships.
-    known = dict(size)
+    starts = dict(size)
     if force is not None:
         middle, edges = stretches(force.plain["time"].values, MOST_ARROWS)
         forward, starboard = (
@@ -117,6 +117,6 @@ def _run(
         signals |= {
             f"missing.{name}": ("time", values, {"units": "kN"}) for name, values in parts.items()
         }
-        known |= {"missing.x": 0.0, "missing.y": 0.0}
-    attributes = {"start_values": json.dumps(known)}
+        starts |= {"missing.x": 0.0, "missing.y": 0.0}
+    attributes = {"start_values": json.dumps(starts)}
     return make_run(Dataset(signals, {"time": time}, attributes), label=label)

@@ -48,7 +48,7 @@ def _errors(diagnosis: Diagnosis) -> list[KeyFigure]:
         )
         # The gain of a learned craft has no causes in it.
         meanings = _GAIN | ({} if diagnosis.is_named else {"after_m": _LEARNED})
-        found = [
+        figures = [
             KeyFigure(metres(gain[name]), meaning.format(gain["horizon_s"], judged))
             for name, meaning in meanings.items()
             if gain[name] is not None
@@ -56,8 +56,8 @@ def _errors(diagnosis: Diagnosis) -> list[KeyFigure]:
         if gain["share_of_explainable"] is not None:
             low, high = (f"{100 * edge:.0f}" for edge in gain["ci95"])
             meaning = f"of the explainable error removed (95 % sure: {low} to {high} %)"
-            found.append(KeyFigure(percent(gain["share_of_explainable"]), meaning))
-        return found
+            figures.append(KeyFigure(percent(gain["share_of_explainable"]), meaning))
+        return figures
     # Without a gain: the errors of the model as it was.
     if base:
         after = f"after {base['horizon_s'][-1]:.4g} s"
@@ -74,17 +74,17 @@ def summary(diagnosis: Diagnosis) -> tuple[Block, ...]:
     """What a diagnosis found, in tables and lines; of several logs also by log."""
     several = isinstance(diagnosis, JointDiagnosis)
     logs = "These logs" if several else "This log"
-    alike = [(title_of(c), percent(c.probability)) for c in diagnosis.indistinguishable]
-    found = Table(list(finding_rows(diagnosis.findings)), ("", "probability", "", "size"))
+    rivals = [(title_of(c), percent(c.probability)) for c in diagnosis.indistinguishable]
+    findings = Table(list(finding_rows(diagnosis.findings)), ("", "probability", "", "size"))
     unseen = () if diagnosis.is_assumed else diagnosis.not_testable
     silent = (", ".join(map(title, unseen)),) if unseen else ()
     visible = Table(visible_rows(diagnosis.smallest_visible, diagnosis.not_testable))
     columns = diagnosis.log.measured.attrs.get("column_remarks", ()) if diagnosis.log else ()
     return (
         Block("Differences, largest first", Table(discrepancy_rows(diagnosis))),
-        Block("Found", found),
+        Block("Found", findings),
         Block("Learned of the craft", craft_table(diagnosis.craft)),
-        Block(f"{logs} cannot tell apart", Table(alike)),
+        Block(f"{logs} cannot tell apart", Table(rivals)),
         Block("Errors", Table(key_figures(diagnosis))),
         Block("Errors by log", error_table(diagnosis.errors) if several else Table(())),
         Block("Each log by itself", log_table(diagnosis)),

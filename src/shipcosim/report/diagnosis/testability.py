@@ -71,20 +71,24 @@ def visible_rows(
     [('Thrust loss', 'port 14 %, bow 30 %')]
     """
     rows: dict[str, list[str]] = {}
-    for one in sizes:
+    for visible in sizes:
         # What only an absurd size would show is said elsewhere, as a cause that cannot be tested.
-        if one.cause in not_testable:
+        if visible.cause in not_testable:
             continue
         # A ratio as a percentage, any other number with its unit.
-        unit, factor = shown_unit(one.unit, one.size) if one.unit not in ("1", "") else ("%", 100.0)
-        size = f"{plain(factor * one.size, 2)} {unit}".replace(" °", "°").rstrip()
-        place = [one.component] if one.component else []
+        unit, factor = (
+            shown_unit(visible.unit, visible.size)
+            if visible.unit not in ("1", "")
+            else ("%", 100.0)
+        )
+        size = f"{plain(factor * visible.size, 2)} {unit}".replace(" °", "°").rstrip()
+        place = [visible.component] if visible.component else []
         # The parameter's name only where the cause has several.
         several = sum(
-            other.cause == one.cause and other.component == one.component for other in sizes
+            other.cause == visible.cause and other.component == visible.component for other in sizes
         )
-        name = [one.parameter.replace("_", " ")] if one.parameter and several > 1 else []
-        rows.setdefault(title(one.cause), []).append(" ".join([*place, *name, size]))
+        name = [visible.parameter.replace("_", " ")] if visible.parameter and several > 1 else []
+        rows.setdefault(title(visible.cause), []).append(" ".join([*place, *name, size]))
     return [(cause, ", ".join(texts)) for cause, texts in rows.items()]
 
 

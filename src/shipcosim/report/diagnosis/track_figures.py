@@ -26,8 +26,10 @@ def track_figure(tracks: Tracks) -> Figure:
     traces = [
         line("measured", seen["east"].values, seen["north"].values, palette.MEASURED, width=4.0)
     ]
-    for (name, one), colour in zip(tracks.predicted.items(), COLOURS, strict=False):
-        traces.append(line(name, joined(one, "east"), joined(one, "north"), colour, width=1.3))
+    for (name, prediction), colour in zip(tracks.predicted.items(), COLOURS, strict=False):
+        traces.append(
+            line(name, joined(prediction, "east"), joined(prediction, "north"), colour, width=1.3)
+        )
     layout = {
         "xaxis": {"title": {"text": "East"}},
         "yaxis": {"title": {"text": "North"}, "scaleanchor": "x"},
@@ -48,17 +50,17 @@ def over_time_figures(tracks: Tracks) -> list[Figure]:
 def _over_time(tracks: Tracks, role: str, title: str, unit: str) -> Figure:
     seen = tracks.measured
     traces = [line("measured", seen["time"].values, seen[role].values, palette.MEASURED, width=3.0)]
-    for (name, one), colour in zip(tracks.predicted.items(), COLOURS, strict=False):
+    for (name, prediction), colour in zip(tracks.predicted.items(), COLOURS, strict=False):
         # Absolute times of each prediction, with a gap between two predictions.
-        time = one["start_time"].values[:, None] + one["time"].values
+        time = prediction["start_time"].values[:, None] + prediction["time"].values
         times = np.hstack([time, np.full((len(time), 1), np.nan)]).ravel()
-        traces.append(line(name, times, joined(one, role), colour, width=1.2))
+        traces.append(line(name, times, joined(prediction, role), colour, width=1.2))
     return Figure(title, unit, tuple(traces), {"xaxis": TIME})
 
 
-def joined(one: Dataset, role: str) -> NDArray:
+def joined(prediction: Dataset, role: str) -> NDArray:
     """A channel of all predictions in sequence, with gaps between them."""
-    values = one[role].values
+    values = prediction[role].values
     return np.hstack([values, np.full((len(values), 1), np.nan)]).ravel()
 
 

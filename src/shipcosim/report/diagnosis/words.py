@@ -34,12 +34,12 @@ def title(cause: str, component: str | None = None) -> str:
     return capitalised(text) + (f" of {component}" if component else "")
 
 
-def title_of(one: Finding | Candidate | SizeEstimate | CauseGain) -> str:
+def title_of(cause: Finding | Candidate | SizeEstimate | CauseGain) -> str:
     """Name of a cause at its place for readers."""
-    return title(one.cause, one.component)
+    return title(cause.cause, cause.component)
 
 
-def told(finding: Finding, causes: Mapping[str, Cause] | None = None) -> str:
+def finding_text(finding: Finding, causes: Mapping[str, Cause] | None = None) -> str:
     """Describe a finding as a clause with its numbers.
 
     Parameters
@@ -56,7 +56,7 @@ def told(finding: Finding, causes: Mapping[str, Cause] | None = None) -> str:
     if finding.cause in read_faults():
         return _fault(finding)
     if finding.logs == (finding.component,):
-        weather = told(replace(finding, component=None, logs=()), causes)
+        weather = finding_text(replace(finding, component=None, logs=()), causes)
         return f"{weather} (on the day of {finding.component})"
     cause = (read_catalogue() if causes is None else causes).get(finding.cause)
     # Since when, and what it was at the reference.
@@ -119,7 +119,7 @@ def outcome(diagnosis: Diagnosis) -> Outcome:
 def facts_of(diagnosis: Diagnosis) -> tuple[Fact, ...]:
     """System, and length of the log; of several logs their names and what they have in all."""
     if isinstance(diagnosis, JointDiagnosis):
-        bases = [one.basis for one in diagnosis.logs.values()]
+        bases = [log.basis for log in diagnosis.logs.values()]
         logs = [basis.explained.identification.log for basis in bases if basis]
         names = f"{', '.join(diagnosis.logs)}; "
     else:
@@ -135,8 +135,8 @@ def facts_of(diagnosis: Diagnosis) -> tuple[Fact, ...]:
 def _sentence(diagnosis: Diagnosis) -> str:
     """The verdict, with what it rests on."""
     # Faults of the log and causes in the physics are kept apart.
-    data = [told(f) for f in diagnosis.findings if f.kind == "data" and not f.alternatives]
-    physics = [told(f, diagnosis.causes or None) for f in diagnosis.physics]
+    data = [finding_text(f) for f in diagnosis.findings if f.kind == "data" and not f.alternatives]
+    physics = [finding_text(f, diagnosis.causes or None) for f in diagnosis.physics]
     several = isinstance(diagnosis, JointDiagnosis)
     faulty = "logs are faulty alike" if several else "log itself is faulty"
     log = f" The {faulty}: {listed(data)}." if data else ""
@@ -206,11 +206,11 @@ def _form(form: LoadForm) -> str:
             f"most of all {name}, by {percent(share)}."
         )
     else:
-        one = form.numbers[0]
-        size = plus_minus(ParameterEstimate(one.estimate, one.std, one.unit))
+        number = form.numbers[0]
+        size = plus_minus(ParameterEstimate(number.estimate, number.std, number.unit))
         text = (
-            f"No cause is found, but numbers of the ship are beyond their tolerances: {one.number} is "
-            f"{plain(one.model)} {one.unit} in the system, and {size} by the log."
+            f"No cause is found, but numbers of the ship are beyond their tolerances: {number.number} is "
+            f"{plain(number.model)} {number.unit} in the system, and {size} by the log."
         )
     if form.before_m is not None and form.after_m is not None:
         text += (
@@ -235,32 +235,32 @@ def _better_predictor(diagnosis: Diagnosis) -> str:
         "The model as it was": gain["before_m"],
         "The model as it was with a bias observer": gain["bias_observer_m"],
     }
-    known = {name: error for name, error in others.items() if error is not None}
-    best = min(known, key=lambda name: known[name])
-    if known[best] >= gain["after_m"]:
+    errors = {name: error for name, error in others.items() if error is not None}
+    best = min(errors, key=lambda name: errors[name])
+    if errors[best] >= gain["after_m"]:
         return ""
     return (
-        f" {best} predicts better than with the cause in it: {metres(known[best])} against "
+        f" {best} predicts better than with the cause in it: {metres(errors[best])} against "
         f"{metres(gain['after_m'])} after {gain['horizon_s']:g} s."
     )
 
 
 def _unknown(diagnosis: Diagnosis, physics: Sequence[str]) -> str:
     """What is certain without a named cause: why none was tried, the largest discrepancy and sure findings."""
-    said = f" Certain is: {listed(physics)}." if physics else ""
+    message = f" Certain is: {listed(physics)}." if physics else ""
     largest = [d.what for d in diagnosis.discrepancies[:1]]
     if diagnosis.obstacles:
         # What differs may be what the log lacks: nothing is known to be wrong.
         differs = "".join(f" Simulation and log differ most in this: {what}." for what in largest)
-        return f"No cause was tried. {diagnosis.obstacles[0]}{differs}{said}"
+        return f"No cause was tried. {diagnosis.obstacles[0]}{differs}{message}"
     wrong = [f" The simulation is wrong, first of all: {what}." for what in largest]
-    likely = [one for one in diagnosis.candidates if one.probability >= LIKELY]
+    likely = [candidate for candidate in diagnosis.candidates if candidate.probability >= LIKELY]
     if likely:
-        names = [title_of(one).lower() for one in likely]
-        said += f" Of the known ones {listed(names)} explain{'s' * (len(names) == 1)} most."
+        names = [title_of(candidate).lower() for candidate in likely]
+        message += f" Of the known ones {listed(names)} explain{'s' * (len(names) == 1)} most."
     if not wrong:
-        return f"The simulation is wrong by more than noise, and none of the known causes explains it.{said}"
-    return f"{wrong[0].strip()} None of the known causes explains all of it.{said}"
+        return f"The simulation is wrong by more than noise, and none of the known causes explains it.{message}"
+    return f"{wrong[0].strip()} None of the known causes explains all of it.{message}"
 
 
 def craft_sentence(craft: LearnedCraft | None) -> str:
@@ -280,10 +280,16 @@ def craft_sentence(craft: LearnedCraft | None) -> str:
 def discrepancy_rows(diagnosis: Diagnosis) -> list[tuple[str, ...]]:
     """Discrepancies, largest first: in words, size, share of the error, and of several logs those that show it."""
     rows = []
-    for one in diagnosis.discrepancies:
-        size = plus_minus(ParameterEstimate(one.estimate, one.std, one.unit)) if one.std else ""
-        logs = (", ".join(one.logs),) if one.logs else ()
-        rows.append((one.what, size, percent(one.share) if one.share else "", *logs))
+    for discrepancy in diagnosis.discrepancies:
+        size = (
+            plus_minus(ParameterEstimate(discrepancy.estimate, discrepancy.std, discrepancy.unit))
+            if discrepancy.std
+            else ""
+        )
+        logs = (", ".join(discrepancy.logs),) if discrepancy.logs else ()
+        rows.append(
+            (discrepancy.what, size, percent(discrepancy.share) if discrepancy.share else "", *logs)
+        )
     return rows
 
 
@@ -324,9 +330,9 @@ def next_steps(diagnosis: Diagnosis, extended: str | None = None) -> list[str]:
             f"Correct the logging where it is wrong ({where}); this diagnosis used a repaired copy."
         )
     several = isinstance(diagnosis, JointDiagnosis)
-    own = [name for name in diagnosis.logs if diagnosis.own_faults(name)] if several else []
-    if own:
-        steps.append(f"Look at the faults of single logs: {', '.join(own)}.")
+    faulty = [name for name in diagnosis.logs if diagnosis.own_faults(name)] if several else []
+    if faulty:
+        steps.append(f"Look at the faults of single logs: {', '.join(faulty)}.")
     # Steps that the causes' files recommend.
     causes = diagnosis.causes or read_catalogue()
     wanted = [
@@ -375,8 +381,8 @@ def next_steps(diagnosis: Diagnosis, extended: str | None = None) -> list[str]:
 def predicted_better(diagnosis: Diagnosis) -> tuple[int, int]:
     """How many logs are predicted better with the causes that others sized, after the longest horizon; of how many."""
     errors = diagnosis.errors.values() if isinstance(diagnosis, JointDiagnosis) else ()
-    judged = [one.position for one in errors if "after" in one.position]
-    return sum(one["after"][-1] < one["before"][-1] for one in judged), len(judged)
+    judged = [error.position for error in errors if "after" in error.position]
+    return sum(errors["after"][-1] < errors["before"][-1] for errors in judged), len(judged)
 
 
 def _manoeuvre_step(prescription: ExperimentDesign | None) -> str:
@@ -443,8 +449,8 @@ def finding_rows(findings: Iterable[Finding]) -> Iterator[tuple[str, ...]]:
 def by_log(finding: Finding) -> list[tuple[str, Finding]]:
     """A cause that several logs have in common, with its sizes by each of them alone."""
     return [
-        (log, replace(finding, parameters=own, at_reference={}))
-        for log, own in finding.by_log.items()
+        (log, replace(finding, parameters=parameters, at_reference={}))
+        for log, parameters in finding.by_log.items()
     ]
 
 

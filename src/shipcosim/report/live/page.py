@@ -67,8 +67,8 @@ def render_live(
         written = written.model_copy(update={"system": plan.system.name})
     run = make_run(table, goes_on=True)
     if run is None:
-        found = "Nothing in it has a position and a heading, so there is no ship to show."
-        raise error_at(plan.system.name, found, "Run it with `shipcosim run`.")
+        message = "Nothing in it has a position and a heading, so there is no ship to show."
+        raise error_at(plan.system.name, message, "Run it with `shipcosim run`.")
     page = LivePage(
         title=written.description or f"Simulation of {plan.system.name}",
         facts=_facts(written),
@@ -99,18 +99,18 @@ def _growing(run: Run, plan: Plan) -> JsonObject:
     scene = vars(run) | {"time": [], "columns": {}}
     outputs = {label(end) for end in plan.layouts["Real"].outputs}
     predicted = []
-    for one in run.predicted:
-        tracks: JsonObject = {key: one[key] for key in ("name", "horizons")}
+    for predictor in run.predicted:
+        tracks: JsonObject = {key: predictor[key] for key in ("name", "horizons")}
         for part, connector in PREDICTED.items():
             tracks[part] = []
-            for horizon in one["horizons"]:
-                signal = f"{one['name']}.{connector}_{horizon}"
+            for horizon in predictor["horizons"]:
+                signal = f"{predictor['name']}.{connector}_{horizon}"
                 column = f"{signal} {part}"
                 if signal in outputs:
                     factor = degrees(1.0) if part == "heading" else 1.0
                     run.recipes[column] = Recipe(signal, factor)
                 tracks[part].append(column if signal in outputs else None)
-        made = f"{one['name']}.predicted_at"
+        made = f"{predictor['name']}.predicted_at"
         run.recipes[made] = Recipe(made)
         predicted.append(tracks | {"made": made})
     return scene | {
@@ -159,15 +159,15 @@ def _signals(plan: Plan) -> Iterator[tuple[str, JsonObject]]:
                 # An input that a connection feeds follows it; the others are the user's.
                 free = side == 1 and end not in fed
                 start = plan.system.components[end[0] or ""].start_value(end[1])
-                found = {"x": number, "side": side, "row": row, "free": free, "start": start}
-                yield label(end), about | found
+                place = {"x": number, "side": side, "row": row, "free": free, "start": start}
+                yield label(end), about | place
         first = len(layout.outputs)
         for row, (end, start) in enumerate(layout.external.items(), start=first):
             if end[0] is None:
                 signal = plan.system.inputs[end[1]]
                 about = {"kind": kind, "unit": signal.unit or "", "text": signal.description or ""}
-                found = {"x": number, "side": 2, "row": row, "free": True, "start": start}
-                yield label(end), about | found
+                place = {"x": number, "side": 2, "row": row, "free": True, "start": start}
+                yield label(end), about | place
 
 
 def _about(variable: Variable, kind: str) -> dict[str, Any]:

@@ -17,18 +17,18 @@ from shipcosim.report.theme.views import Block
 COLOURS = (palette.ORANGE, palette.BLUE, palette.GREEN)
 
 
-def diagnosis_card(found: Diagnosis) -> Card:
+def diagnosis_card(diagnosis: Diagnosis) -> Card:
     """Verdict, summary, what to do next, and the track."""
-    name = f"Diagnosis of {found.name}"
-    steps = next_steps(found)
-    if found.extended is not None:
+    name = f"Diagnosis of {diagnosis.name}"
+    steps = next_steps(diagnosis)
+    if diagnosis.extended is not None:
         steps = [*steps, "Simulate the system with the cause in it: `.extended`."]
     return Card(
         title=name,
-        facts=facts_of(found),
-        outcome=outcome(found),
-        blocks=(*summary(found), Block("What to do next", lines=tuple(steps))),
-        draw=None if (tracks := found.tracks) is None else lambda: tracks_svg(tracks, name),
+        facts=facts_of(diagnosis),
+        outcome=outcome(diagnosis),
+        blocks=(*summary(diagnosis), Block("What to do next", lines=tuple(steps))),
+        draw=None if (tracks := diagnosis.tracks) is None else lambda: tracks_svg(tracks, name),
     )
 
 
@@ -36,8 +36,8 @@ def tracks_svg(tracks: Tracks, name: str) -> str:
     """A log and predictions of it on one chart, as SVG."""
     seen = tracks.measured
     paths = [Path("measured", seen["north"].values, seen["east"].values, colour=palette.FAINT)]
-    for (label, one), colour in zip(tracks.predicted.items(), COLOURS, strict=False):
-        north, east = (np.asarray(joined(one, role)) for role in ("north", "east"))
+    for (label, prediction), colour in zip(tracks.predicted.items(), COLOURS, strict=False):
+        north, east = (np.asarray(joined(prediction, role)) for role in ("north", "east"))
         paths.append(
             Path(f"{label}, every {tracks.horizon:.0f} s anew", north, east, colour=colour)
         )

@@ -190,12 +190,12 @@ def _draw_outlines(axes: Axes, path: Path, size: tuple[float, float] | None) -> 
     """The ship on her way; her start dashed, her end filled."""
     if path.psi is None:
         return
-    known = np.isfinite(path.x) & np.isfinite(path.y) & np.isfinite(path.psi)
-    if not known.any():
+    is_known = np.isfinite(path.x) & np.isfinite(path.y) & np.isfinite(path.psi)
+    if not is_known.any():
         return
-    x = path.x[known]
-    y = path.y[known]
-    psi = path.psi[known]
+    x = path.x[is_known]
+    y = path.y[is_known]
+    psi = path.psi[is_known]
     length, breadth = size or symbol_size(x, y)
     hull = hull_outline(length, breadth)
     rows = outline_rows(x, y, psi, length)

@@ -39,13 +39,13 @@ def log_card(
     span = f"{len(time)} rows, {plain(float(np.nanmin(time)))} to {plain(float(np.nanmax(time)))} s"
     steps = np.diff(finite(time))
     facts = (Fact("Rows", span), Fact("Usual step", f"{plain(float(np.median(steps)))} s"))
-    found = tuple((title_of(one), where(one), one.sentence) for one in faults)
+    rows = tuple((title_of(fault), where(fault), fault.sentence) for fault in faults)
     return Card(
         title=name,
         facts=facts,
         outcome=_outcome(faults),
         blocks=(
-            Block("Faults", Table(found)),
+            Block("Faults", Table(rows)),
             Block("Channels", Table(_channels(table), ("", "unit", "least", "largest", "missing"))),
             Block("Remarks", lines=tuple(remarks)),
         ),
@@ -69,9 +69,13 @@ def _channels(table: Dataset) -> tuple[tuple[str, ...], ...]:
     rows = []
     for name, variable in table.data_vars.items():
         values = np.asarray(variable.values, float)
-        known = finite(values)
-        ends = (plain(float(known.min())), plain(float(known.max()))) if len(known) else ("–", "–")
-        lost = 1.0 - len(known) / max(len(values), 1)
+        numbers = finite(values)
+        ends = (
+            (plain(float(numbers.min())), plain(float(numbers.max())))
+            if len(numbers)
+            else ("–", "–")
+        )
+        lost = 1.0 - len(numbers) / max(len(values), 1)
         rows.append(
             (
                 str(name),

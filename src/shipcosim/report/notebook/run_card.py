@@ -29,19 +29,22 @@ def run_card(
     verdicts : sequence of Verdict
         On what was expected within the run.
     """
-    found = digest(table, verdicts)
-    rows = tuple(("holds" if one.passed else "FAILS", *one[1:]) for one in found.expectations)
+    summary = digest(table, verdicts)
+    rows = tuple(
+        ("holds" if expectation.passed else "FAILS", *expectation[1:])
+        for expectation in summary.expectations
+    )
     name = scenario.name or system.name
     changed = ", ".join(parsed(table.attrs.get("changed", "[]")))
     return Card(
         title=name
         + (f": {scenario.description}" if scenario.description and scenario.name else ""),
         facts=_facts(table, scenario, system),
-        outcome=found.outcome,
+        outcome=summary.outcome,
         blocks=(
             Block("Expected", Table(rows, ("", "", "during", "worst", "at"))),
             Block("Changed for this run", lines=(changed,) if changed else ()),
-            Block("Remarks", lines=tuple(found.remarks)),
+            Block("Remarks", lines=tuple(summary.remarks)),
             Block("Signals, by component", Table(_signals(table)), folded=True),
         ),
         draw=lambda: run_track(table, verdicts, f"track of {name}") or "",

@@ -22,34 +22,38 @@ from shipcosim.report.theme.views import Block, Fact, Outcome, Table
 MOST_ROWS = 12
 
 
-def comparison_card(found: Comparison, name: str) -> Card:
+def comparison_card(comparison: Comparison, name: str) -> Card:
     """Which engines ran, and the signals that differ most."""
-    others = [engine for engine in found.seconds if engine != OURS]
-    table = comparison_table(found)
+    others = [engine for engine in comparison.seconds if engine != OURS]
+    table = comparison_table(comparison)
     rows = table.rows[:MOST_ROWS]
-    said = tuple(f"{engine}: {why}" for engine, why in found.left_out.items())
-    said += tuple(
-        f"{engine}: {remark}" for engine, remarks in found.remarks.items() for remark in remarks
+    lines = tuple(f"{engine}: {why}" for engine, why in comparison.left_out.items())
+    lines += tuple(
+        f"{engine}: {remark}"
+        for engine, remarks in comparison.remarks.items()
+        for remark in remarks
     )
     return Card(
         title=f"Engines on {name}",
-        facts=tuple(Fact(engine, f"{seconds:.1f} s") for engine, seconds in found.seconds.items()),
-        outcome=_agreement(found, others),
+        facts=tuple(
+            Fact(engine, f"{seconds:.1f} s") for engine, seconds in comparison.seconds.items()
+        ),
+        outcome=_agreement(comparison, others),
         blocks=(
             Block(
-                f"Largest differences, {len(rows)} of {len(found.signals)} signals",
+                f"Largest differences, {len(rows)} of {len(comparison.signals)} signals",
                 Table(rows, table.head),
             ),
-            Block("Remarks", lines=said),
+            Block("Remarks", lines=lines),
         ),
     )
 
 
-def comparison_table(found: Comparison) -> Table:
+def comparison_table(comparison: Comparison) -> Table:
     """A row a signal: where engines differ most, which of them agree, and by how much each differs from ours."""
-    others = [engine for engine in found.seconds if engine != OURS]
+    others = [engine for engine in comparison.seconds if engine != OURS]
     rows = []
-    for signal in found.signals:
+    for signal in comparison.signals:
         absent = Difference(math.nan, math.nan, math.nan)
         differences = [signal.engines.get(engine, absent) for engine in others]
         cells = [signal.name, signal.unit, "", ""]
@@ -70,55 +74,57 @@ def comparison_table(found: Comparison) -> Table:
     return Table(rows, (*head, "half the step", "of range", "range"))
 
 
-def _agreement(found: Comparison, others: list[str]) -> Outcome:
+def _agreement(comparison: Comparison, others: list[str]) -> Outcome:
     """The verdict in the words of the command."""
-    if not others and not found.failed:
+    if not others and not comparison.failed:
         return Outcome("plain", "ALONE", "No other engine ran: only the step-size error is known.")
-    limit = f"{found.tolerance:g} of its range"
-    count = len(found.signals)
-    if found.agree:
+    limit = f"{comparison.tolerance:g} of its range"
+    count = len(comparison.signals)
+    if comparison.agree:
         return Outcome(
             "passed",
             "AGREE",
             f"{', '.join([OURS, *others])} agree on each of {count} signals to {limit}.",
         )
-    if found.failed:
-        return Outcome("failed", "FAILED", f"{', '.join(found.failed)} did not get to the end.")
-    differing = sum(one.worst > found.tolerance for one in found.signals)
+    if comparison.failed:
+        return Outcome(
+            "failed", "FAILED", f"{', '.join(comparison.failed)} did not get to the end."
+        )
+    differing = sum(signal.worst > comparison.tolerance for signal in comparison.signals)
     return Outcome(
         "failed", "DIFFER", f"{differing} of {count} signals differ by more than {limit}."
     )
 
 
-def replay_card(found: LogReplay, name: str, draw: Callable[[], str]) -> Card:
+def replay_card(replay: LogReplay, name: str, draw: Callable[[], str]) -> Card:
     """Errors of the predictions and the track, which `draw` gives as SVG."""
     return Card(
         title=f"Replay of {name}",
-        facts=(Fact("Predictions", f"{found.tracks.horizon:.0f} s each"),),
-        outcome=replay_outcome(found),
+        facts=(Fact("Predictions", f"{replay.tracks.horizon:.0f} s each"),),
+        outcome=replay_outcome(replay),
         blocks=(
-            Block("Errors, root mean square", error_rows(errors_of(found.tracks))),
-            Block("Remarks", lines=remarks_of(found)),
+            Block("Errors, root mean square", error_rows(errors_of(replay.tracks))),
+            Block("Remarks", lines=remarks_of(replay)),
         ),
         draw=draw,
     )
 
 
-def calibration_card(found: CalibratedShip) -> Card:
+def calibration_card(ship: CalibratedShip) -> Card:
     """Numbers that moved most, and the errors that remain."""
     return Card(
-        title=f"Calibration of {found.reference.system}",
-        facts=(Fact("Logs", ", ".join(log.name for log in found.logs)),),
-        outcome=calibration.outcome(found),
-        blocks=calibration.blocks(found),
+        title=f"Calibration of {ship.reference.system}",
+        facts=(Fact("Logs", ", ".join(log.name for log in ship.logs)),),
+        outcome=calibration.outcome(ship),
+        blocks=calibration.blocks(ship),
     )
 
 
-def capability_card(found: Capability) -> Card:
+def capability_card(capability: Capability) -> Card:
     """The notation, and the numbers by direction."""
-    page = capability_page(found)
+    page = capability_page(capability)
     return Card(
-        title=f"Static DP capability of {found.vessel.name}",
+        title=f"Static DP capability of {capability.vessel.name}",
         facts=page.facts,
         outcome=page.outcome,
         blocks=(
@@ -128,11 +134,11 @@ def capability_card(found: Capability) -> Card:
     )
 
 
-def sea_trials_card(found: SeaTrialStudy, name: str) -> Card:
+def sea_trials_card(study: SeaTrialStudy, name: str) -> Card:
     """Sets of causes, and how they predict the side that was not fitted."""
     return Card(
         title=f"Sea trials of {name}",
-        facts=(Fact("Trials", sea_trials.trials(found)),),
-        outcome=sea_trials.outcome(found),
-        blocks=sea_trials.blocks(found),
+        facts=(Fact("Trials", sea_trials.trials(study)),),
+        outcome=sea_trials.outcome(study),
+        blocks=sea_trials.blocks(study),
     )

@@ -19,7 +19,7 @@ MOST_ROWS = 12
 def sweep_card(tables: StudyTables) -> Card:
     """What the study says, its quantities and summary, failed runs, and the distribution of the first quantity."""
     page = page_of(tables)
-    failed = tuple(f"{one.count} runs: {one.text}" for one in page.errors[:MOST_ROWS])
+    failed = tuple(f"{error.count} runs: {error.text}" for error in page.errors[:MOST_ROWS])
     shown = page.summary.rows[:MOST_ROWS]
     numbers = tuple(
         (f"{name} [{unit}]" if unit else name, *some[1:4])
@@ -51,8 +51,8 @@ def _picture(tables: StudyTables) -> str:
     columns = columns_of(runs, tables.about.get("columns", ()))
     # A quantity that is the same in all runs has no distribution.
     for quantity in columns.values():
-        known = finite(quantity.values) if quantity.is_number else []
-        if quantity.role == QUANTITY and len(known) and np.ptp(known):
+        numbers = finite(quantity.values) if quantity.is_number else []
+        if quantity.role == QUANTITY and len(numbers) and np.ptp(numbers):
             return distribution_svg(
                 f"distribution of {quantity.name}",
                 f"Share of runs up to each {quantity.titled}",

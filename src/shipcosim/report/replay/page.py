@@ -55,11 +55,11 @@ def replay_outcome(replay: LogReplay) -> Outcome:
     """Position errors of the simulations at the end of their predictions."""
     tracks = replay.tracks
     last = errors_of(tracks)["position"].isel(after=-1)
-    told = ", ".join(
+    errors = ", ".join(
         f"{name} {metres(float(last.sel(simulation=name)))}" for name in tracks.predicted
     )
     return Outcome(
         "replayed",
         "REPLAYED",
-        f"Position error after {float(last['after']):.0f} s, root mean square of predictions over the whole log: {told}.",
+        f"Position error after {float(last['after']):.0f} s, root mean square of predictions over the whole log: {errors}.",
     )

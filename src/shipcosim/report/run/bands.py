@@ -52,30 +52,30 @@ def bands_of(
     -------
     list of Band
     """
-    found = []
+    bands = []
     for verdict in verdicts:
         # An expectation whose window has no row is not drawn.
         rows = rows_of(shown, verdict.expect)
         if signal in verdict.expect.signal and len(rows):
             # Of the table only what the band is made of: cutting all of its signals takes long.
-            targets = [one for one in verdict.expect.near or () if isinstance(one, str)]
+            targets = [target for target in verdict.expect.near or () if isinstance(target, str)]
             needed = shown[list({signal, *targets, *([minus] if minus else [])})]
-            found.append(_band_of(needed.isel(time=rows), signal, verdict, minus))
-    return found
+            bands.append(_band_of(needed.isel(time=rows), signal, verdict, minus))
+    return bands
 
 
 def distance_bands(
     shown: Dataset, signals: list[str | None], verdicts: Iterable[Verdict]
 ) -> list[Band]:
     """Bands of the expectations that several signals together stay near a point."""
-    found = []
+    bands = []
     for verdict in verdicts:
         time = shown["time"].values[rows_of(shown, verdict.expect)]
         # One limit on the distance from the point, from zero up to the radius.
         if verdict.expect.signal == signals and verdict.expect.near is not None and len(time):
             limit = np.full(len(time), verdict.expect.within)
-            found.append(_band(time, 0.0 * limit, limit, verdict.passed))
-    return found
+            bands.append(_band(time, 0.0 * limit, limit, verdict.passed))
+    return bands
 
 
 def _band_of(part: Dataset, signal: str, verdict: Verdict, minus: str | None) -> Band:
@@ -129,5 +129,5 @@ def _band(time: NDArray, lower: NDArray, upper: NDArray, passed: bool) -> Band:
         lower = lower[[0, -1]]
         upper = upper[[0, -1]]
     # Beyond LARGEST a page draws nothing, and rounding would overflow.
-    below, above = (np.clip(one, -LARGEST, LARGEST).round(6).tolist() for one in (lower, upper))
+    below, above = (np.clip(edge, -LARGEST, LARGEST).round(6).tolist() for edge in (lower, upper))
     return Band(np.round(time, 6).tolist(), below, above, passed)

@@ -102,10 +102,10 @@ def write_comparison(
     """
     # Put both runs on common times, then compare and write.
     pair = lay_over(tables, names)
-    found = _ordered(pair, differences(pair))
-    page = _page(pair, found)
+    ordered = _ordered(pair, differences(pair))
+    page = _page(pair, ordered)
     write_file(path, render("run/templates/run.html.jinja", page).encode())
-    return page.outcome, found
+    return page.outcome, ordered
 
 
 def lay_over(tables: tuple[Dataset, Dataset], names: tuple[str, str]) -> Pair:
@@ -151,7 +151,7 @@ def differences(pair: Pair) -> list[Difference]:
     """
     first, second = pair.shown
     time = first["time"].values
-    found = []
+    differing = []
     # Angles the short way round: a difference of 359 deg is one of 1 deg.
     for name in (str(n) for n in first.data_vars if n in second):
         a = first[name].values
@@ -173,29 +173,29 @@ def differences(pair: Pair) -> list[Difference]:
         if largest > SAME * max(span, np.finfo(float).tiny):
             rms = largest * float(np.sqrt(np.mean((size / largest) ** 2)))
             when = float(time[both][most])
-            found.append(Difference(name, unit, rms, largest, when, rms / span))
-    return sorted(found, key=lambda one: -one.share)
+            differing.append(Difference(name, unit, rms, largest, when, rms / span))
+    return sorted(differing, key=lambda difference: -difference.share)
 
 
 def _on(shown: Dataset, time: NDArray) -> Dataset:
     """Interpolate a table linearly to other times; logical signals hold their last value."""
     # Rows before the start and after the end of the run have no value.
-    own = np.round(shown["time"].values, 9)
-    inside = (time >= own[0]) & (time <= own[-1])
+    clock = np.round(shown["time"].values, 9)
+    inside = (time >= clock[0]) & (time <= clock[-1])
     # Last row at or before each time, for signals that step.
-    rows = np.clip(np.searchsorted(own, time, side="right") - 1, 0, len(own) - 1)
-    found = {}
+    rows = np.clip(np.searchsorted(clock, time, side="right") - 1, 0, len(clock) - 1)
+    columns = {}
     for name, v in shown.data_vars.items():
         values = v.values.astype(float)
-        steps = v.attrs.get("logical") or len(own) == 1
-        read = values[rows] if steps else np.interp(time, own, values)
-        found[name] = ("time", np.where(inside, read, np.nan), v.attrs)
-    return xr.Dataset(found, {"time": time})
+        steps = v.attrs.get("logical") or len(clock) == 1
+        read = values[rows] if steps else np.interp(time, clock, values)
+        columns[name] = ("time", np.where(inside, read, np.nan), v.attrs)
+    return xr.Dataset(columns, {"time": time})
 
 
 def _like(shown: Dataset, other: Dataset) -> Dataset:
     """The table in the other's units, angles moved by whole turns to the other's."""
-    found = {}
+    columns = {}
     for name, v in shown.data_vars.items():
         values = v.values.astype(float)
         # Convert units by the factors that the page applies to both.
@@ -207,14 +207,14 @@ def _like(shown: Dataset, other: Dataset) -> Dataset:
         if name in other and attributes["units"] == "deg" and np.isfinite(values).any():
             gap = np.nanmedian(values) - np.nanmedian(other[name].values)
             values = values - 360.0 * np.round(gap / 360.0) if np.isfinite(gap) else values
-        found[name] = ("time", values, attributes)
-    return xr.Dataset(found, {"time": shown["time"].values})
+        columns[name] = ("time", values, attributes)
+    return xr.Dataset(columns, {"time": shown["time"].values})
 
 
 # What the page shows.
 
 
-def _page(pair: Pair, found: Sequence[Difference]) -> RunPage:
+def _page(pair: Pair, differing: Sequence[Difference]) -> RunPage:
     merged = _merged(pair)
     drawn, thinned = drawn_rows(merged)
     runs = [
@@ -233,7 +233,7 @@ def _page(pair: Pair, found: Sequence[Difference]) -> RunPage:
     # Where the two differ most by what people compare runs by.
     moments = tuple(
         Moment(d.time, f"{d.signal}: {plain(d.largest)} {d.unit} at {d.time:g} s")
-        for d in found[:MOST_MOMENTS]
+        for d in differing[:MOST_MOMENTS]
     )
     data = drawn_data(drawn, choice, runs, sections, ())
     if moments:
@@ -241,13 +241,13 @@ def _page(pair: Pair, found: Sequence[Difference]) -> RunPage:
     return RunPage(
         title=f"{pair.names[0]} and {pair.names[1]}",
         facts=tuple(facts),
-        outcome=_outcome(pair, found, unlike),
+        outcome=_outcome(pair, differing, unlike),
         links=links(runs, sections),
         data=data,
         remarks=tuple(_remarks(pair, unlike)),
         weather=(),
         expectations=(),
-        key_figures=_table(found),
+        key_figures=_table(differing),
         thinned=thinned,
         sections=sections,
         details=_details(pair),
@@ -284,15 +284,15 @@ def _doubled(panel: Panel, pair: Pair) -> Panel | None:
     """A panel with both runs: one curve each by colour; several curves, the second run dashed."""
     # Only curves that both runs have; of several, those of the ship itself.
     lines = [line for line in panel.lines if line.signal in pair.shown[1]]
-    own = [line for line in lines if line.label in THE_LINE] or lines
-    if not own:
+    main = [line for line in lines if line.label in THE_LINE] or lines
+    if not main:
         return None
     # One curve each: the colour tells the runs apart.
     both = []
-    for line in own:
+    for line in main:
         for name, colour, dash in zip(pair.names, COLOURS, ("solid", "dot"), strict=True):
             signal = f"{name}: {line.signal}"
-            if len(own) == 1:
+            if len(main) == 1:
                 look = {"label": name, "colour": colour, "dash": "solid"}
             else:
                 # Several curves keep their colours; the line style tells the runs apart.
@@ -301,15 +301,15 @@ def _doubled(panel: Panel, pair: Pair) -> Panel | None:
     return replace(panel, lines=tuple(both), bands=())
 
 
-def _outcome(pair: Pair, found: Sequence[Difference], unlike: Sequence[str]) -> Outcome:
+def _outcome(pair: Pair, differing: Sequence[Difference], unlike: Sequence[str]) -> Outcome:
     """One sentence: largest distance of the ships, else the signal that differs most."""
     common = sum(1 for name in pair.shown[0].data_vars if name in pair.shown[1])
-    if not found and unlike:
+    if not differing and unlike:
         text = f"{len(unlike)} of {common} signals have a number in one run only"
         return Outcome("plain", "DIFFER", f"{text}, at some times: {shortened(unlike)}.")
-    if not found:
+    if not differing:
         return Outcome("passed", "SAME", f"All {common} signals that both have are the same.")
-    differ = f"{len(found)} of {common} signals differ"
+    differ = f"{len(differing)} of {common} signals differ"
     # Distance between the ships at each common time.
     first, second = pair.shown
     position = [pair.roles.signal(pair.roles.ship, axis) for axis in "xy"]
@@ -322,7 +322,7 @@ def _outcome(pair: Pair, found: Sequence[Difference], unlike: Sequence[str]) -> 
             text = f"The ships lie up to {most} m apart, at {when:g} s; {rms} m rms."
             return Outcome("plain", "DIFFER", f"{text} {differ}.")
     # Without positions: the signal with the largest difference over its range.
-    worst = max(found, key=lambda one: one.share)
+    worst = max(differing, key=lambda difference: difference.share)
     return Outcome("plain", "DIFFER", f"{differ}, most of all {worst.signal}.")
 
 
@@ -341,14 +341,14 @@ def without_difference(pair: Pair) -> list[str]:
     time = first["time"].values
     start, end, _ = _covered(pair)
     is_covered = (time > start - CLOSE) & (time < end + CLOSE)
-    found = []
+    names = []
     for name in (str(n) for n in first.data_vars if n in second):
         a = first[name].values
         b = second[name].values
         is_same = (a == b) | (np.isnan(a) & np.isnan(b))
         if (is_covered & ~is_same & ~np.isfinite(b - a)).any():
-            found.append(name)
-    return found
+            names.append(name)
+    return names
 
 
 CLOSE = 1e-8
@@ -356,42 +356,42 @@ CLOSE = 1e-8
 
 
 def _remarks(pair: Pair, unlike: Sequence[str]) -> list[str]:
-    said = []
+    remarks = []
     first, second = pair.names
     # Runs without common times were moved; the reader must know.
     if pair.shift:
-        said.append(
+        remarks.append(
             f"The runs have no time in common: {second} is moved by {pair.shift:g} s to start with {first}."
         )
     # Differences cover only the time that both runs have.
     start, end, is_whole = _covered(pair)
     if not is_whole:
-        said.append(f"Differences are for {start:g} to {end:g} s, which both runs cover.")
+        remarks.append(f"Differences are for {start:g} to {end:g} s, which both runs cover.")
     # Signals that only one run has: name the first five.
-    for name, own, other in ((first, *pair.shown), (second, *pair.shown[::-1])):
-        if alone := [str(signal) for signal in own.data_vars if signal not in other]:
-            said.append(f"Only in {name}: {shortened(alone)}.")
+    for name, shown, other in ((first, *pair.shown), (second, *pair.shown[::-1])):
+        if alone := [str(signal) for signal in shown.data_vars if signal not in other]:
+            remarks.append(f"Only in {name}: {shortened(alone)}.")
     if unlike:
-        said.append(f"A number in one run only, at some times: {shortened(unlike)}.")
-    return said
+        remarks.append(f"A number in one run only, at some times: {shortened(unlike)}.")
+    return remarks
 
 
-def _ordered(pair: Pair, found: Sequence[Difference]) -> list[Difference]:
+def _ordered(pair: Pair, differing: Sequence[Difference]) -> list[Difference]:
     """Differences of the most important signals first, then the others in order."""
     roles = pair.roles
     wanted = [roles.signal(roles.ship, axis) for axis in ("x", "y", "psi")]
     wanted += [FROM_REFERENCE, ERRORS["psi"]]
     wanted += [roles.signal(unit, "thrust") for unit in roles.thrusters]
-    by_name = {one.signal: one for one in found}
+    by_name = {difference.signal: difference for difference in differing}
     first = [by_name[name] for name in dict.fromkeys(wanted) if name in by_name]
-    return [*first, *(one for one in found if one not in first)]
+    return [*first, *(difference for difference in differing if difference not in first)]
 
 
-def _table(found: Sequence[Difference]) -> Table:
+def _table(differing: Sequence[Difference]) -> Table:
     """The first of the differences as texts."""
     rows = [
         (d.signal, f"{plain(d.rms)} {d.unit}", f"{plain(d.largest)} {d.unit}", f"{d.time:g} s")
-        for d in found[:MOST_DIFFERENCES]
+        for d in differing[:MOST_DIFFERENCES]
     ]
     return Table(rows, ("Signal", "rms", "Largest", "At"), (1, 2, 3)) if rows else Table(())
 
@@ -419,9 +419,9 @@ def _changed(pair: Pair) -> tuple[str, ...]:
     """The first start values that differ, for the top of the page."""
     detail = _start_values(pair)
     rows = detail.table.rows if detail else ()
-    said = [f"{name} {first} and {second}" for name, first, second in rows[:MOST_CHANGES]]
-    more = len(rows) - len(said)
-    return (*said, f"{more} more under Parameters") if more else tuple(said)
+    changes = [f"{name} {first} and {second}" for name, first, second in rows[:MOST_CHANGES]]
+    more = len(rows) - len(changes)
+    return (*changes, f"{more} more under Parameters") if more else tuple(changes)
 
 
 def _details(pair: Pair) -> tuple[Detail, ...]:
@@ -432,13 +432,13 @@ def _details(pair: Pair) -> tuple[Detail, ...]:
         {str(key): parsed(value) for key, value in table.attrs.items() if key not in left_out}
         for table in pair.tables
     ]
-    found = (_start_values(pair), _unlike("Runs that differ", pair, rest))
-    return tuple(detail for detail in found if detail is not None)
+    tables = (_start_values(pair), _unlike("Runs that differ", pair, rest))
+    return tuple(detail for detail in tables if detail is not None)
 
 
 def _unlike(title: str, pair: Pair, contents: Sequence[Mapping[str, Any]]) -> Detail | None:
     """A table of the entries that differ, or None."""
     names: Iterable[str] = dict.fromkeys([*contents[0], *contents[1]])
-    said = [(name, *(str(content.get(name, "–")) for content in contents)) for name in names]
-    rows = tuple(row for row in said if row[1] != row[2])
+    entries = [(name, *(str(content.get(name, "–")) for content in contents)) for name in names]
+    rows = tuple(row for row in entries if row[1] != row[2])
     return Detail(title, Table(rows, ("", *pair.names))) if rows else None

@@ -50,7 +50,7 @@ def desired(roles: Roles, axis: str) -> str | None:
 
 def errors(shown: Dataset, roles: Roles) -> dict[str, Variable]:
     """Ship minus reference in x, y and psi; headings the short way round."""
-    found = {}
+    errors = {}
     # A heading error lies within half a turn.
     for axis, name in ERRORS.items():
         ship = roles.signal(roles.ship, axis)
@@ -58,8 +58,8 @@ def errors(shown: Dataset, roles: Roles) -> dict[str, Variable]:
         if ship and reference:
             error = shown[ship].values - shown[reference].values
             unit = shown[ship].attrs["units"]
-            found[name] = as_variable(wrap_series(error) if unit == "deg" else error, unit, name)
-    return found
+            errors[name] = as_variable(wrap_series(error) if unit == "deg" else error, unit, name)
+    return errors
 
 
 def distances(
@@ -70,12 +70,12 @@ def distances(
         return {}
     # Distance from north and east error.
     distance = np.hypot(shown[ERRORS["x"]].values, shown[ERRORS["y"]].values)
-    found = {FROM_REFERENCE: as_variable(distance, "m", FROM_REFERENCE)}
+    distances = {FROM_REFERENCE: as_variable(distance, "m", FROM_REFERENCE)}
     # Distance as the expectation judged it, only where an expectation asks for a position.
     judged = judged_distance(table, [roles.signal(roles.ship, axis) for axis in "xy"], verdicts)
     if np.isfinite(judged).any():
-        found[FROM_EXPECTED] = as_variable(judged, "m", FROM_EXPECTED)
-    return found
+        distances[FROM_EXPECTED] = as_variable(judged, "m", FROM_EXPECTED)
+    return distances
 
 
 def judged_distance(
@@ -98,7 +98,7 @@ def judged_distance(
 
 def true_flow(shown: Dataset, roles: Roles) -> dict[str, Variable]:
     """Speed and direction of wind and current at the ship, from components north and east."""
-    found = {}
+    flows = {}
     for what, sense, suffix in [("wind", -1.0, "from"), ("current", 1.0, "to")]:
         # Harbours change wind and current; else those of the environment act on the ship.
         parts = [
@@ -108,7 +108,7 @@ def true_flow(shown: Dataset, roles: Roles) -> dict[str, Variable]:
         if None not in parts:
             # Wind is named by where it comes from, so its components change sign.
             north, east = (sense * shown[part].values for part in parts)
-            found[f"{what} speed"] = as_variable(np.hypot(north, east), "m/s", f"{what} speed")
+            flows[f"{what} speed"] = as_variable(np.hypot(north, east), "m/s", f"{what} speed")
             angle = np.degrees(unturned(f"{what}_{suffix}", np.arctan2(east, north)))
-            found[f"{what} {suffix}"] = as_variable(angle, "deg", f"{what} {suffix}")
-    return found
+            flows[f"{what} {suffix}"] = as_variable(angle, "deg", f"{what} {suffix}")
+    return flows

@@ -41,7 +41,7 @@ def details(
     -------
     tuple of Detail
     """
-    found = []
+    sections = []
     if scenario is not None and scenario.events:
         rows = []
         for event in scenario.events:
@@ -49,11 +49,11 @@ def details(
             changes += [f"{name} + {value}" for name, value in event.bias.items()]
             changes += [f"{name} released" for name in event.reset]
             rows.append((f"{event.time:g} s", ", ".join(changes)))
-        found.append(_detail("events", rows))
+        sections.append(_detail("events", rows))
     if scenario is not None and scenario.set:
-        found.append(_detail("start values of the scenario", scenario.set.items()))
+        sections.append(_detail("start values of the scenario", scenario.set.items()))
     return (
-        *found,
+        *sections,
         *(_detail(title, content.items()) for title, content in _attributes(table, system)),
     )
 

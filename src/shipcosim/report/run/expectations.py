@@ -113,13 +113,13 @@ def claims(expectations: Sequence[Expectation], table: Dataset) -> list[str]:
     """
     # Convert each claim to the unit of the page.
     units = units_to_read(table)
-    said = []
+    sentences = []
     for expect in expectations:
         given = table[expect.signal[0]].attrs.get("units")
         unit, factor = units.get(given, (given, 1.0))
         during = " during {:g} to {:g} s".format(*expect.during) if expect.during else ""
-        said.append(f"{_claim(expect, unit or '', factor)}{during}")
-    return said
+        sentences.append(f"{_claim(expect, unit or '', factor)}{during}")
+    return sentences
 
 
 def _judged(verdict: Verdict, shown_as: dict[str, Any], whole: str) -> Judged:

@@ -59,5 +59,5 @@ def key_figures(
                     f"{100 * np.mean(shown[name].values):.0f} % of the time",
                 )
             )
-    figures += [(f"Predicted by {what}", ", ".join(said)) for what, *said in texts(predictions)]
+    figures += [(f"Predicted by {what}", ", ".join(words)) for what, *words in texts(predictions)]
     return Table(figures)

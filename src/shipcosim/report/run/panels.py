@@ -74,7 +74,7 @@ def make_sections(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> 
     # A panel for every signal with an expectation that no other panel shows with its limits.
     drawn = {line.signal for panel in motion for line in panel.lines}
     expected = []
-    for signal in dict.fromkeys(name for one in verdicts for name in one.expect.signal):
+    for signal in dict.fromkeys(name for verdict in verdicts for name in verdict.expect.signal):
         if signal in shown and signal not in drawn:
             line = Line(signal, signal, palette.SHIP)
             expected += _panel(shown, signal, [line], bands_of(shown, signal, verdicts))
@@ -112,7 +112,7 @@ def _section(section: Section, shown: Dataset) -> Section:
     constant = []
     for panel in section.panels:
         values = {line.label: shown[line.signal].values for line in panel.lines}
-        if panel.bands or not all(is_constant(one) for one in values.values()):
+        if panel.bands or not all(is_constant(value) for value in values.values()):
             drawn.append(panel)
         elif panel.states:
             flags = [name for name, flags in values.items() if flags[0]]
@@ -197,8 +197,8 @@ def _loads(shown: Dataset, roles: Roles) -> list[Panel]:
         for k, source in enumerate(roles.sources()):
             signal = roles.signal(roles.ship, f"tau_{source}_{axis}")
             lines.append(Line(signal, source, palette.source(source, k)))
-        asked = _first(roles.anywhere(f"tau_{axis}_cmd"))
-        lines.append(Line(asked, "commanded", palette.COMMAND, "dot", 1.0))
+        command = _first(roles.anywhere(f"tau_{axis}_cmd"))
+        lines.append(Line(command, "commanded", palette.COMMAND, "dot", 1.0))
         panels += _panel(shown, title, lines)
     return panels
 
@@ -244,9 +244,11 @@ def _azimuths(shown: Dataset, units: Sequence[DrawnThruster]) -> list[Panel]:
     # Only thrusters that turn, or are commanded to.
     turning = [unit for unit in units if unit.azimuth in shown or unit.azimuth_command in shown]
     # Sectors can be shaded in a common panel only if they are the same.
-    alike = len({unit.sectors for unit in turning}) < 2
+    are_equal = len({unit.sectors for unit in turning}) < 2
     groups = (
-        [("Azimuth", turning)] if alike else [(f"Azimuth, {unit.name}", [unit]) for unit in turning]
+        [("Azimuth", turning)]
+        if are_equal
+        else [(f"Azimuth, {unit.name}", [unit]) for unit in turning]
     )
     return [
         replace(

@@ -78,14 +78,16 @@ class PredictionSummary(NamedTuple):
 
 def find_predictors(roles: Roles) -> dict[str, tuple[int, ...]]:
     """Components with the outputs of `interfaces.MotionPredictor`, and their horizons. [s]"""
-    found = {}
+    predictors = {}
     for component, connectors in roles.connectors.items():
         # A predictor has x, y and psi at the same horizons, and the time of its prediction.
         ends = [int(match[1]) for name in connectors if (match := re.fullmatch(r"x_(\d+)", name))]
-        known = tuple(sorted(end for end in ends if {f"y_{end}", f"psi_{end}"} <= set(connectors)))
-        if known and "predicted_at" in connectors:
-            found[component] = known
-    return found
+        horizons = tuple(
+            sorted(end for end in ends if {f"y_{end}", f"psi_{end}"} <= set(connectors))
+        )
+        if horizons and "predicted_at" in connectors:
+            predictors[component] = horizons
+    return predictors
 
 
 def first_rows(table: Dataset, component: str) -> NDArray:
@@ -174,14 +176,14 @@ def _values_at(table: Dataset, rows: NDArray, name: str) -> NDArray:
 def _truth(table: Dataset, roles: Roles, time: NDArray) -> dict[str, NDArray]:
     """Pose of the ship at any times; NaN beyond the run."""
     clock = table["time"].values
-    found = {}
+    pose = {}
     for axis in ("x", "y", "psi"):
         # Interpolate the heading without jumps, and wrap it again afterwards.
         values = table[roles.signal(roles.ship, axis)].values.astype(float)
         values = unwrap_series(values) if axis == "psi" else values
-        found[axis] = np.where(time <= clock[-1] + 1e-6, np.interp(time, clock, values), np.nan)
-    found["psi"] = wrap_series(found["psi"], 2.0 * np.pi)
-    return found
+        pose[axis] = np.where(time <= clock[-1] + 1e-6, np.interp(time, clock, values), np.nan)
+    pose["psi"] = wrap_series(pose["psi"], 2.0 * np.pi)
+    return pose
 
 
 def _within(size: NDArray, region: NDArray) -> NDArray:
@@ -205,7 +207,7 @@ def predicted_tracks(table: Dataset, shift: float = 0.0) -> list[dict[str, Any]]
         One a predictor: its name, when its predictions were made [s], its horizons [s], and packed by horizon: place
         north and east [m], heading [deg], radius of the region [m].
     """
-    found = []
+    tracks = []
     for component, horizons in find_predictors(find_roles(table.data_vars)).items():
         # Evenly fewer predictions where there are more than the scene can draw.
         rows = first_rows(table, component)
@@ -226,7 +228,7 @@ def predicted_tracks(table: Dataset, shift: float = 0.0) -> list[dict[str, Any]]
                 what: [packed(f"{stem}{end}", r) for end in horizons]
                 for what, (stem, r) in parts.items()
             }
-            found.append(
+            tracks.append(
                 {
                     "name": component,
                     "made": packed_series(made_at, 1e9),
@@ -234,7 +236,7 @@ def predicted_tracks(table: Dataset, shift: float = 0.0) -> list[dict[str, Any]]
                     **columns,
                 }
             )
-    return found
+    return tracks
 
 
 def summarise(predictions: pandas.DataFrame) -> list[PredictionSummary]:
@@ -252,15 +254,15 @@ def summarise(predictions: pandas.DataFrame) -> list[PredictionSummary]:
     """
     columns = {name: predictions[name].to_numpy() for name in predictions}
     # Predictions whose horizon lies beyond the run have no truth.
-    known = np.isfinite(columns["true_x"].astype(float))
-    found = []
+    has_truth = np.isfinite(columns["true_x"].astype(float))
+    summaries = []
     for component, horizon in sorted(
-        set(zip(columns["component"][known], columns["horizon"][known], strict=True))
+        set(zip(columns["component"][has_truth], columns["horizon"][has_truth], strict=True))
     ):
         # Rms errors, and shares within the regions where there are regions.
-        of = known & (columns["component"] == component) & (columns["horizon"] == horizon)
+        of = has_truth & (columns["component"] == component) & (columns["horizon"] == horizon)
         north, east, heading, place, width = (columns[name][of] for name in SUMMARISED)
-        found.append(
+        summaries.append(
             PredictionSummary(
                 str(component),
                 float(horizon),
@@ -268,25 +270,25 @@ def summarise(predictions: pandas.DataFrame) -> list[PredictionSummary]:
                 float(np.sqrt(np.mean(north**2 + east**2))),
                 float(np.sqrt(np.mean(heading**2))),
                 *(
-                    float(np.mean(finite(one))) if np.isfinite(one).any() else np.nan
-                    for one in (place, width)
+                    float(np.mean(finite(series))) if np.isfinite(series).any() else np.nan
+                    for series in (place, width)
                 ),
             )
         )
-    return found
+    return summaries
 
 
 def texts(summaries: Iterable[PredictionSummary]) -> list[tuple[str, str, str, str]]:
     """Summaries in words: predictor and horizon, errors, share within the regions."""
     rows = []
-    for one in summaries:
-        shares = {"places": one.in_position_region, "headings": one.in_heading_region}
+    for summary in summaries:
+        shares = {"places": summary.in_position_region, "headings": summary.in_heading_region}
         within = [f"{100.0 * x:.0f} % of {what}" for what, x in shares.items() if np.isfinite(x)]
         rows.append(
             (
-                f"{one.component}, {one.horizon:g} s ahead",
-                f"{one.position:.2f} m rms",
-                f"{np.degrees(one.heading):.1f} deg rms",
+                f"{summary.component}, {summary.horizon:g} s ahead",
+                f"{summary.position:.2f} m rms",
+                f"{np.degrees(summary.heading):.1f} deg rms",
                 f"{' and '.join(within)} within the regions" if within else "no regions",
             )
         )

@@ -38,12 +38,14 @@ def remarks(table: Dataset, shown: Dataset, roles: Roles) -> list[str]:
     went = f"The run went from {start:g} to {end:g} s."
     not_reached = [f"Not reached: {claim}. {went}" for claim in missed]
     # FMU warnings and unreached expectations first, then what the signals show.
-    said = [*parsed(table.attrs.get("remarks", "[]")), *not_reached, *_not_finite(shown)]
+    sentences = [*parsed(table.attrs.get("remarks", "[]")), *not_reached, *_not_finite(shown)]
     # Components that fail at the same time share a sentence.
     failed = _first_times(shown, roles.flagged("failed"))
-    said += [f"Failed from {time:g} s on: {', '.join(names)}." for time, names in failed.items()]
-    said += _alarms(shown, roles)
-    return said + _rejected(shown, roles) + _reckoned(shown, roles) + _lost_hold(shown, roles)
+    sentences += [
+        f"Failed from {time:g} s on: {', '.join(names)}." for time, names in failed.items()
+    ]
+    sentences += _alarms(shown, roles)
+    return sentences + _rejected(shown, roles) + _reckoned(shown, roles) + _lost_hold(shown, roles)
 
 
 _DERIVED = {*ERRORS.values(), FROM_REFERENCE, FROM_EXPECTED}
@@ -76,7 +78,7 @@ def _first_times(shown: Dataset, flags: Mapping[str, str]) -> dict[float, list[s
 
 def _rejected(shown: Dataset, roles: Roles) -> list[str]:
     """Sensors that a controller rejected, and when first."""
-    said = []
+    sentences = []
     for component, connectors in roles.connectors.items():
         for connector in (
             c for c in connectors if c.endswith("_rejected") and join(component, c) in shown
@@ -87,24 +89,24 @@ def _rejected(shown: Dataset, roles: Roles) -> list[str]:
                 first = shown["time"].values[np.argmax(flags)]
                 share = 100.0 * flags.mean()
                 what = connector.removesuffix("_rejected").replace("_", " ")
-                said.append(
+                sentences.append(
                     f"{component} rejects {what} from {first:g} s on, in {share:.0f} % of the run."
                 )
-    return said
+    return sentences
 
 
 def _reckoned(shown: Dataset, roles: Roles) -> list[str]:
     """Longest time without a trusted position, by controller."""
-    said = []
+    sentences = []
     for component, signal in roles.flagged("dead_reckoning_time").items():
         # The signal counts the time since the last trusted position.
         times = shown[signal].values if signal in shown else np.zeros(1)
         if times.max() > 0.0:
             until = shown["time"].values[np.argmax(times)]
-            said.append(
+            sentences.append(
                 f"{component} has no trusted position for up to {times.max():.0f} s, until {until:g} s."
             )
-    return said
+    return sentences
 
 
 def _alarms(shown: Dataset, roles: Roles) -> list[str]:

@@ -78,8 +78,8 @@ class Roles:
         """Sources of load on the ship: wind, drift, hull, thrusters, in the table's order."""
         # Loads are named tau_SOURCE_AXIS; commands and limits of loads are no sources.
         on_ship = self.connectors.get(self.ship, ()) if self.ship is not None else ()
-        found = [LOAD.fullmatch(connector) for connector in on_ship]
-        return list(dict.fromkeys(m[1] for m in found if m and m[1] not in NOT_A_SOURCE))
+        matches = [LOAD.fullmatch(connector) for connector in on_ship]
+        return list(dict.fromkeys(m[1] for m in matches if m and m[1] not in NOT_A_SOURCE))
 
 
 def join(component: str, connector: str) -> str:

@@ -198,7 +198,10 @@ def make_run(
         without = ", ".join(dict.fromkeys(columns.without_unit))
         supposed.append(f"without a unit in the table: {without}")
     circles = [
-        one for verdict in verdicts for vessel in vessels for one in _circle(verdict, vessel, shift)
+        circle
+        for verdict in verdicts
+        for vessel in vessels
+        for circle in _circle(verdict, vessel, shift)
     ]
     return Run(
         label,
@@ -240,12 +243,14 @@ def _vessel(vessel: Vessel, columns: _Columns) -> JsonObject | None:
     # Outlines along the way need the pose as numbers, where none of it is a gap of the series.
     north, east, heading = pose_of(columns.table, vessel.pose)
     shown = columns.rows
-    known = shown[(np.abs([north, east, heading]).max(axis=0) < LARGEST)[shown]]
-    if not len(known):
+    drawable = shown[(np.abs([north, east, heading]).max(axis=0) < LARGEST)[shown]]
+    if not len(drawable):
         return None
     # Without a known size: a symbol as large as the track suggests.
-    size = vessel.size or symbol_size(north[known], east[known])
-    where = known[outline_rows(north[known], east[known], unwrap_degrees(heading[known]), size[0])]
+    size = vessel.size or symbol_size(north[drawable], east[drawable])
+    where = drawable[
+        outline_rows(north[drawable], east[drawable], unwrap_degrees(heading[drawable]), size[0])
+    ]
     return {
         "name": vessel.name,
         "pose": pose,
@@ -331,7 +336,7 @@ def _force(unit: DrawnThruster, columns: _Columns) -> list[str] | None:
 def _flows(table: Dataset, columns: _Columns, goes_on: bool) -> list[JsonObject]:
     """Wind and current as velocity north and east, waves as height and direction, if logged."""
     roles = find_roles(table.data_vars)
-    found: list[JsonObject] = []
+    flows: list[JsonObject] = []
     # Flows that are zero all along are not shown.
     for what, (sense, sign) in FLOWS.items():
         parts = _velocity(columns, roles.anywhere, what, sense, sign)
@@ -340,7 +345,7 @@ def _flows(table: Dataset, columns: _Columns, goes_on: bool) -> list[JsonObject]
                 columns.put(f"{what} {way}", *part)
                 for way, part in zip(("north", "east"), parts, strict=True)
             ]
-            found.append({"what": what, "sense": sense, "velocity": names})
+            flows.append({"what": what, "sense": sense, "velocity": names})
     # Waves need height and direction.
     heights, sources = (
         _first_in(table, roles.anywhere(f"wave_{part}")) for part in ("height", "from")
@@ -348,37 +353,39 @@ def _flows(table: Dataset, columns: _Columns, goes_on: bool) -> list[JsonObject]
     height = columns.add(heights, "m")
     source = columns.add(sources, "deg")
     if height and source and (goes_on or np.nanmax(table[height].values) > 0.0):
-        found.append({"what": "waves", "sense": "from", "height": height, "direction": source})
-    return found
+        flows.append({"what": "waves", "sense": "from", "height": height, "direction": source})
+    return flows
 
 
 def _references(columns: _Columns) -> list[JsonObject]:
     """Position references, compasses and sensors, each with its signals for valid and rejected."""
     names = list(map(str, columns.table.data_vars))
-    found = []
+    references = []
     for name in names:
         if (match := REFERENCE.fullmatch(name)) and columns.add(name, ""):
             label = match[1]
             # A sensor says that it works; the controller that votes says whom it rejects.
-            rejected = next((one for one in names if one.endswith(f".{label}_rejected")), None)
-            found.append(
+            rejected = next(
+                (signal for signal in names if signal.endswith(f".{label}_rejected")), None
+            )
+            references.append(
                 {
                     "label": label.replace("_", " "),
                     "valid": name,
                     "rejected": columns.add(rejected, ""),
                 }
             )
-    return found
+    return references
 
 
 def _buses(columns: _Columns) -> list[JsonObject]:
     """Buses with the power that their thrusters take, and the most that they have for them."""
-    found = []
+    buses = []
     for name in map(str, columns.table.data_vars):
         if (match := BUS.fullmatch(name)) and columns.add(name, "W"):
             most = columns.add(f"{match[1]}{match[2]}_power", "W")
-            found.append({"label": match[2].replace("_", " "), "load": name, "most": most})
-    return found
+            buses.append({"label": match[2].replace("_", " "), "load": name, "most": most})
+    return buses
 
 
 def _velocity(
@@ -427,12 +434,12 @@ def _circle(verdict: Verdict, vessel: Vessel, shift: float) -> list[JsonObject]:
 
 def _watch(table: Dataset) -> dict[str, float]:
     """Limits of position and heading alarms, where the start values have them. [m, deg]"""
-    known: Mapping[str, Any] = start_values(table)
-    found = {}
+    starts: Mapping[str, Any] = start_values(table)
+    limits = {}
     # Name of the limit follows from that of the alarm: position_alarm, position_limit.
     for what, factor in (("position", 1.0), ("heading", 180.0 / np.pi)):
         for alarm in find_roles(table.data_vars).anywhere(f"{what}_alarm"):
-            limit = known.get(alarm.removesuffix("alarm") + "limit")
+            limit = starts.get(alarm.removesuffix("alarm") + "limit")
             if isinstance(limit, int | float) and limit > 0.0:
-                found[what] = float(limit) * factor
-    return found
+                limits[what] = float(limit) * factor
+    return limits

@@ -125,7 +125,7 @@ def find_vessels(table: Dataset) -> tuple[Vessel, ...]:
     moving = []
     for pose in poses:
         values = [table[name].values.astype(float) for name in pose]
-        moves = table.sizes["time"] > 0 and any(np.ptp(one) > 0.0 for one in values)
+        moves = table.sizes["time"] > 0 and any(np.ptp(value) > 0.0 for value in values)
         if moves or _owner(pose).lower().endswith(called_ship):
             moving.append(pose)
     apart: list[Pose] = []
@@ -133,40 +133,40 @@ def find_vessels(table: Dataset) -> tuple[Vessel, ...]:
         # A pose near another one is a sensor or a predictor of the same vessel.
         if all(_apart(table, pose, other) for other in apart):
             apart.append(pose)
-    known = start_values(table)
-    return tuple(_vessel(pose, _belonging(pose, apart, names), known) for pose in apart)
+    starts = start_values(table)
+    return tuple(_vessel(pose, _belonging(pose, apart, names), starts) for pose in apart)
 
 
 def start_values(table: Dataset) -> dict[str, Any]:
     """Start values of the run, as the table's attribute holds them; empty where there are none."""
     try:
-        known = json.loads(table.attrs.get("start_values", "{}"))
+        starts = json.loads(table.attrs.get("start_values", "{}"))
     except (TypeError, ValueError):
         return {}
-    return known if isinstance(known, dict) else {}
+    return starts if isinstance(starts, dict) else {}
 
 
 def in_unit(table: Dataset, name: str, unit: str) -> NDArray | None:
     """Values of a signal in a unit, (n,); None for another quantity. SI where it has no unit."""
-    found = conversion_to(table, name, unit)
-    if found is None:
+    scale = conversion_to(table, name, unit)
+    if scale is None:
         return None
-    factor, offset = found
+    factor, offset = scale
     return factor * np.asarray(table[name].values, float) + offset
 
 
 def pose_of(table: Dataset, signals: Iterable[str]) -> list[NDArray]:
     """North, east and heading of a vessel, whose units have been checked. [m, m, deg]"""
     values = [in_unit(table, *each) for each in zip(signals, POSE_UNITS, strict=False)]
-    return [one for one in values if one is not None]
+    return [value for value in values if value is not None]
 
 
 def conversion_to(table: Dataset, name: str, unit: str) -> tuple[float, float] | None:
     """Factor and offset from a signal's unit to another one; None for another quantity."""
     # Without a unit: SI, so N for kN and rad for deg.
-    own = table[name].attrs.get("units") or {"kN": "N", "deg": "rad"}.get(unit, unit)
+    own_unit = table[name].attrs.get("units") or {"kN": "N", "deg": "rad"}.get(unit, unit)
     try:
-        return conversion(own, unit)
+        return conversion(own_unit, unit)
     except ShipcosimError:
         return None
 
@@ -178,15 +178,17 @@ def _plain(connector: str) -> str:
 
 def _poses(table: Dataset, names: list[str]) -> list[Pose]:
     """Signals of every position that has an east for its north and a heading nearby."""
-    found = []
+    poses = []
     headings = [n for n in names if _is(n, "psi") and in_unit(table, n, "rad") is not None]
     # North and east must be lengths, the heading an angle; names alone may mislead.
     for north in (n for n in names if _is(n, "x") and in_unit(table, n, "m") is not None):
-        east = next((e for e in _beside(north, names) if in_unit(table, e, "m") is not None), None)
+        east = next(
+            (e for e in _east_signals(north, names) if in_unit(table, e, "m") is not None), None
+        )
         heading = _nearest(north, headings)
         if east is not None and heading is not None:
-            found.append((north, east, heading))
-    return found
+            poses.append((north, east, heading))
+    return poses
 
 
 def _is(name: str, axis: str, endings: Iterable[str] = ("",)) -> bool:
@@ -196,7 +198,7 @@ def _is(name: str, axis: str, endings: Iterable[str] = ("",)) -> bool:
     return _plain(name.rpartition(".")[2]) in spellings
 
 
-def _beside(north: str, names: list[str]) -> list[str]:
+def _east_signals(north: str, names: list[str]) -> list[str]:
     """East signals for a north signal: the same name except for the word."""
     component, _, connector = north.rpartition(".")
     plain = _plain(connector)
@@ -204,8 +206,13 @@ def _beside(north: str, names: list[str]) -> list[str]:
     for word, other in zip(AXES["x"], AXES["y"], strict=True):
         wanted = {plain.replace(word, other, 1)} if word in plain else set()
         for name in names:
-            place, _, own = name.rpartition(".")
-            if place == component and name != north and _plain(own) in wanted and _is(name, "y"):
+            place, _, last_name = name.rpartition(".")
+            if (
+                place == component
+                and name != north
+                and _plain(last_name) in wanted
+                and _is(name, "y")
+            ):
                 return [name]
     return []
 
@@ -269,11 +276,11 @@ def _belonging(pose: Pose, poses: list[Pose], names: list[str]) -> list[str]:
     return [name for name in names if name.startswith(f"{owner}.") or whose(name) == [pose]]
 
 
-def _vessel(pose: Pose, names: list[str], known: Mapping[str, Any]) -> Vessel:
+def _vessel(pose: Pose, names: list[str], starts: Mapping[str, Any]) -> Vessel:
     # Size from the start values, under the names that tools use.
     owner = _owner(pose)
     length, breadth = (
-        _first_number(known, owner, words)
+        _first_number(starts, owner, words)
         for words in (("length", "length_pp", "lpp"), ("breadth", "beam"))
     )
     velocity = [join(owner, axis) for axis in "uvr"]
@@ -285,36 +292,36 @@ def _vessel(pose: Pose, names: list[str], known: Mapping[str, Any]) -> Vessel:
         size=None
         if length is None or breadth is None or min(length, breadth) <= 0.0
         else (length, breadth),
-        units=find_units(names, known),
+        units=find_units(names, starts),
     )
 
 
 def _aims(pose: Pose, names: list[str]) -> dict[str, tuple[str, str, str | None]]:
     """Signals of set point and reference on the way there."""
-    found = {}
+    aims = {}
     for aim, endings in AIMS.items():
         # North by its name, then east and heading of the same component.
         north = next((name for name in names if _is(name, "x", endings) and name != pose[0]), None)
-        beside = [
+        candidates = [
             n
             for n in names
             if north is not None and n.rpartition(".")[0] == north.rpartition(".")[0]
         ]
-        east = next((name for name in beside if _is(name, "y", endings)), None)
-        heading = next((name for name in beside if _is(name, "psi", endings)), None)
+        east = next((name for name in candidates if _is(name, "y", endings)), None)
+        heading = next((name for name in candidates if _is(name, "psi", endings)), None)
         if north is not None and east is not None:
-            found[aim] = (north, east, heading)
-    return found
+            aims[aim] = (north, east, heading)
+    return aims
 
 
-def find_units(names: Iterable[Hashable], known: Mapping[str, Any]) -> tuple[DrawnThruster, ...]:
+def find_units(names: Iterable[Hashable], starts: Mapping[str, Any]) -> tuple[DrawnThruster, ...]:
     """Thrusters of these signals.
 
     Parameters
     ----------
     names : iterable of str
         Signals.
-    known : mapping of str to value
+    starts : mapping of str to value
         Start values, as `start_values` gives them.
 
     Returns
@@ -323,12 +330,12 @@ def find_units(names: Iterable[Hashable], known: Mapping[str, Any]) -> tuple[Dra
     """
     # Forces on the ship, where a thruster puts out both.
     roles = find_roles(names)
-    found = []
+    drawn = []
     for unit in roles.thrusters:
         x, y = (roles.signal(unit, f"tau_{axis}") for axis in "XY")
         azimuth = roles.signal(unit, "azimuth")
-        place = _place(unit, known)
-        found.append(
+        place = _place(unit, starts)
+        drawn.append(
             DrawnThruster(
                 name=unit,
                 thrust=join(unit, "thrust"),
@@ -341,27 +348,27 @@ def find_units(names: Iterable[Hashable], known: Mapping[str, Any]) -> tuple[Dra
                 failed=roles.signal(unit, "failed"),
                 available=roles.signal(unit, "available"),
                 place=place,
-                limits=_limits(unit, known),
+                limits=_limits(unit, starts),
                 # Only what turns has angles that it is not given.
-                sectors=_sectors(unit, place, roles.allocators(), known) if azimuth else (),
+                sectors=_sectors(unit, place, roles.allocators(), starts) if azimuth else (),
             )
         )
-    return tuple(found)
+    return tuple(drawn)
 
 
-def _place(unit: str, known: Mapping[str, Any]) -> Pair | None:
+def _place(unit: str, starts: Mapping[str, Any]) -> Pair | None:
     """Place of a thruster, forward and to starboard; the latter is 0 where missing. [m, m]"""
     forward, starboard = (
-        _first_number(known, unit, [word.format(axis) for word in PLACE]) for axis in "xy"
+        _first_number(starts, unit, [word.format(axis) for word in PLACE]) for axis in "xy"
     )
     return None if forward is None else (forward, starboard or 0.0)
 
 
-def _limits(unit: str, known: Mapping[str, Any]) -> Pair | None:
+def _limits(unit: str, starts: Mapping[str, Any]) -> Pair | None:
     # Limits by name, else the ends of the thrust map.
-    most, least = (_first_number(known, unit, (f"thrust_{end}",)) for end in ("max", "min"))
+    most, least = (_first_number(starts, unit, (f"thrust_{end}",)) for end in ("max", "min"))
     if most is None:
-        least, most = _ends_of_map(known.get(join(unit, "thrust_table")))
+        least, most = _ends_of_map(starts.get(join(unit, "thrust_table")))
     if most is None or most <= 0.0:
         return None
     # Without a least thrust: the same astern as ahead.
@@ -381,7 +388,7 @@ def _sectors(
     unit: str,
     place: Pair | None,
     allocators: Iterable[str],
-    known: Mapping[str, Any],
+    starts: Mapping[str, Any],
 ) -> tuple[Pair, ...]:
     """Sector outside the range of angles that an allocator gives a thruster. [rad, rad]
 
@@ -394,10 +401,10 @@ def _sectors(
             *(("", f"_{n}") for n in range(1, 10)),
         ):
             names = (f"{before}azimuth_{end}{after}" for end in ("first", "last"))
-            first, last = (_first_number(known, allocator, (name,)) for name in names)
+            first, last = (_first_number(starts, allocator, (name,)) for name in names)
             # A number belongs to this thruster if the allocator has its place.
             there = before or place == tuple(
-                _first_number(known, allocator, (axis + after,)) for axis in "xy"
+                _first_number(starts, allocator, (axis + after,)) for axis in "xy"
             )
             if not there or first is None or last is None:
                 continue
@@ -407,8 +414,8 @@ def _sectors(
     return ()
 
 
-def _first_number(known: Mapping[str, Any], component: str, words: Iterable[str]) -> float | None:
+def _first_number(starts: Mapping[str, Any], component: str, words: Iterable[str]) -> float | None:
     """The first start value of these names that is a number."""
-    values = (known.get(join(component, word)) for word in words)
+    values = (starts.get(join(component, word)) for word in words)
     numbers = (float(v) for v in values if isinstance(v, int | float) and not isinstance(v, bool))
     return next((number for number in numbers if np.isfinite(number)), None)

@@ -46,8 +46,8 @@ def weather(shown: Dataset, roles: Roles) -> tuple[Flow, ...]:
             means = [
                 roles.signal(roles.environment, f"{what}_{part}_mean") for part in ("speed", sense)
             ]
-            known = roles.harbour is None and None not in means
-            size, angle = means if known else (f"{what} speed", f"{what} {sense}")
+            is_constant = roles.harbour is None and None not in means
+            size, angle = means if is_constant else (f"{what} speed", f"{what} {sense}")
             flows.append((what, size, "m/s", angle, sense))
     # Waves need height and direction.
     height, source = (
@@ -55,7 +55,7 @@ def weather(shown: Dataset, roles: Roles) -> tuple[Flow, ...]:
     )
     if height in shown and source in shown:
         flows.append(("waves", height, "m", source, "from"))
-    found = []
+    shown_flows = []
     for what, size, unit, angle, sense in flows:
         # A flow that is zero all along is not shown.
         values = shown[size].values
@@ -66,5 +66,5 @@ def weather(shown: Dataset, roles: Roles) -> tuple[Flow, ...]:
             # Mean of unit vectors: a plain mean fails across north.
             way = np.radians(shown[angle].values)
             mean = np.degrees(np.arctan2(np.nanmean(np.sin(way)), np.nanmean(np.cos(way))))
-            found.append(Flow(what, text, unit, float(mean % 360.0), sense))
-    return tuple(found)
+            shown_flows.append(Flow(what, text, unit, float(mean % 360.0), sense))
+    return tuple(shown_flows)

@@ -47,13 +47,13 @@ def thrust_zones(
     factor = shown[signals[0]].attrs["factor"]
     least, most = (factor * limit for limit in limits)
     margin = 0.05 * (most - least)
-    found = []
+    zones = []
     # Draw a limit only if a curve comes near it; else the curves would be flat.
     if span[1] >= NEAR * most > 0.0:
-        found.append(Zone(most, max(most, span[1]) + margin))
+        zones.append(Zone(most, max(most, span[1]) + margin))
     if span[0] <= NEAR * least < 0.0:
-        found.append(Zone(min(least, span[0]) - margin, least))
-    return tuple(found)
+        zones.append(Zone(min(least, span[0]) - margin, least))
+    return tuple(zones)
 
 
 def angle_zones(
@@ -78,7 +78,7 @@ def angle_zones(
     span = _span(shown, signals)
     if span is None:
         return ()
-    found = []
+    zones = []
     least = span[0] - BESIDE
     most = span[1] + BESIDE
     for start, end in ((degrees(a), degrees(b)) for a, b in sectors):
@@ -86,12 +86,12 @@ def angle_zones(
             360.0 * turn
             for turn in range(ceil((least - end) / 360.0), floor((most - start) / 360.0) + 1)
         ]
-        found += [Zone(max(start + turn, least), min(end + turn, most)) for turn in turns]
-    return tuple(found)
+        zones += [Zone(max(start + turn, least), min(end + turn, most)) for turn in turns]
+    return tuple(zones)
 
 
 def _span(shown: Dataset, signals: Sequence[str | None]) -> Pair | None:
     """Least and largest value of the curves."""
     values = np.concatenate([shown[name].values for name in signals if name in shown] or [[]])
-    known = finite(values)
-    return (float(known.min()), float(known.max())) if len(known) else None
+    numbers = finite(values)
+    return (float(numbers.min()), float(numbers.max())) if len(numbers) else None

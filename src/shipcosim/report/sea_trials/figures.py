@@ -17,14 +17,14 @@ _MANOEUVRES = 12  # that are drawn
 _ROW = 30  # px
 
 
-def track_figure(found: SeaTrialStudy, before: list[NDArray], after: list[NDArray]) -> Figure:
+def track_figure(study: SeaTrialStudy, before: list[NDArray], after: list[NDArray]) -> Figure:
     """Turning circles on one chart, as measured, as modelled and with the causes; the first course points up."""
     traces = []
-    for i in _chosen(found.trials):
-        trial = found.trials[i]
+    for i in _chosen(study.trials):
+        trial = study.trials[i]
         looks = [("measured", trial.measured, palette.MEASURED, 4.0)]
         looks += [("as modelled", before[i], palette.ORANGE, 1.3)]
-        if found.best.hypotheses:
+        if study.best.hypotheses:
             looks += [("with the causes", after[i], palette.BLUE, 1.3)]
         for name, motion, colour, width in looks:
             across, ahead = _turned(motion)
@@ -46,11 +46,11 @@ def track_figure(found: SeaTrialStudy, before: list[NDArray], after: list[NDArra
 
 def _chosen(trials: tuple[SeaTrial, ...]) -> list[int]:
     """One circle by side and steering."""
-    found: dict[tuple[int, int], int] = {}
+    circles: dict[tuple[int, int], int] = {}
     for i, trial in enumerate(trials):
         if trial.kind == "turning circle":
-            found.setdefault((trial.side, round(_steering(trial) / _ALIKE)), i)
-    return list(found.values())
+            circles.setdefault((trial.side, round(_steering(trial) / _ALIKE)), i)
+    return list(circles.values())
 
 
 def _steering(trial: SeaTrial) -> float:
@@ -68,18 +68,18 @@ def _turned(motion: NDArray) -> tuple[NDArray, NDArray]:
     return c * east - s * north, c * north + s * east
 
 
-def error_figure(found: SeaTrialStudy) -> Figure:
+def error_figure(study: SeaTrialStudy) -> Figure:
     """Root mean square errors of the features by kind of trial, before and after, beside how well they repeat."""
-    evidence = found.evidence
+    evidence = study.evidence
     spread = np.sqrt(np.diag(evidence.noise))
     errors = {"as modelled": evidence.predicted - evidence.measured}
-    if found.best.hypotheses:
-        errors["with the causes"] = found.after - evidence.measured
-    kinds = dict.fromkeys(trial.kind for trial in found.trials)
+    if study.best.hypotheses:
+        errors["with the causes"] = study.after - evidence.measured
+    kinds = dict.fromkeys(trial.kind for trial in study.trials)
     places = {
         f"{_SHORT[kind]}: {name}": rows
         for kind in kinds
-        for name, rows in places_of(found.trials, kind).items()
+        for name, rows in places_of(study.trials, kind).items()
     }
     names = [f"{name} [0.01 rad]" if name.endswith("drift") else name for name in places][::-1]
 
@@ -116,25 +116,25 @@ def error_figure(found: SeaTrialStudy) -> Figure:
 
 def places_of(trials: tuple[SeaTrial, ...], kind: str) -> dict[str, list[int]]:
     """By feature of a kind, its places among the features of all trials."""
-    found: dict[str, list[int]] = {name: [] for name in FEATURES[kind]}
+    places: dict[str, list[int]] = {name: [] for name in FEATURES[kind]}
     at = 0
     for trial in trials:
         for name in FEATURES[trial.kind]:
             if trial.kind == kind:
-                found[name].append(at)
+                places[name].append(at)
             at += 1
-    return found
+    return places
 
 
-def separation_figure(found: SeaTrialStudy) -> Figure:
+def separation_figure(study: SeaTrialStudy) -> Figure:
     """By manoeuvre and pair of sets, the log-evidence by which the right one is expected to lead."""
-    ranked = found.separations[:_MANOEUVRES][::-1]
-    names = [f"{one.manoeuvre} ({one.minutes:.0f} min)" for one in ranked]
+    ranked = study.separations[:_MANOEUVRES][::-1]
+    names = [f"{separation.manoeuvre} ({separation.minutes:.0f} min)" for separation in ranked]
     traces = []
     for (pair, (a, b)), colour in zip(
-        zip(ranked[0].nats, found.pairs, strict=True), palette.CYCLE * 2, strict=False
+        zip(ranked[0].nats, study.pairs, strict=True), palette.CYCLE * 2, strict=False
     ):
-        sizes = rounded([max(one.nats[pair], 0.1) for one in ranked], 3)
+        sizes = rounded([max(separation.nats[pair], 0.1) for separation in ranked], 3)
         dots = {
             "type": "scatter",
             "mode": "markers",

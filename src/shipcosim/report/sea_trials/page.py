@@ -60,46 +60,46 @@ class SeaTrialPage(FigurePage):
     steps: tuple[str, ...]
 
 
-def render(found: SeaTrialStudy, facts: dict[str, str]) -> str:
+def render(study: SeaTrialStudy, facts: dict[str, str]) -> str:
     """The page of sea trials as HTML; `facts` are shown below its title."""
-    return render_template("sea_trials/templates/sea_trials.html.jinja", _page(found, facts))
+    return render_template("sea_trials/templates/sea_trials.html.jinja", _page(study, facts))
 
 
-def _page(found: SeaTrialStudy, facts: dict[str, str]) -> SeaTrialPage:
-    circles = any(trial.kind == "turning circle" for trial in found.trials)
-    tracks = (track_figure(found, *motions_of(found)),) if circles else ()
-    errors = (error_figure(found),)
-    manoeuvres = (separation_figure(found),) if found.separations else ()
-    facts = facts | {"Trials": trials(found)}
+def _page(study: SeaTrialStudy, facts: dict[str, str]) -> SeaTrialPage:
+    circles = any(trial.kind == "turning circle" for trial in study.trials)
+    tracks = (track_figure(study, *motions_of(study)),) if circles else ()
+    errors = (error_figure(study),)
+    manoeuvres = (separation_figure(study),) if study.separations else ()
+    facts = facts | {"Trials": trials(study)}
     figures = (*tracks, *errors, *manoeuvres)
-    there = {"tracks": circles, "judged": bool(found.held_out), "next": bool(found.separations)}
+    there = {"tracks": circles, "judged": bool(study.held_out), "next": bool(study.separations)}
     return SeaTrialPage(
         title="Sea trials",
         facts=facts_of(facts),
-        outcome=outcome(found),
+        outcome=outcome(study),
         links=links_of(SECTIONS, there),
-        key_figures=_key_figures(found),
+        key_figures=_key_figures(study),
         figures=figures,
         tracks=tracks,
         errors=errors,
         manoeuvres=manoeuvres,
-        sets=sets_table(found),
-        held_out=held_out_table(found),
-        features=features_table(found),
-        separations=separation_table(found),
-        steps=next_steps(found),
+        sets=sets_table(study),
+        held_out=held_out_table(study),
+        features=features_table(study),
+        separations=separation_table(study),
+        steps=next_steps(study),
     )
 
 
-def _key_figures(found: SeaTrialStudy) -> tuple[KeyFigure, ...]:
+def _key_figures(study: SeaTrialStudy) -> tuple[KeyFigure, ...]:
     """Errors on what was not fitted, before and after, the worse of both sides."""
     figures = []
     for name, meaning in KEY_FEATURES.items():
         key = f"turning circle: {name}"
         both = [
-            (one.before[key], one.after[key])
-            for one in found.held_out.values()
-            if key in one.before
+            (errors.before[key], errors.after[key])
+            for errors in study.held_out.values()
+            if key in errors.before
         ]
         if both:
             before, after = (max(values) for values in zip(*both, strict=True))

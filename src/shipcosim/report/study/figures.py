@@ -44,16 +44,16 @@ def polar(tables: StudyTables, view: View) -> Figure:
     traces = []
     groups = []
     # Each series of directions: rows of the same direction are gathered into one point.
-    for k, one in enumerate(series):
-        degrees = np.unique(around.values[one.rows][np.isfinite(around.values[one.rows])])
-        alike = [one.rows[around.values[one.rows] == at] for at in degrees]
-        points = np.array([gathered(frame, size, rows) for rows in alike]).reshape(-1, 3)
-        groups += alike
+    for k, curve in enumerate(series):
+        degrees = np.unique(around.values[curve.rows][np.isfinite(around.values[curve.rows])])
+        rows_by_degree = [curve.rows[around.values[curve.rows] == at] for at in degrees]
+        points = np.array([gathered(frame, size, rows) for rows in rows_by_degree]).reshape(-1, 3)
+        groups += rows_by_degree
         traces += _around(
-            one, degrees, points, with_band=len(series) <= 3, fill=0.14 if k == 0 else None
+            curve, degrees, points, with_band=len(series) <= 3, fill=0.14 if k == 0 else None
         )
     # Static capability curves for the same quantity.
-    traces += _beside(tables, view, series)
+    traces += _static_curves(tables, view, series)
     note = "Bow up; angle: where the weather comes from, 90° from starboard."
     notes = [
         view.note or note,
@@ -78,7 +78,7 @@ def in_part(column: Column) -> str:
 
 
 def _around(
-    one: SeriesOfRows, degrees: NDArray, points: NDArray, *, with_band: bool, fill: float | None
+    series: SeriesOfRows, degrees: NDArray, points: NDArray, *, with_band: bool, fill: float | None
 ) -> list[PlotlyDict]:
     """A curve around the ship, closed if directions go all around, and the band of its interval."""
     # Closed if no gap is much larger than the mean spacing.
@@ -91,18 +91,18 @@ def _around(
     curve = {
         "type": "scatterpolar",
         "mode": "lines+markers",
-        "name": one.label or "all",
+        "name": series.label or "all",
         "theta": theta,
         "r": rounded([*points[:, 0], *points[end, 0]]),
         "hovertemplate": "%{r:.3~g} from %{theta}",
-        "line": {"color": one.colour, "width": 2},
+        "line": {"color": series.colour, "width": 2},
         "marker": {"size": 4},
     }
     if fill is not None and closed:
-        curve |= {"fill": "toself", "fillcolor": palette.faded(one.colour, fill)}
+        curve |= {"fill": "toself", "fillcolor": palette.faded(series.colour, fill)}
     # The interval as dotted curves, where it is known.
-    known = np.isfinite(points[:, 1:]).all(axis=1)
-    if not with_band or not known.any():
+    has_band = np.isfinite(points[:, 1:]).all(axis=1)
+    if not with_band or not has_band.any():
         return [curve]
     ends = {
         "type": "scatterpolar",
@@ -111,40 +111,42 @@ def _around(
         "hoverinfo": "skip",
         "theta": theta,
     }
-    look = {"line": {"color": one.colour, "width": 1, "dash": "dot"}}
+    look = {"line": {"color": series.colour, "width": 1, "dash": "dot"}}
     return [
         curve,
         *(ends | {"r": rounded([*points[:, k], *points[end, k]])} | look for k in (1, 2)),
     ]
 
 
-def _beside(tables: StudyTables, view: View, series: Sequence[SeriesOfRows]) -> list[PlotlyDict]:
+def _static_curves(
+    tables: StudyTables, view: View, series: Sequence[SeriesOfRows]
+) -> list[PlotlyDict]:
     """Curves from `about` for the same quantity and series, such as static capability."""
-    colours = {one.label: one.colour for one in series}
-    found = []
-    for one in tables.about.get("beside") or ():
+    colours = {each.label: each.colour for each in series}
+    traces = []
+    for entry in tables.about.get("beside") or ():
         # Same quantity, same basis, and a series that is drawn.
-        is_asked = one.get("radius") == view.radius and (
-            "basis" not in one or one["basis"] in view.static
+        is_asked = entry.get("radius") == view.radius and (
+            "basis" not in entry or entry["basis"] in view.static
         )
-        if is_asked and str(one["series"]) in colours:
-            degrees = np.degrees(np.asarray(one["angle"], float))
-            found.append(
+        if is_asked and str(entry["series"]) in colours:
+            degrees = np.degrees(np.asarray(entry["angle"], float))
+            traces.append(
                 {
                     "type": "scatterpolar",
                     "mode": "lines",
-                    "name": str(one["name"]),
+                    "name": str(entry["name"]),
                     "theta": rounded([*degrees, degrees[0]]),
                     "hovertemplate": "%{r:.3~g} from %{theta}",
-                    "r": rounded([*one["radius_values"], one["radius_values"][0]]),
+                    "r": rounded([*entry["radius_values"], entry["radius_values"][0]]),
                     "line": {
-                        "color": colours[str(one["series"])],
+                        "color": colours[str(entry["series"])],
                         "width": 2,
-                        "dash": one.get("dash", "dash"),
+                        "dash": entry.get("dash", "dash"),
                     },
                 }
             )
-    return found
+    return traces
 
 
 def curves(tables: StudyTables, view: View) -> Figure:
@@ -163,13 +165,15 @@ def curves(tables: StudyTables, view: View) -> Figure:
     widths = []
     largest = np.nanmax(quantity.values) if np.isfinite(quantity.values).any() else 1.0
     # Runs that never reach a value keep the curve below 1.
-    for one in series:
-        rows = one.rows if done is None or len(done) != frame.rows else one.rows[done[one.rows]]
+    for curve in series:
+        rows = (
+            curve.rows if done is None or len(done) != frame.rows else curve.rows[done[curve.rows]]
+        )
         # Empirical distribution with its simultaneous band.
         reached, share, half = distribution(quantity.values[rows])
         never += len(rows) - len(reached)
         widths.append(half)
-        traces += _steps(one, reached, share, half, largest, with_band=len(series) <= 4)
+        traces += _steps(curve, reached, share, half, largest, with_band=len(series) <= 4)
     notes = [
         view.note or "Share of runs up to each value.",
         f"Band: 95 %, for the whole curve at once (Dvoretzky-Kiefer-Wolfowitz), ± {max(widths):.2g}."
@@ -187,7 +191,7 @@ def curves(tables: StudyTables, view: View) -> Figure:
 
 
 def _steps(
-    one: SeriesOfRows,
+    series: SeriesOfRows,
     reached: NDArray,
     share: NDArray,
     half: float,
@@ -199,10 +203,10 @@ def _steps(
     x = np.concatenate([reached, [largest]])
     y = np.concatenate([share, share[-1:] if len(share) else [0.0]])
     curve = line(
-        one.label or "all runs",
+        series.label or "all runs",
         x,
         y,
-        one.colour,
+        series.colour,
         width=2,
         hovertemplate="%{y:.3~f} up to %{x:.4~g}",
     )
@@ -213,11 +217,11 @@ def _steps(
     look: PlotlyDict = {"showlegend": False, "hoverinfo": "skip"}
     # Band of the distribution, within 0 and 1.
     low, high = (
-        line("", x, np.clip(y + k * half, 0, 1), one.colour, width=0, **look) for k in (-1, 1)
+        line("", x, np.clip(y + k * half, 0, 1), series.colour, width=0, **look) for k in (-1, 1)
     )
     for edge in (low, high):
         edge["line"] |= {"shape": "hv"}
-    return [low, high | {"fill": "tonexty", "fillcolor": palette.faded(one.colour, 0.15)}, curve]
+    return [low, high | {"fill": "tonexty", "fillcolor": palette.faded(series.colour, 0.15)}, curve]
 
 
 def bars(tables: StudyTables, view: View) -> Figure:
@@ -231,8 +235,8 @@ def bars(tables: StudyTables, view: View) -> Figure:
     levels = every[: view.most]
     # With several values the colours tell these apart, not series.
     has_several = len(values) > 1
-    asked = [] if has_several and view.series is None else view.series
-    series = series_of(frame, asked, [category.name])
+    factors = [] if has_several and view.series is None else view.series
+    series = series_of(frame, factors, [category.name])
     names = [category.text(at) for at in levels]
     # Long names need horizontal bars.
     is_upright = sum(map(len, names)) <= MOST_LETTERS
@@ -240,14 +244,17 @@ def bars(tables: StudyTables, view: View) -> Figure:
     groups = []
     colours = iter(palette.CYCLE)
     for value in values:
-        for one in series:
+        for group in series:
             # Gather the rows of each category into a value with interval.
-            alike = [one.rows[category.values[one.rows] == level] for level in levels]
+            rows_by_level = [group.rows[category.values[group.rows] == level] for level in levels]
             points = np.array(
-                [gathered(frame, value, rows) if len(rows) else (np.nan,) * 3 for rows in alike]
+                [
+                    gathered(frame, value, rows) if len(rows) else (np.nan,) * 3
+                    for rows in rows_by_level
+                ]
             )
-            groups += alike
-            label = ", ".join(filter(None, (value.name if has_several else "", one.label)))
+            groups += rows_by_level
+            label = ", ".join(filter(None, (value.name if has_several else "", group.label)))
             traces.append(
                 _bar(label or value.name, names, points, next(colours, palette.INK), is_upright)
             )
@@ -344,8 +351,8 @@ def pareto(tables: StudyTables, view: View) -> Figure:
     )
     wanted = f"Wanted: {better}. Marked: the {front.sum()} of {frame.rows} that no other beats."
     notes = [view.note or wanted]
-    if third is not None and len(known := finite(third.values)):
-        ends = f"{third.text(known.min())} to {third.text(known.max())}"
+    if third is not None and len(numbers := finite(third.values)):
+        ends = f"{third.text(numbers.min())} to {third.text(numbers.max())}"
         notes.append(f"Size of a dot: {third.name}, {ends}.")
     title = " against ".join(view.quantities)
     return _figure(view, title, "", traces, _axes(*columns[:2]), notes, TALL)
@@ -363,15 +370,15 @@ def scatter(tables: StudyTables, view: View) -> Figure:
     share = min(MOST_DOTS / max(frame.rows, 1), 1.0)
     traces = [
         _dots(
-            one.label or "runs",
+            group.label or "runs",
             frame,
             tables,
             columns,
-            _even(one.rows, share),
+            _even(group.rows, share),
             None,
-            {"color": one.colour, "size": 6},
+            {"color": group.colour, "size": 6},
         )
-        for one in series
+        for group in series
     ]
     notes = [
         view.note,
@@ -461,18 +468,18 @@ def distance_figure(time: NDArray, spread: Sequence[tuple[SeriesOfRows, NDArray]
         5 %, 50 % and 95 % of the tracks. [m]
     """
     traces = []
-    for one, (low, middle, high) in spread:
+    for group, (low, middle, high) in spread:
         # Band between the outer quantiles, then the median on top.
         look: PlotlyDict = {"showlegend": False, "hoverinfo": "skip"}
-        top = line("", time, high, one.colour, width=0, **look)
-        traces += [line("", time, low, one.colour, width=0, **look)]
-        traces += [top | {"fill": "tonexty", "fillcolor": palette.faded(one.colour, 0.15)}]
+        top = line("", time, high, group.colour, width=0, **look)
+        traces += [line("", time, low, group.colour, width=0, **look)]
+        traces += [top | {"fill": "tonexty", "fillcolor": palette.faded(group.colour, 0.15)}]
         traces += [
             line(
-                one.label or "all runs",
+                group.label or "all runs",
                 time,
                 middle,
-                one.colour,
+                group.colour,
                 width=2,
                 hovertemplate="%{y:.3~g} m",
             )

@@ -118,31 +118,31 @@ def frame_of(tables: StudyTables, name: str | None, needed: Sequence[str | None]
     Lacking
         If the table that it names is not there.
     """
-    said = tables.about.get("columns", ())
+    about_columns = tables.about.get("columns", ())
     if name:
         every = {"runs": tables.runs, "summary": tables.summary, **tables.tables}
         if name not in every:
             raise Lacking(f"There is no table '{name}'. There is: {', '.join(every)}.")
         title = f"the table '{name}'" if name in tables.tables else f"the {name}"
-        return Frame(title, columns_of(every[name], said))
+        return Frame(title, columns_of(every[name], about_columns))
     # The summary serves only if it has all needed columns.
     if not {*needed} <= {*map(str, tables.summary.columns)}:
-        return Frame(RUNS, columns_of(tables.runs, said))
+        return Frame(RUNS, columns_of(tables.runs, about_columns))
     rows = tables.summary.dropna(
         subset=list(needed)
     )  # summaries over other factors have rows of their own
-    return Frame("the summary", columns_of(rows.dropna(axis="columns", how="all"), said))
+    return Frame("the summary", columns_of(rows.dropna(axis="columns", how="all"), about_columns))
 
 
 def series_of(
-    frame: Frame, asked: Sequence[str] | None, taken: Sequence[str]
+    frame: Frame, factors: Sequence[str] | None, taken: Sequence[str]
 ) -> list[SeriesOfRows]:
     """Series of a view: levels of the named factors; else of unused factors, unless it shows runs.
 
     Parameters
     ----------
     frame : Frame
-    asked : sequence of str, optional
+    factors : sequence of str, optional
         Names of the factors; empty for a single series.
     taken : sequence of str
         Columns that are axes of the view.
@@ -153,22 +153,22 @@ def series_of(
         At most eight, in the order of their levels.
     """
     # Without a choice, all factors that are no axis; runs are then one series.
-    if asked is None:
+    if factors is None:
         free = [
             c.name
             for c in frame.columns.values()
             if c.role == FACTOR and c.name not in taken and c.levels
         ]
-        asked = free if frame.name != RUNS else []
+        factors = free if frame.name != RUNS else []
     # Series are the combinations of levels that occur.
-    columns = [frame.column(name) for name in asked]
+    columns = [frame.column(name) for name in factors]
     keys = np.array([column.values for column in columns]).reshape(len(columns), frame.rows).T
-    found, place = keys[:1], np.zeros(frame.rows, int)
+    levels, place = keys[:1], np.zeros(frame.rows, int)
     if columns:
-        found, place = np.unique(keys, axis=0, return_inverse=True)
+        levels, place = np.unique(keys, axis=0, return_inverse=True)
     # At most as many series as colours.
     series = []
-    for k, key in enumerate(found[:MOST_SERIES]):
+    for k, key in enumerate(levels[:MOST_SERIES]):
         texts = [c.text(v, with_name=not c.labels) for c, v in zip(columns, key, strict=True)]
         rows = np.flatnonzero(place.ravel() == k)
         series.append(SeriesOfRows(", ".join(texts), palette.CYCLE[k], rows))
@@ -177,7 +177,7 @@ def series_of(
 
 def left_out(frame: Frame, drawn: Sequence[SeriesOfRows]) -> str:
     """Sentence on rows that no series contains; empty if all are drawn."""
-    missing = frame.rows - sum(len(one.rows) for one in drawn)
+    missing = frame.rows - sum(len(group.rows) for group in drawn)
     return (
         f"{missing} of {frame.rows} rows are in further series, which are not drawn."
         if missing
@@ -193,11 +193,11 @@ def gathered(frame: Frame, column: Column, rows: NDArray) -> Point:
         ends = [np.nan if limit is None else float(limit.values[rows[0]]) for limit in limits]
         return Point(float(column.values[rows[0]]), *ends)
     # Several rows: share with Wilson's interval, or mean with a normal one.
-    known = column.values[rows]
-    known = finite(known)
-    if column.is_truth and len(known):
-        return Point(*wilson(int(known.sum()), len(known)))
-    return Point(*mean_interval(known))
+    numbers = column.values[rows]
+    numbers = finite(numbers)
+    if column.is_truth and len(numbers):
+        return Point(*wilson(int(numbers.sum()), len(numbers)))
+    return Point(*mean_interval(numbers))
 
 
 def how_gathered(frame: Frame, column: Column, groups: Sequence[NDArray]) -> str:

@@ -115,16 +115,18 @@ def render(tables: StudyTables) -> str:
 
 def outcome_of(tables: StudyTables) -> Outcome:
     """Result of a study in one sentence, without its views."""
-    said = tables.about.get("columns", ())
-    return words.outcome(tables, columns_of(tables.runs, said), columns_of(tables.summary, said))
+    about_columns = tables.about.get("columns", ())
+    return words.outcome(
+        tables, columns_of(tables.runs, about_columns), columns_of(tables.summary, about_columns)
+    )
 
 
 def page_of(tables: StudyTables) -> StudyPage:
     """Contents of the page of a study."""
     # Columns with units and roles, as the study describes them.
-    said = tables.about.get("columns", ())
-    runs = columns_of(tables.runs, said)
-    summary = columns_of(tables.summary, said)
+    about_columns = tables.about.get("columns", ())
+    runs = columns_of(tables.runs, about_columns)
+    summary = columns_of(tables.summary, about_columns)
     # Views first: a section without content is left out.
     tracks, plots, undrawn = _views(tables)
     drawn = (*plots, *(view.distance for view in tracks))

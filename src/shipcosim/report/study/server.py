@@ -153,11 +153,11 @@ class _Handler(BaseHTTPRequestHandler):
             )
             return
         # The number must be that of a run of this study.
-        found = RUN.fullmatch(self.path)
-        if not found or int(found[1]) not in self.server.runs:
+        match = RUN.fullmatch(self.path)
+        if not match or int(match[1]) not in self.server.runs:
             self._refuse(HTTPStatus.NOT_FOUND, "There is no such run in this study.")
             return
-        self._simulate(int(found[1]))
+        self._simulate(int(match[1]))
 
     def _simulate(self, run: int) -> None:
         """Simulate a run that has no page yet, unless another simulation is running."""
@@ -215,8 +215,8 @@ class _Handler(BaseHTTPRequestHandler):
     def _refuse(self, status: HTTPStatus, why: str) -> None:
         self._answer(status, {"error": why})
 
-    def _answer(self, status: HTTPStatus, said: object) -> None:
-        self._send(status, io.BytesIO(json.dumps(said).encode()), "application/json")
+    def _answer(self, status: HTTPStatus, content: object) -> None:
+        self._send(status, io.BytesIO(json.dumps(content).encode()), "application/json")
 
     def _send(self, status: HTTPStatus, body: BinaryIO, kind: str) -> None:
         # The size first, then the content piece by piece: many may ask for a large page at once.

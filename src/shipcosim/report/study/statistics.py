@@ -22,12 +22,12 @@ def mean_interval(values: ArrayLike) -> tuple[float, float, float]:
     [2.0, 0.87, 3.13]
     """
     # Interval z s / sqrt(n); values that are not finite do not count.
-    known = np.asarray(values, float)
-    known = finite(known)
-    if not known.size:
+    numbers = np.asarray(values, float)
+    numbers = finite(numbers)
+    if not numbers.size:
         return np.nan, np.nan, np.nan
-    middle = float(known.mean())
-    half = Z * float(known.std(ddof=1)) / np.sqrt(known.size) if known.size > 1 else np.nan
+    middle = float(numbers.mean())
+    half = Z * float(numbers.std(ddof=1)) / np.sqrt(numbers.size) if numbers.size > 1 else np.nan
     return middle, middle - half, middle + half
 
 
@@ -54,10 +54,10 @@ def distribution(values: ArrayLike) -> tuple[NDArray, NDArray, float]:
     ([1.0, 2.0, 3.0], [0.25, 0.5, 0.75], 0.68)
     """
     # Dvoretzky-Kiefer-Wolfowitz with Massart's constant: sqrt(ln(2/alpha) / 2n).
-    found = np.asarray(values, float)
-    reached = np.sort(finite(found))
-    half = float(np.sqrt(np.log(2 / (1 - LEVEL)) / (2 * len(found)))) if len(found) else 1.0
-    return reached, np.arange(1, len(reached) + 1) / max(len(found), 1), half
+    numbers = np.asarray(values, float)
+    reached = np.sort(finite(numbers))
+    half = float(np.sqrt(np.log(2 / (1 - LEVEL)) / (2 * len(numbers)))) if len(numbers) else 1.0
+    return reached, np.arange(1, len(reached) + 1) / max(len(numbers), 1), half
 
 
 def explained(values: ArrayLike, by: ArrayLike, are_levels: bool) -> float:
@@ -89,9 +89,9 @@ def explained(values: ArrayLike, by: ArrayLike, are_levels: bool) -> float:
     # Rows where both are known.
     quantity = np.asarray(values, float)
     cause = np.asarray(by, float)
-    known = np.isfinite(quantity) & np.isfinite(cause)
-    quantity = quantity[known]
-    cause = cause[known]
+    is_known = np.isfinite(quantity) & np.isfinite(cause)
+    quantity = quantity[is_known]
+    cause = cause[is_known]
     # Groups: levels, or bins of equal size.
     groups = np.unique(cause, return_inverse=True)[1] if are_levels else _bins(cause)
     count = np.bincount(groups) if len(groups) else np.zeros(0)
@@ -133,7 +133,7 @@ def pareto_front(quantities: Sequence[ArrayLike]) -> NDArray:
     [True, True, False, True]
     """
     # Points with an unknown quantity cannot be compared.
-    points = np.column_stack([np.asarray(one, float) for one in quantities])
+    points = np.column_stack([np.asarray(quantity, float) for quantity in quantities])
     front = np.zeros(len(points), bool)
     rows = np.flatnonzero(np.isfinite(points).all(axis=1))
     best = np.empty((0, points.shape[1]))

@@ -87,14 +87,14 @@ def tables_of(swept: Swept, command: str) -> StudyTables:
     tracks = swept.folder / "tracks.parquet"
     scenario = swept.plan.scenario
     views = swept.plan.study.view
-    beside, remarks = static_curves(views, scenario.system_path, scenario.parameter_paths)
-    found = (
+    static_tables, remarks = static_curves(views, scenario.system_path, scenario.parameter_paths)
+    matches = (
         re.fullmatch(r"run-([0-9]+)", page.parent.name) for page in folder.glob("run-*/report.html")
     )
     return StudyTables(
         about={
             **swept.about,
-            "beside": beside,
+            "beside": static_tables,
             "remarks": [*swept.about.get("remarks", ()), *remarks],
             "ship": _ship(swept),
         },
@@ -102,7 +102,7 @@ def tables_of(swept: Swept, command: str) -> StudyTables:
         summary=swept.summary,
         tracks=read_part(tracks) if tracks.is_file() else None,
         tables=swept.tables,
-        pages=sorted(int(match[1]) for match in found if match),
+        pages=sorted(int(match[1]) for match in matches if match),
         command=command,
     )
 
@@ -162,11 +162,11 @@ class Column:
         # Labels are levels; numbers only if they are few, and whole or a factor's.
         if self.labels:
             return tuple(float(k) for k in range(len(self.labels)))
-        found = np.unique(finite(self.values))
-        are_few = len(found) <= MOST_LEVELS and (
-            self.role == FACTOR or bool(np.all(found == np.round(found)))
+        levels = np.unique(finite(self.values))
+        are_few = len(levels) <= MOST_LEVELS and (
+            self.role == FACTOR or bool(np.all(levels == np.round(levels)))
         )
-        return tuple(found.tolist()) if are_few else ()
+        return tuple(levels.tolist()) if are_few else ()
 
     @property
     def titled(self) -> str:
@@ -218,13 +218,13 @@ def signed(value: float, digits: int = 4) -> str:
     return text.replace("-", "−").replace("e−", "e-")
 
 
-def columns_of(frame: DataFrame, said: Iterable[Mapping[str, Any]]) -> dict[str, Column]:
+def columns_of(frame: DataFrame, about_columns: Iterable[Mapping[str, Any]]) -> dict[str, Column]:
     """Columns of a table by name, without `run`, `error` and `input`.
 
     Parameters
     ----------
     frame : pandas.DataFrame
-    said : iterable of mapping
+    about_columns : iterable of mapping
         Of columns: `name`, `role`, `unit`, `description`, `labels`. What is said of NAME holds for NAME_low and
         NAME_high.
 
@@ -234,47 +234,47 @@ def columns_of(frame: DataFrame, said: Iterable[Mapping[str, Any]]) -> dict[str,
         In the order of the table.
     """
     # Ends of an interval have the unit and role of their value.
-    known = {str(one["name"]): one for one in said}
-    for name, one in list(known.items()):
+    about = {str(entry["name"]): entry for entry in about_columns}
+    for name, described in list(about.items()):
         for end in ("low", "high"):
-            known.setdefault(f"{name}_{end}", one)
-    found = {}
+            about.setdefault(f"{name}_{end}", described)
+    columns = {}
     for name in map(str, frame.columns):
         # What is known of a value in part belongs to its column.
         is_range = name.endswith(RANGE) and name.removesuffix(RANGE) in frame
         if is_range or name in ("run", "error", "input"):
             continue
-        column = column_of(name, cast("Series", frame[name]), known.get(name, {}))
+        column = column_of(name, cast("Series", frame[name]), about.get(name, {}))
         if f"{name}{RANGE}" in frame:
             column = replace(column, ranges=tuple(map(str, frame[f"{name}{RANGE}"])))
-        found[name] = column
-    return found
+        columns[name] = column
+    return columns
 
 
-def column_of(name: str, values: Series, said: Mapping[str, Any]) -> Column:
+def column_of(name: str, values: Series, about: Mapping[str, Any]) -> Column:
     """One column in units to read: degrees, kN for large numbers."""
     made = Column(
-        name, str(said.get("role") or ""), str(said.get("description") or ""), "", np.zeros(0)
+        name, str(about.get("role") or ""), str(about.get("description") or ""), "", np.zeros(0)
     )
     # True or false, also where some values are missing.
-    known = values[values.notna()]
+    filled = values[values.notna()]
     if values.dtype.kind == "b" or (
-        values.dtype.kind == "O" and len(known) and all(value in _TRUTH for value in known)
+        values.dtype.kind == "O" and len(filled) and all(value in _TRUTH for value in filled)
     ):
         return replace(made, values=_numbers(values), is_truth=True)
     # Numbers, in the unit to read.
-    if values.dtype.kind in "iuf" or not len(known):
-        shown, unit = readable(_numbers(values), said.get("unit"))
+    if values.dtype.kind in "iuf" or not len(filled):
+        shown, unit = readable(_numbers(values), about.get("unit"))
         return replace(made, values=shown, unit=unit)
     # Texts that are all numbers become numbers; others become labels.
     texts = [label(value) for value in values]
     number = re.compile(r"[-+]?\d+(\.\d*)?", re.ASCII)
     if all(map(number.fullmatch, filter(None, texts))):
-        return column_of(name, values.map(lambda value: float(label(value) or "nan")), said)
+        return column_of(name, values.map(lambda value: float(label(value) or "nan")), about)
     # Labels in the order of the study, then as they occur.
-    order = [label(value) for value in said.get("labels") or ()]
+    order = [label(value) for value in about.get("labels") or ()]
     there = dict.fromkeys(text for text in texts if text)
-    labels = tuple(dict.fromkeys([*(one for one in order if one in there), *there]))
+    labels = tuple(dict.fromkeys([*(entry for entry in order if entry in there), *there]))
     place = {label: float(k) for k, label in enumerate(labels)}
     return replace(
         made, values=np.array([place.get(text, np.nan) for text in texts]), labels=labels
@@ -290,14 +290,14 @@ def readable(values: ArrayLike, unit: str | None) -> tuple[NDArray, str]:
     (array([ 0., 45.]), '°')
     """
     # Small quantities stay in their unit.
-    found = np.asarray(values, float)
+    numbers = np.asarray(values, float)
     shown, factor, least = READ_AS.get(unit or None, (unit or "", 1.0, 0.0))
-    known = np.abs(finite(found))
-    if known.size and known.max() < least:
+    sizes = np.abs(finite(numbers))
+    if sizes.size and sizes.max() < least:
         shown = unit or ""
         factor = 1.0
     # Round to 12 digits: 45 deg must not read 44.99999999.
-    scaled = factor * found
+    scaled = factor * numbers
     power = np.where(
         np.isfinite(scaled) & (scaled != 0.0), np.floor(np.log10(np.abs(scaled) + 1e-300)), 0.0
     )

@@ -70,34 +70,37 @@ def tracks_view(tables: StudyTables, view: View) -> TracksView:
     tracks = _read(tables)
     has_track = np.asarray(np.isfinite(tracks.north).any(axis=1))
     series = [
-        SeriesOfRows(one.label, one.colour, one.rows[has_track[one.rows]])
-        for one in series_of(frame, view.series or [], [])
+        SeriesOfRows(group.label, group.colour, group.rows[has_track[group.rows]])
+        for group in series_of(frame, view.series or [], [])
     ]
     # Circles and figure use the distance from the start.
     distance = np.hypot(tracks.north, tracks.east)
     circles = view.circles or _circles(distance)
     # Rows of the drawn tracks: equally many of each series.
     most = MOST_TRACKS // max(len(series), 1)
-    drawn = [one.rows[evenly(len(one.rows), most)] if len(one.rows) else one.rows for one in series]
+    drawn = [
+        group.rows[evenly(len(group.rows), most)] if len(group.rows) else group.rows
+        for group in series
+    ]
     note = f"North up, each from where it began. Drawn are {sum(map(len, drawn))} of {sum(len(s.rows) for s in series)} "
     note += "tracks, with her outline at the time shown; shaded: where all of them were, the darker the longer."
     # Rows without a track, which do not count as left out.
-    there = np.concatenate([one.rows for one in series]) if series else np.zeros(0, int)
+    there = np.concatenate([group.rows for group in series]) if series else np.zeros(0, int)
     without = [SeriesOfRows("", "", np.setdiff1d(np.arange(frame.rows), there))]
-    said = [view.note or note, left_out(frame, [*series, *without])]
+    sentences = [view.note or note, left_out(frame, [*series, *without])]
     # Quantiles over all tracks, not only over the drawn ones; NaN where no run is left.
     spread = []
-    for one in series:
-        if len(one.rows):
+    for drawn_group in series:
+        if len(drawn_group.rows):
             quantiles = np.full((3, len(tracks.time)), np.nan)
-            some = np.isfinite(distance[one.rows]).any(axis=0)
-            left = distance[np.ix_(one.rows, some)]
+            some = np.isfinite(distance[drawn_group.rows]).any(axis=0)
+            left = distance[np.ix_(drawn_group.rows, some)]
             quantiles[:, some] = np.nanquantile(left, [0.05, 0.5, 0.95], axis=0)
-            spread.append((one, quantiles))
+            spread.append((drawn_group, quantiles))
     return TracksView(
         title=view.title or "Tracks",
-        note=" ".join(filter(None, said)),
-        series=tuple((one.label or "all runs", one.colour) for one in series),
+        note=" ".join(filter(None, sentences)),
+        series=tuple((group.label or "all runs", group.colour) for group in series),
         data=_data(tables, tracks, series, drawn, circles),
         distance=distance_figure(tracks.time, spread),
     )
@@ -123,7 +126,7 @@ def _read(tables: StudyTables) -> _Tracks:
     kept = evenly(len(stamps), MOST_TIMES)
     north, east, psi = full[:, :, kept]
     # Each track relative to its first known position.
-    first = [np.array([finite(row)[:1].sum() for row in one])[:, None] for one in full[:2]]
+    first = [np.array([finite(row)[:1].sum() for row in table])[:, None] for table in full[:2]]
     return _Tracks(stamps[kept], north - first[0], east - first[1], np.degrees(psi))
 
 
@@ -144,14 +147,14 @@ def _data(
     drawn: Sequence[NDArray],
     circles: Sequence[float],
 ) -> JsonObject:
-    every = np.concatenate([one.rows for one in series]) if series else np.zeros(0, int)
+    every = np.concatenate([group.rows for group in series]) if series else np.zeros(0, int)
     # West, east, south and north end of all tracks, the start included. [m]
     ends = []
     for values in (tracks.east[every], tracks.north[every]):
-        known = finite(values)
+        numbers = finite(values)
         ends += (
-            [min(float(known.min()), 0.0), max(float(known.max()), 0.0)]
-            if known.size
+            [min(float(numbers.min()), 0.0), max(float(numbers.max()), 0.0)]
+            if numbers.size
             else [-1.0, 1.0]
         )
     box = [float(f"{end:.6g}") for end in ends]
@@ -170,11 +173,11 @@ def _data(
         "circles": list(circles),
         "series": [
             {
-                "label": one.label or "all runs",
-                "colour": one.colour,
-                "count": len(one.rows),
-                "cells": _density(tracks, one.rows, box),
-                "beyond": _beyond(tracks, one.rows, circles),
+                "label": group.label or "all runs",
+                "colour": group.colour,
+                "count": len(group.rows),
+                "cells": _density(tracks, group.rows, box),
+                "beyond": _beyond(tracks, group.rows, circles),
                 "tracks": [
                     {
                         "run": int(tables.runs["run"].iloc[row]),
@@ -185,7 +188,7 @@ def _data(
                     for row in rows
                 ],
             }
-            for one, rows in zip(series, drawn, strict=True)
+            for group, rows in zip(series, drawn, strict=True)
         ],
         "cells": CELLS,
     }
@@ -196,12 +199,12 @@ def _density(tracks: _Tracks, rows: NDArray, box: Sequence[float]) -> list[int]:
     # All positions of the series within the box of all tracks.
     north = tracks.north[rows].ravel()
     east = tracks.east[rows].ravel()
-    known = np.isfinite(north) & np.isfinite(east)
+    is_known = np.isfinite(north) & np.isfinite(east)
     west, right, south, top = (
         end + k for end, k in zip(box, (-1e-6, 1e-6, -1e-6, 1e-6), strict=True)
     )
     counts, _, _ = np.histogram2d(
-        north[known], east[known], bins=CELLS, range=[[south, top], [west, right]]
+        north[is_known], east[is_known], bins=CELLS, range=[[south, top], [west, right]]
     )
     return counts[::-1].astype(int).ravel().tolist()
 
@@ -215,4 +218,4 @@ def _beyond(tracks: _Tracks, rows: NDArray, circles: Sequence[float]) -> list[li
         (largest > radius).mean(axis=0) if len(rows) else np.zeros(len(tracks.time))
         for radius in circles
     ]
-    return [[round(float(share), 4) for share in one] for one in shares]
+    return [[round(float(share), 4) for share in row] for row in shares]

@@ -39,7 +39,7 @@ def facts(tables: StudyTables) -> tuple[Fact, ...]:
     # Fewer runs than planned: show both numbers.
     runs = about.get("runs") or {}
     planned = runs.get("planned")
-    known = {
+    texts = {
         "Study": tables.name,
         "Scenario": study.get("scenario"),
         "Runs": f"{len(tables.runs)} of {planned}"
@@ -48,7 +48,7 @@ def facts(tables: StudyTables) -> tuple[Fact, ...]:
         "Seed": study.get("seed", about.get("seed")),
         "Engine": about.get("engine"),
     }
-    return tuple(Fact(name, str(text)) for name, text in known.items() if text not in (None, ""))
+    return tuple(Fact(name, str(text)) for name, text in texts.items() if text not in (None, ""))
 
 
 def outcome(tables: StudyTables, runs: Columns, summary: Columns) -> Outcome:
@@ -57,10 +57,12 @@ def outcome(tables: StudyTables, runs: Columns, summary: Columns) -> Outcome:
     failed = int(is_failed(tables).sum())
     count = len(tables.runs)
     word = f"{count} runs" if count != 1 else "1 run"
-    said = _of_summary(summary) or _of_runs(runs) or "No quantity has a value."
+    sentence = _of_summary(summary) or _of_runs(runs) or "No quantity has a value."
     if failed:
-        said += f" {failed} of {count} runs failed."
-    return Outcome("failed" if failed == count else "partial" if failed else "named", word, said)
+        sentence += f" {failed} of {count} runs failed."
+    return Outcome(
+        "failed" if failed == count else "partial" if failed else "named", word, sentence
+    )
 
 
 def _first(columns: Columns, role: str) -> Column | None:
@@ -71,72 +73,72 @@ def _first(columns: Columns, role: str) -> Column | None:
 
 def _of_summary(summary: Columns) -> str:
     """Range of the first summary, and where its ends lie."""
-    found = _first(summary, SUMMARY)
-    if found is None:
+    column = _first(summary, SUMMARY)
+    if column is None:
         return ""
-    name = capitalised(found.description or found.name.replace("_", " "))
+    name = capitalised(column.description or column.name.replace("_", " "))
     # One row, one value everywhere, or a range with the factors of its ends.
-    if len(found.values) == 1:
-        return f"{name}: {found.text_at(0)}."
-    low = int(np.nanargmin(found.values))
-    high = int(np.nanargmax(found.values))
-    if found.values[low] == found.values[high]:
-        return f"{name}: {found.text_at(low)} everywhere."
+    if len(column.values) == 1:
+        return f"{name}: {column.text_at(0)}."
+    low = int(np.nanargmin(column.values))
+    high = int(np.nanargmax(column.values))
+    if column.values[low] == column.values[high]:
+        return f"{name}: {column.text_at(low)} everywhere."
     factors = [c for c in summary.values() if c.role in (FACTOR, SAMPLE)]
     ends = []
     for row in (low, high):
         where = ", ".join(c.text(c.values[row], with_name=not c.labels) for c in factors)
-        ends.append(f"{found.text_at(row)} ({where or 'one row'})")
+        ends.append(f"{column.text_at(row)} ({where or 'one row'})")
     return f"{name}: from {ends[0]} to {ends[1]}."
 
 
 def _of_runs(runs: Columns) -> str:
     """First quantity over all runs."""
-    found = _first(runs, QUANTITY)
-    if found is None:
+    column = _first(runs, QUANTITY)
+    if column is None:
         return ""
     # Share with Wilson's interval for true or false, else median, 90 % and largest value.
-    known = finite(found.values)
-    name = capitalised(found.description or found.name)
-    if found.is_truth:
-        _, low, high = wilson(int(known.sum()), len(known))
-        return f"{name}: {percent(known.mean())} of runs (95 % interval {percent(low)} to {percent(high)})."
-    low, middle, high = np.quantile(known, [0.0, 0.5, 0.9])
-    most = found.text(known.max())
-    return f"{name}: {found.text(middle)} in the median, {found.text(high)} in nine of ten runs, {most} at most."
+    numbers = finite(column.values)
+    name = capitalised(column.description or column.name)
+    if column.is_truth:
+        _, low, high = wilson(int(numbers.sum()), len(numbers))
+        return f"{name}: {percent(numbers.mean())} of runs (95 % interval {percent(low)} to {percent(high)})."
+    low, middle, high = np.quantile(numbers, [0.0, 0.5, 0.9])
+    most = column.text(numbers.max())
+    return f"{name}: {column.text(middle)} in the median, {column.text(high)} in nine of ten runs, {most} at most."
 
 
 def key_figures(tables: StudyTables, runs: Columns, summary: Columns) -> tuple[KeyFigure, ...]:
     """Number of runs, and values of the first quantities and summaries."""
-    found = [KeyFigure(str(len(tables.runs)), f"runs, {int(is_failed(tables).sum())} failed")]
+    figures = [KeyFigure(str(len(tables.runs)), f"runs, {int(is_failed(tables).sum())} failed")]
     # Summaries first: they are what the study asks for.
     for column in [*summary.values(), *runs.values()]:
         has_value = np.isfinite if column.role == QUANTITY else lambda values: ~np.isnan(values)
-        known = column.values[has_value(column.values)]
+        numbers = column.values[has_value(column.values)]
         # Only numbers that a reader can compare; ends of intervals belong to their value.
         is_end = column.name.endswith(("_low", "_high"))
-        if len(known) and not column.labels and column.role in (QUANTITY, SUMMARY) and not is_end:
-            found.append(_key_figure(column, known))
-    return tuple(found[:MOST_FIGURES])
+        if len(numbers) and not column.labels and column.role in (QUANTITY, SUMMARY) and not is_end:
+            figures.append(_key_figure(column, numbers))
+    return tuple(figures[:MOST_FIGURES])
 
 
-def _key_figure(column: Column, known: NDArray) -> KeyFigure:
+def _key_figure(column: Column, numbers: NDArray) -> KeyFigure:
     name = column.description or column.name.replace("_", " ")
     # A share, the range of a summary, or the value that nine of ten runs stay below.
     if column.is_truth:
-        _, low, high = wilson(int(known.sum()), len(known))
+        _, low, high = wilson(int(numbers.sum()), len(numbers))
         return KeyFigure(
-            percent(known.mean()), f"{name}; 95 % interval {percent(low)} to {percent(high)}"
+            percent(numbers.mean()), f"{name}; 95 % interval {percent(low)} to {percent(high)}"
         )
     if column.ranges:
         ends = [column.text_at(int(end(column.values))) for end in (np.nanargmin, np.nanargmax)]
         return KeyFigure(ends[0] if ends[0] == ends[1] else f"{ends[0]} … {ends[1]}", name)
     if column.role == SUMMARY:
-        low = column.text(known.min())
-        high = column.text(known.max())
-        unitless = signed(known.min(), 3) if np.isfinite(known.max()) else low
+        low = column.text(numbers.min())
+        high = column.text(numbers.max())
+        unitless = signed(numbers.min(), 3) if np.isfinite(numbers.max()) else low
         return KeyFigure(low if low == high else f"{unitless} to {high}", name)
-    return KeyFigure(column.text(np.quantile(known, 0.9)), f"{name}: nine of ten runs are below")
+    return KeyFigure(column.text(np.quantile(numbers, 0.9)), f"{name}: nine of ten runs are below")
 
 
 def quantities_table(runs: Columns) -> Table:
@@ -145,13 +147,17 @@ def quantities_table(runs: Columns) -> Table:
     rows = []
     # Runs without a value are counted: quantiles leave them out.
     for column in (c for c in runs.values() if c.role == QUANTITY):
-        known = finite(column.values)
-        missing = str(len(column.values) - len(known)) if len(known) < len(column.values) else "–"
-        if column.is_truth or not len(known):
-            share = percent(known.mean(), 1) if len(known) else "–"
+        finite_values = finite(column.values)
+        missing = (
+            str(len(column.values) - len(finite_values))
+            if len(finite_values) < len(column.values)
+            else "–"
+        )
+        if column.is_truth or not len(finite_values):
+            share = percent(finite_values.mean(), 1) if len(finite_values) else "–"
             numbers = ("", f"yes in {share}", "", "")
         else:
-            numbers = tuple(plain(v) for v in np.quantile(known, [0.0, 0.5, 0.9, 1.0]))
+            numbers = tuple(plain(v) for v in np.quantile(finite_values, [0.0, 0.5, 0.9, 1.0]))
         rows.append((column.name, column.unit, *numbers, missing, _varies_with(column, causes)))
     head = (
         "quantity",
@@ -191,12 +197,12 @@ def is_failed(tables: StudyTables) -> NDArray:
 
 def errors(tables: StudyTables) -> tuple[tuple[str, tuple[int, ...]], ...]:
     """Error messages with their runs, the most frequent first."""
-    found: dict[str, list[int]] = {}
+    by_message: dict[str, list[int]] = {}
     # Runs with the same message form one entry.
     failed = tables.runs[is_failed(tables)]
     for number, error in zip(failed["run"], failed["error"] if len(failed) else (), strict=True):
-        found.setdefault(str(error), []).append(int(number))
-    ordered = sorted(found.items(), key=lambda one: -len(one[1]))
+        by_message.setdefault(str(error), []).append(int(number))
+    ordered = sorted(by_message.items(), key=lambda entry: -len(entry[1]))
     return tuple((text, tuple(numbers)) for text, numbers in ordered)
 
 
@@ -207,7 +213,8 @@ def varied_table(study: Mapping[str, Any]) -> Table:
     """Varied factors and sampled values, a row each."""
     # Factors of the grid, then sampled signals, then tuned ones.
     rows = [
-        (str(one.get("name", "")), _signals(one), _values(one)) for one in _parts(study, "factor")
+        (str(part.get("name", "")), _signals(part), _values(part))
+        for part in _parts(study, "factor")
     ]
     for part, in_words in (("sample", _distribution), ("tune", _range)):
         for signal, how in _given(_given(study.get(part) or {}).get("of") or {}).items():
@@ -230,7 +237,7 @@ def _given(part: Mapping[str, Any]) -> dict[str, Any]:
 
 def _parts(study: Mapping[str, Any], name: str) -> list[dict[str, Any]]:
     """Tables of one kind in a study file."""
-    return [_given(one) for one in study.get(name) or ()]
+    return [_given(part) for part in study.get(name) or ()]
 
 
 def _signals(factor: Mapping[str, Any]) -> str:
@@ -290,37 +297,37 @@ def _distribution(how: Mapping[str, Any]) -> str:
 
 def measured_table(study: Mapping[str, Any]) -> Table:
     """Quantities of each run, and summaries over similar runs."""
-    rows = [(str(one.get("name", "")), _quantity(one)) for one in _parts(study, "quantity")]
-    for one in _parts(study, "summary"):
-        statistic = str(one.get("statistic", "")).replace("_", " ")
-        said = [f"{statistic} of {one.get('quantity')} over {_plain(one.get('over', ''))}"]
-        said += _keys(one, "percentile", "along", "share")
-        rows.append((str(one.get("name", "")), ", ".join(said)))
+    rows = [(str(part.get("name", "")), _quantity(part)) for part in _parts(study, "quantity")]
+    for summary in _parts(study, "summary"):
+        statistic = str(summary.get("statistic", "")).replace("_", " ")
+        words = [f"{statistic} of {summary.get('quantity')} over {_plain(summary.get('over', ''))}"]
+        words += _keys(summary, "percentile", "along", "share")
+        rows.append((str(summary.get("name", "")), ", ".join(words)))
     return Table(rows, ("name", "what it is"), tight=(0,))
 
 
-def _keys(one: Mapping[str, Any], *names: str) -> list[str]:
+def _keys(part: Mapping[str, Any], *names: str) -> list[str]:
     """Entries of a part of the study file, as written there."""
-    return [f"{name} {one[name]}" for name in names if name in one]
+    return [f"{name} {part[name]}" for name in names if name in part]
 
 
-def _quantity(one: Mapping[str, Any]) -> str:
+def _quantity(part: Mapping[str, Any]) -> str:
     # The scenario's expectations, the study's own, a margin, or a statistic of signals.
-    if one.get("scenario_expectations"):
+    if part.get("scenario_expectations"):
         return "whether all that the scenario expects holds"
-    if wanted := one.get("expect"):
+    if wanted := part.get("expect"):
         return f"whether all holds: {'; '.join(_plain(_given(claim)) for claim in wanted)}"
-    if "margin" in one:
-        waves = f"wave filter adapted to waves of {one.get('peak_period')} s"
-        return f"{one['margin']} margin of {one.get('component', 'controller')}, the least of its axes, {waves}"
-    of = _plain(one.get("signal", ""))
-    if "near" in one:
-        of = f"the distance of {of} from {_plain(one['near'])}"
-    said = [f"{str(one.get('reduce', '')).replace('_', ' ')} of {of}"]
-    said += _keys(one, "percentile", "limit", "time")
-    if "during" in one:
-        said.append(f"during {' to '.join(map(str, one['during']))}")
-    return ", ".join(said)
+    if "margin" in part:
+        waves = f"wave filter adapted to waves of {part.get('peak_period')} s"
+        return f"{part['margin']} margin of {part.get('component', 'controller')}, the least of its axes, {waves}"
+    of = _plain(part.get("signal", ""))
+    if "near" in part:
+        of = f"the distance of {of} from {_plain(part['near'])}"
+    words = [f"{str(part.get('reduce', '')).replace('_', ' ')} of {of}"]
+    words += _keys(part, "percentile", "limit", "time")
+    if "during" in part:
+        words.append(f"during {' to '.join(map(str, part['during']))}")
+    return ", ".join(words)
 
 
 def _plain(value: Any) -> str:
@@ -341,8 +348,11 @@ def setup_table(tables: StudyTables) -> Table:
     about = tables.about
     study = _given(tables.study)
     sample, tune = (_given(study.get(name) or {}) for name in ("sample", "tune"))
-    sought = [f"{one['quantity']} {one['direction']}d" for one in tune.get("objective", ())]
-    known: dict[str, Any] = {
+    sought = [
+        f"{objective['quantity']} {objective['direction']}d"
+        for objective in tune.get("objective", ())
+    ]
+    entries: dict[str, Any] = {
         "scenario": study.get("scenario"),
         "start values of all runs": _plain(study["set"]) if study.get("set") else None,
         "stop time": study.get("stop_time"),
@@ -359,7 +369,7 @@ def setup_table(tables: StudyTables) -> Table:
         "versions": _plain(about["versions"]) if about.get("versions") else None,
     }
     return Table(
-        tuple((name, str(value)) for name, value in known.items() if value not in (None, "")),
+        tuple((name, str(value)) for name, value in entries.items() if value not in (None, "")),
         tight=(0,),
     )
 

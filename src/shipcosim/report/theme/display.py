@@ -39,18 +39,18 @@ def display_table(table: Dataset, ship_heading: str | None = None) -> Dataset:
     """
     # One unit for each quantity on the whole page.
     units = units_to_read(table)
-    found = {}
+    columns = {}
     for name, variable in series_in(table).items():
         unit, factor = units.get(variable.attrs.get("units"), (variable.attrs.get("units"), 1.0))
         # Angles are drawn without jumps.
         values = unturned(str(name), variable.values) if unit == "deg" else variable.values
-        found[name] = as_variable(
+        columns[name] = as_variable(
             factor * np.asarray(values, float), unit, variable.attrs.get("long_name", ""), factor
         )
-        found[name].attrs["logical"] = variable.dtype.kind == "b"
+        columns[name].attrs["logical"] = variable.dtype.kind == "b"
     # As an index of pandas, for which xarray need not import pint.
     clock = pandas.Index(np.asarray(table["time"].values, float))
-    shown = xr.Dataset(found, coords={"time": ("time", clock)}, attrs=table.attrs)
+    shown = xr.Dataset(columns, coords={"time": ("time", clock)}, attrs=table.attrs)
     # Headings next to each other must lie on the same turn.
     if ship_heading is not None:
         _align_headings(shown, ship_heading)
@@ -80,8 +80,8 @@ def units_to_read(table: Dataset) -> dict[str | None, tuple[str, float]]:
 
 def series_in(table: Dataset) -> dict[str, xr.Variable]:
     """The columns of numbers, as variables: making a DataArray looks through all names of the table."""
-    found = {str(name): table.variables[name] for name in table.data_vars}
-    return {name: v for name, v in found.items() if v.dtype.kind in "fiub" and v.dims == ("time",)}
+    series = {str(name): table.variables[name] for name in table.data_vars}
+    return {name: v for name, v in series.items() if v.dtype.kind in "fiub" and v.dims == ("time",)}
 
 
 def thinned(shown: Dataset, most: int) -> tuple[Dataset, int]:

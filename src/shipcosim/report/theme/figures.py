@@ -52,10 +52,10 @@ def thinned_curve(x: ArrayLike, y: ArrayLike, most: int = MOST_POINTS) -> tuple[
     if len(x) <= most:
         return x, y
     # Six points for each stretch: both ends, and least and largest on either axis.
-    known = np.isfinite(x) & np.isfinite(y)
+    is_known = np.isfinite(x) & np.isfinite(y)
     kept = []
     for stretch in np.array_split(np.arange(len(x)), most // 6):
-        rows = stretch[known[stretch]]
+        rows = stretch[is_known[stretch]]
         if rows.size:
             kept += [
                 rows[0],
@@ -64,7 +64,7 @@ def thinned_curve(x: ArrayLike, y: ArrayLike, most: int = MOST_POINTS) -> tuple[
             ]
     # Insert a gap wherever points that are not finite were left out.
     rows = np.unique(np.array(kept, int))
-    breaks = np.flatnonzero(np.diff(np.cumsum(~known)[rows])) + 1
+    breaks = np.flatnonzero(np.diff(np.cumsum(~is_known)[rows])) + 1
     return np.insert(x[rows], breaks, np.nan), np.insert(y[rows], breaks, np.nan)
 
 
@@ -82,9 +82,9 @@ def evenly(count: int, most: int) -> NDArray:
 def _told_apart(values: NDArray) -> list[float | None]:
     """Numbers with five significant digits, more where they differ by little, as late times."""
     # Additional digits as the size exceeds the span: 100000.1 and 100000.2 must differ.
-    known = finite(values)
+    numbers = finite(values)
     span = extent(values)
-    more = np.log10(np.abs(known).max() / span) if span > 0.0 else 0.0
+    more = np.log10(np.abs(numbers).max() / span) if span > 0.0 else 0.0
     return rounded(values, 5 + int(np.clip(more, 0, 10)))
 
 

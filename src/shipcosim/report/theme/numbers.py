@@ -13,8 +13,8 @@ def finite(values: NDArray) -> NDArray:
 
 def extent(values: NDArray) -> float:
     """From the least to the largest finite value; 0 without any."""
-    known = finite(values)
-    return float(np.ptp(known)) if known.size else 0.0
+    numbers = finite(values)
+    return float(np.ptp(numbers)) if numbers.size else 0.0
 
 
 def span(start: float, end: float) -> str:

@@ -66,16 +66,16 @@ def packed_series(values: ArrayLike, levels: float = LEVELS) -> dict[str, Any] |
     {'step': 0.1, 'steps': [0, 10, None, -5]}
     """
     # Gaps where values are not finite, or too large for the browser.
-    found = np.asarray(values, float)
-    known = np.isfinite(found) & (np.abs(found) < LARGEST)
+    numbers = np.asarray(values, float)
+    drawable = np.isfinite(numbers) & (np.abs(numbers) < LARGEST)
     # Where no step serves the whole range, the numbers themselves.
-    step = _step(found[known], levels)
+    step = _step(numbers[drawable], levels)
     if step is None:
-        return [float(f"{v:.6g}") if ok else None for v, ok in zip(found, known, strict=True)]
+        return [float(f"{v:.6g}") if ok else None for v, ok in zip(numbers, drawable, strict=True)]
     # Whole steps from one value to the next: small integers compress well.
-    steps = np.full(len(found), None, object)
-    counts = np.round(found[known] / step).astype(np.int64)
-    steps[known] = np.diff(counts, prepend=0)
+    steps = np.full(len(numbers), None, object)
+    counts = np.round(numbers[drawable] / step).astype(np.int64)
+    steps[drawable] = np.diff(counts, prepend=0)
     return {"step": step, "steps": steps.tolist()}
 
 
@@ -106,18 +106,18 @@ def most_rows(columns: Collection[ArrayLike], budget: int) -> int:
     return sure
 
 
-def _step(known: NDArray, levels: float) -> float | None:
+def _step(numbers: NDArray, levels: float) -> float | None:
     """Step of a series; None without a range, or where no step serves all of it."""
     # A range that is zero or beyond float32 cannot be divided into steps.
-    span = extent(known)
+    span = extent(numbers)
     if not SMALLEST < span < LARGEST:
         return None
     # Spread of most values: single peaks must not make the steps coarse.
-    spread = float(np.subtract(*np.quantile(known, [0.95, 0.05]))) or span
+    spread = float(np.subtract(*np.quantile(numbers, [0.95, 0.05]))) or span
     if span > BEYOND * spread:
         return None
     # Finest step that is needed, but not below the precision of the numbers.
-    finest = max(min(span, SPIKY * spread) / levels, 1e-15 * float(np.abs(known).max()))
+    finest = max(min(span, SPIKY * spread) / levels, 1e-15 * float(np.abs(numbers).max()))
     # The next smaller 1, 2 or 5 times a power of ten.
     power = int(np.floor(np.log10(finest)))
     return max(

@@ -120,8 +120,8 @@ def reach_of(
     ]
     # Reach in both directions of each axis; the weaker side counts.
     both = np.concatenate([np.eye(3), -np.eye(3)])
-    found = largest_multiple(sets, np.ones((6, len(sets))), both / scale)
-    X, Y, N = np.minimum(found[:3], found[3:]).tolist()
+    multiples = largest_multiple(sets, np.ones((6, len(sets))), both / scale)
+    X, Y, N = np.minimum(multiples[:3], multiples[3:]).tolist()
     return X, Y, N
 
 
@@ -193,8 +193,8 @@ def controller(loop: ControlledShip) -> dict[str, EstimatedNumber]:
             value
             * (heading if name in ("rate_disturbance", "bias_drift_yaw") else position) ** power
         )
-    found = {name: EstimatedNumber(float(value), 0.0, RULE) for name, value in values.items()}
-    return found | {
+    estimates = {name: EstimatedNumber(float(value), 0.0, RULE) for name, value in values.items()}
+    return estimates | {
         name: EstimatedNumber(value, 0.0, "docs/dp-loop.md") for name, value in OBSERVER.items()
     }
 
@@ -235,11 +235,11 @@ def sensors(length: float) -> dict[str, EstimatedNumber]:
     dict of str to Estimate
         Parameters of the sensors.
     """
-    found = {
+    estimates = {
         name: EstimatedNumber(value, 0.0, "usual DP sensors; assumed")
         for name, value in SENSORS.items()
     }
-    return found | mast(length)
+    return estimates | mast(length)
 
 
 def mast(length: float) -> dict[str, EstimatedNumber]:

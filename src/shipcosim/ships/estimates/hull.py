@@ -142,11 +142,11 @@ def inertia_yaw(mass: float, length: float, breadth: float, centre_x: float) -> 
         [kg.m2]
     """
     # Inertia about the centre of gravity, then Steiner's term to midships.
-    own = mass * (0.25 * length) ** 2
+    about_centre = mass * (0.25 * length) ** 2
     # A box has m (L² + B²) / 12: what its breadth adds is unknown of a ship.
-    tolerance = hypot(0.15 * own, mass * breadth**2 / 12.0)
+    tolerance = hypot(0.15 * about_centre, mass * breadth**2 / 12.0)
     source = "gyration radius 0.25 L, Fossen 2021; tolerance 15 % and the breadth of a box"
-    return EstimatedNumber(own + mass * centre_x**2, tolerance, source)
+    return EstimatedNumber(about_centre + mass * centre_x**2, tolerance, source)
 
 
 def cross_flow_drag(form: HullDimensions) -> EstimatedNumber:
@@ -242,7 +242,7 @@ def linear_damping(
     times = {name: constant * root for name, constant in TIME_CONSTANTS.items()}
     masses = {"X_u": surge, "Y_v": sway, "N_r": yaw}
     values = {name: -masses[name] / times[name] for name in masses}
-    found = {
+    estimates = {
         name: within(value, 1.5, f"time constant {times[name]:.3g} s; six ships near rest differ")
         for name, value in values.items()
     }
@@ -254,4 +254,4 @@ def linear_damping(
     speed = SLOW_FROUDE * sqrt(GRAVITY * form.length)
     source = f"Froude number {SLOW_FROUDE:g}, assumed; under way the derivatives hold"
     fading = EstimatedNumber(speed, 0.0, source)
-    return {**found, "Y_r": coupling, "N_v": coupling, "linear_damping_speed": fading}
+    return {**estimates, "Y_r": coupling, "N_v": coupling, "linear_damping_speed": fading}

@@ -170,15 +170,15 @@ def curves(screw: Screw) -> dict[str, EstimatedNumber]:
     ends = np.array(at_end) * slope / _DISC / beyond
     astern = -np.array([ASTERN[screw.kind] * thrust[0], torque[0]]) / _DISC / back
     source = "form of the series B4-70, scaled to the bollard points"
-    found = {}
+    estimates = {}
     # Polynomials over the advance ratio up to that angle, and factors on the series elsewhere.
     for i, (name, (k, a, b)) in enumerate((("thrust", thrust), ("torque", torque))):
-        found[f"{name}_polynomial"] = EstimatedNumber(
+        estimates[f"{name}_polynomial"] = EstimatedNumber(
             f"{last:.4g} {k:.5g} {k * a:.5g} {k * b:.5g} 0", 0.0, source
         )
         rows = f"-180 {astern[i]:.4g}; -90 1; 0 {ahead[i]:.4g}; {last:.4g} {ends[i]:.4g}; 90 1; 180 {astern[i]:.4g}"
-        found[f"{name}_factors"] = EstimatedNumber(rows, 0.0, source)
-    return found
+        estimates[f"{name}_factors"] = EstimatedNumber(rows, 0.0, source)
+    return estimates
 
 
 def drive(screw: Screw, rise: float) -> dict[str, EstimatedNumber]:

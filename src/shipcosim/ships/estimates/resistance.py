@@ -217,12 +217,14 @@ def drag_coefficient(
         X_uu. [N.s2/m2]
     """
     # X_uu u^2 equals the resistance at service speed.
-    found = -resistance(form, surface, factor) / form.speed**2
+    coefficient = -resistance(form, surface, factor) / form.speed**2
     source = f"Holtrop and Mennen 1982 with ITTC 1957 at {form.speed:.3g} m/s, and a tenth for appendages"
     # Beyond the formula only the order of magnitude is known: the tolerance says so.
     if froude_number(form) > MOST_FROUDE:
-        return within(found, 3.0, f"{source}; beyond the formula, the order of magnitude at best")
-    return within(found, 0.5, source)
+        return within(
+            coefficient, 3.0, f"{source}; beyond the formula, the order of magnitude at best"
+        )
+    return within(coefficient, 0.5, source)
 
 
 def froude_number(form: HullDimensions) -> float:

@@ -27,9 +27,9 @@ def unbind(draft: Draft, source: AnyPath, element: str) -> None:
     listed = children(
         element_named(draft, element), "ssd:ParameterBindings", "ssd:ParameterBinding"
     )
-    found = [part for part in listed if part.get("source") == quote(str(source))]
-    if not found:
-        known = [uri for part in listed if (uri := part.get("source"))]
-        raise draft.error(str(source), "It is not bound there.", suggestion(str(source), known))
-    for part in found:
+    bound = [part for part in listed if part.get("source") == quote(str(source))]
+    if not bound:
+        sources = [uri for part in listed if (uri := part.get("source"))]
+        raise draft.error(str(source), "It is not bound there.", suggestion(str(source), sources))
+    for part in bound:
         drop(part)

@@ -56,13 +56,13 @@ def disconnect(draft: Draft, source: str, target: str | None) -> None:
     # Connections that contain the given end or ends; suggest similar ones if there are none.
     wanted = {source, target} - {None}
     there = list(connections(draft.system))
-    found = [element for ends, element in there if wanted <= set(ends)]
-    if not found:
+    matching = [element for ends, element in there if wanted <= set(ends)]
+    if not matching:
         near = [" -> ".join(ends) for ends, _ in there if wanted & set(ends)]
         shown = " -> ".join(filter(None, (source, target)))
-        known = near or [" -> ".join(ends) for ends, _ in there]
-        raise draft.error(shown, "There is no such connection.", suggestion(shown, known))
-    for element in found:
+        choices = near or [" -> ".join(ends) for ends, _ in there]
+        raise draft.error(shown, "There is no such connection.", suggestion(shown, choices))
+    for element in matching:
         drop(element)
 
 

@@ -85,13 +85,13 @@ class Draft:
         """The parameter sets that it binds."""
         return Sets(self.package, self.document)
 
-    def problem(self, what: str, found: str, remedy: str = "") -> Problem:
+    def problem(self, what: str, message: str, remedy: str = "") -> Problem:
         """Problem with something in the SSD."""
-        return Problem(f"{self.package.show(self.path)}: {what}", found, remedy)
+        return Problem(f"{self.package.show(self.path)}: {what}", message, remedy)
 
-    def error(self, what: str, found: str, remedy: str = "") -> ShipcosimError:
+    def error(self, what: str, message: str, remedy: str = "") -> ShipcosimError:
         """Error about something in the SSD, to be raised."""
-        return ShipcosimError(self.problem(what, found, remedy))
+        return ShipcosimError(self.problem(what, message, remedy))
 
     # ---------------------------------------------------------------- reading
 
@@ -156,12 +156,12 @@ class Draft:
             return
         # Errors that the system already had do not count.
         before = self._snapshot()
-        known = Counter(problem.found for problem in self.assembled()[1].errors)
+        counts = Counter(problem.found for problem in self.assembled()[1].errors)
         self._changing = True
         try:
             yield
             # New errors undo the whole block, as any other exception does.
-            fresh = [p for p in dict.fromkeys(self.reassembled()[1].errors) if not known[p.found]]
+            fresh = [p for p in dict.fromkeys(self.reassembled()[1].errors) if not counts[p.found]]
             raise_errors(fresh)
         except BaseException:
             # Return to the state before the block.
@@ -186,13 +186,13 @@ class Draft:
         folder = self.path.parent / "resources"
         top = self.package.folder.resolve()
         # The same file, by content, may already be in the package.
-        known = {top / name: path for name, path in self.package.located.items()}
-        known |= {path: held for path, held in self.package.held.items() if isinstance(held, Path)}
-        for place, path in known.items():
+        files = {top / name: path for name, path in self.package.located.items()}
+        files |= {path: held for path, held in self.package.held.items() if isinstance(held, Path)}
+        for place, path in files.items():
             if place.name == file.name and path.is_file() and cmp(path, file, shallow=False):
                 return quote(place.relative_to(self.path.parent).as_posix())
         # Else take a name that no file in the package has.
-        names = {path.name for path in (*known, *self.package.held, *folder.glob("*"))}
+        names = {path.name for path in (*files, *self.package.held, *folder.glob("*"))}
         name = (
             free_name(file.stem, {name.removesuffix(file.suffix) for name in names}) + file.suffix
         )
@@ -243,14 +243,14 @@ class Draft:
         if (
             not self.file.partition("#")[0].lower().endswith(".ssd")
         ):  # a single .ssd says nothing about its neighbours
-            found = {
+            contents = {
                 path.relative_to(folder): path
                 for path in sorted(folder.rglob("*"))
                 if path.is_file()
             }
             files = {
                 name.as_posix(): path
-                for name, path in found.items()
+                for name, path in contents.items()
                 if not any(part.startswith(".") for part in name.parts)
             }
         # FMUs that were found elsewhere, then every changed file.
@@ -282,4 +282,4 @@ def _with_ssd(files: dict[str, Content], name: str, wanted: str) -> dict[str, Co
     """Files with the SSD under the wanted name, unless another file has that name."""
     if wanted == SYSTEM_STRUCTURE and SYSTEM_STRUCTURE in files:
         return files
-    return {(wanted if known == name else known): file for known, file in files.items()}
+    return {(wanted if file_name == name else file_name): file for file_name, file in files.items()}

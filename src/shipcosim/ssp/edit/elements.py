@@ -60,7 +60,11 @@ def system_for(draft: Draft, name: str) -> tuple[etree._Element, str]:
     """
     owner, short = split_owner(draft.system, name)
     if owner is None:
-        systems = [known for known, part in walk(draft.system) if known and local(part) == "System"]
+        systems = [
+            full_name
+            for full_name, part in walk(draft.system)
+            if full_name and local(part) == "System"
+        ]
         outer = name.rpartition(".")[0]
         raise draft.error(
             name, f"There is no system '{outer}' to put it into.", suggestion(outer, systems)
@@ -161,9 +165,9 @@ def _elements(draft: Draft) -> list[str]:
 def _connector_named(draft: Draft, name: str) -> etree._Element:
     connector = find_connector(draft.system, name)
     if connector is None:
-        own = [
+        connectors = [
             part.get("name") for part in children(draft.system, "ssd:Connectors", "ssd:Connector")
         ]
-        known = [*_elements(draft), *own]
-        raise draft.error(name, "There is no such element or connector.", suggestion(name, known))
+        choices = [*_elements(draft), *connectors]
+        raise draft.error(name, "There is no such element or connector.", suggestion(name, choices))
     return connector

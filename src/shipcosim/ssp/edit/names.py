@@ -69,13 +69,13 @@ def connector_of(element: etree._Element, name: str) -> etree._Element | None:
 
 def find_element(system: etree._Element, name: str) -> etree._Element | None:
     """Element by its full name, or None; the empty name means the outermost system."""
-    return next((element for known, element in walk(system) if known == name), None)
+    return next((element for full_name, element in walk(system) if full_name == name), None)
 
 
 def find_connector(system: etree._Element, name: str) -> etree._Element | None:
     """Connector element of a full name, or None."""
-    found = (reading.declared() for reading in readings(name, system))
-    return next((connector for connector in found if connector is not None), None)
+    declared = (reading.declared() for reading in readings(name, system))
+    return next((connector for connector in declared if connector is not None), None)
 
 
 def split_owner(system: etree._Element, name: str) -> tuple[etree._Element | None, str]:
@@ -206,5 +206,5 @@ def _refuse_if_elsewhere(
     if _names_an_element(reading):
         names = [part.get("name", "") for part in parts(system)]
         element = signal.partition(".")[0]
-        found = f"There is no element '{element}' in {system.get('name')}."
-        raise error_at(where, found, suggestion(element, names))
+        message = f"There is no element '{element}' in {system.get('name')}."
+        raise error_at(where, message, suggestion(element, names))

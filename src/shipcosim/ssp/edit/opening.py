@@ -45,8 +45,8 @@ def read(path: AnyPath, *, fmus: Iterable[AnyPath] | None = None) -> SystemStruc
     # OSP structures are run, not edited: they have no place for everything in an SSD.
     findings = Findings()
     if osp_file(path):
-        found = "An OspSystemStructure.xml cannot be edited."
-        raise error_at(str(path), found, "`simulate` and `read_system` take it.")
+        message = "An OspSystemStructure.xml cannot be edited."
+        raise error_at(str(path), message, "`simulate` and `read_system` take it.")
     package = open_package(
         path, findings, library.fmus(path, build=False) if fmus is None else fmus
     )

@@ -85,19 +85,20 @@ class Sets:
         # Bindings of all elements; a file bound twice must not be changed for one element only.
         system = child(document.root, "ssd:System")
         self.elements = {} if system is None else dict(walk(system))
-        found = [
+        bindings = [
             (name, part)
             for name, element in self.elements.items()
             for part in children(element, "ssd:ParameterBindings", "ssd:ParameterBinding")
         ]
-        counts = Counter(self._file(part) for _, part in found)
-        bound = [self._bound(name, part, counts) for name, part in found]
+        counts = Counter(self._file(part) for _, part in bindings)
+        bound = [self._bound(name, part, counts) for name, part in bindings]
         # Outer systems override inner ones: sort by depth, innermost first.
         depths = {
             name: sum(1 for _ in element.iterancestors()) for name, element in self.elements.items()
         }
         self.bound = sorted(
-            (one for one in bound if one is not None), key=lambda one: -depths[one.owner]
+            (bound_set for bound_set in bound if bound_set is not None),
+            key=lambda bound_set: -depths[bound_set.owner],
         )
 
     def _file(self, binding: etree._Element) -> Path | None:
@@ -149,24 +150,24 @@ class Sets:
             Its own name is not looked at.
         """
         # The strongest set with this parameter, unless it is shared.
-        places = [one for one in self.bound if one.parameter(name) is not None]
+        places = [bound for bound in self.bound if bound.parameter(name) is not None]
         if places and not places[-1].shared:
             write_value(places[-1].root, places[-1].parameter(name), value)
             self.keep(places[-1].file, places[-1].root)
             return
         # Else a set of the same element, where its names fit.
         owner = places[-1].owner if places else self._owner(name)
-        own = [one for one in self.bound if one.owner == owner]
+        of_owner = [bound for bound in self.bound if bound.owner == owner]
         fits = (
-            own
+            of_owner
             and not places
-            and not own[0].shared
-            and not own[0].mapped
-            and name.startswith(own[0].prefix)
+            and not of_owner[0].shared
+            and not of_owner[0].mapped
+            and name.startswith(of_owner[0].prefix)
         )
         if fits:
-            self._add(own[0].root, name[len(own[0].prefix) :], value)
-            self.keep(own[0].file, own[0].root)
+            self._add(of_owner[0].root, name[len(of_owner[0].prefix) :], value)
+            self.keep(of_owner[0].file, of_owner[0].root)
         else:
             # Else a new set, bound after all others.
             self.append(owner, name, value)
@@ -204,12 +205,12 @@ class Sets:
 
     def clear(self, name: str) -> bool:
         """Remove a parameter from all sets; False if no set or only a shared one has it."""
-        places = [one for one in self.bound if one.parameter(name) is not None]
-        for one in places:
-            if one.shared:
+        places = [bound for bound in self.bound if bound.parameter(name) is not None]
+        for place in places:
+            if place.shared:
                 return False
-            remove_parameter(one.parameter(name))
-            self.keep(one.file, one.root)
+            remove_parameter(place.parameter(name))
+            self.keep(place.file, place.root)
         return bool(places)
 
     def rename(self, old: str, new: str | None, *, exact: bool = False) -> None:
@@ -221,24 +222,24 @@ class Sets:
             Of an element, whose parameters' names begin with it, or (`exact`) of a system's connector.
         """
         # Only sets around the element know its name, relative to their owner.
-        for one in self.bound:
-            if one.owner and not old.startswith(f"{one.owner}."):
+        for bound in self.bound:
+            if bound.owner and not old.startswith(f"{bound.owner}."):
                 continue
-            owner = f"{one.owner}."
+            owner = f"{bound.owner}."
             names = _Names(old.removeprefix(owner), new and new.removeprefix(owner), exact)
             # A mapping has the name in its targets, a prefix in
             # itself, all others in each parameter.
-            mapping = child(one.binding, "ssd:ParameterMapping")
+            mapping = child(bound.binding, "ssd:ParameterMapping")
             if mapping is not None:
                 self._rename_targets(mapping, names)
-            elif one.binding.get("prefix"):
-                names.follow(one.binding, "prefix", drop)
-            elif not one.shared:
-                listed = children(one.root, "ssv:Parameters", "ssv:Parameter")
+            elif bound.binding.get("prefix"):
+                names.follow(bound.binding, "prefix", drop)
+            elif not bound.shared:
+                listed = children(bound.root, "ssv:Parameters", "ssv:Parameter")
                 # All names follow, also after one that has changed.
                 changed = [names.follow(part, "name", remove_parameter) for part in listed]
                 if any(changed):
-                    self.keep(one.file, one.root)
+                    self.keep(bound.file, bound.root)
 
     def _rename_targets(self, mapping: etree._Element, names: "_Names") -> None:
         file = self._file(mapping)

@@ -53,18 +53,18 @@ class StartValues(MutableMapping[str, Value]):
             self._draft.reassembled()
             if not was_there or name in self:
                 where = "It is set in a set that is bound more than once, or by a mapping."
-                found, remedy = (
+                message, remedy = (
                     (where, "")
                     if name in self
                     else ("The system does not set it.", suggestion(name, self))
                 )
-                raise ShipcosimError(self._draft.problem(name, found, remedy))
+                raise ShipcosimError(self._draft.problem(name, message, remedy))
 
     def __iter__(self) -> Iterator[str]:
         system = self._system()
         bound = self._draft.sets.bound
         for name in {**system.inputs, **system.parameters}:
-            if any(one.parameter(name) is not None for one in bound):
+            if any(parameter_set.parameter(name) is not None for parameter_set in bound):
                 yield name
         for component in system.components.values():
             yield from (f"{component.name}.{variable}" for variable in component.start)
@@ -97,14 +97,14 @@ class StartValues(MutableMapping[str, Value]):
 
     def _given(self, name: str, value: Any, unit: str | None = None) -> ParameterValue:
         """A value in the type and unit of its variable, items of enumerations by name."""
-        kind, own, items = _target(self._system(), name)
+        kind, own_unit, items = _target(self._system(), name)
         value = as_python(value)
         if kind == "Enumeration" and type(value) is int:
             value = next((item for item, number in items.items() if number == value), str(value))
-        value = self._converted(name, value, unit, own)
+        value = self._converted(name, value, unit, own_unit)
         kind = self._kind(name, value, kind)
         value = float(value) if kind == "Real" else value
-        return ParameterValue(name, kind, value, own if kind == "Real" else None)
+        return ParameterValue(name, kind, value, own_unit if kind == "Real" else None)
 
     def _put(self, values: list[ParameterValue]) -> None:
         before = len(self._draft.assembled()[1].errors)
@@ -129,32 +129,38 @@ class StartValues(MutableMapping[str, Value]):
             drop(binding)
         for name, value in values.items():
             self._draft.sets.put(name, value)
-        for one in self._draft.sets.bound:
-            one.root.set(
+        for bound_set in self._draft.sets.bound:
+            bound_set.root.set(
                 "name", self._draft.root.get("name") or "values"
             )  # ecos applies the sets of one name alone
 
     def _kind(self, name: str, value: Value, kind: str | None) -> str:
         if type(value) not in KIND_OF:
-            found = f"{value!r} is no value."
+            message = f"{value!r} is no value."
             raise ShipcosimError(
-                self._draft.problem(name, found, "A value is a number, true or false, or a text.")
+                self._draft.problem(name, message, "A value is a number, true or false, or a text.")
             )
         if isinstance(value, float) and not isfinite(value):
             raise ShipcosimError(self._draft.problem(name, f"{value} is not a finite number."))
-        own = KIND_OF[type(value)]
-        fits = (own, kind) in (("Integer", "Real"), ("String", "Enumeration"))
-        return kind if fits and kind else own
+        own_kind = KIND_OF[type(value)]
+        fits = (own_kind, kind) in (("Integer", "Real"), ("String", "Enumeration"))
+        return kind if fits and kind else own_kind
 
-    def _converted(self, name: str, value: Value, unit: str | None, own: Unit | None) -> Value:
+    def _converted(self, name: str, value: Value, unit: str | None, own_unit: Unit | None) -> Value:
         if unit is None:
             return value
         # Units of the SSD may have names of its own.
         given = find_unit(unit, read_units(children(self._draft.root, "ssd:Units", "ssc:Unit")))
-        if given is None or own is None or relation(given, own) in ("unknown", "incompatible"):
-            found = f"A value in {unit}, but {name} is in {own.name if own else 'no unit'}."
-            raise ShipcosimError(self._draft.problem(name, found, "These cannot be converted."))
-        factor, offset = conversion(given, own)
+        if (
+            given is None
+            or own_unit is None
+            or relation(given, own_unit) in ("unknown", "incompatible")
+        ):
+            message = (
+                f"A value in {unit}, but {name} is in {own_unit.name if own_unit else 'no unit'}."
+            )
+            raise ShipcosimError(self._draft.problem(name, message, "These cannot be converted."))
+        factor, offset = conversion(given, own_unit)
         return factor * value + offset
 
 
@@ -173,8 +179,8 @@ def _described(system: System, bound: list[Bound], name: str) -> ParameterValue:
     if kind == "Enumeration":
         value = next(item for item, number in items.items() if number == value)
     # The last set that has the parameter describes it.
-    found = [one.parameter(name) for one in bound]
-    origin = next((part for part in reversed(found) if part is not None), None)
+    entries = [parameter_set.parameter(name) for parameter_set in bound]
+    origin = next((part for part in reversed(entries) if part is not None), None)
     described: dict[str, Any] = {}
     if origin is not None:
         # A tolerance in another unit would be wrong.

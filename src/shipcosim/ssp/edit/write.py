@@ -75,7 +75,7 @@ def parameters_of(system: System) -> list[ParameterValue]:
     list of ParameterValue
         By component, in the order of its FMU; arrays and parameters without a start value are left out.
     """
-    found = []
+    values = []
     for component, variable in system.all_variables():
         value = component.start_value(variable.name)
         if variable.causality not in ("parameter", "structuralParameter"):
@@ -84,7 +84,7 @@ def parameters_of(system: System) -> list[ParameterValue]:
             continue
         # An SSV holds an enumeration's value as the name of its item.
         names = {number: item for item, number in variable.items.items()}
-        found.append(
+        values.append(
             ParameterValue(
                 f"{component.name}.{variable.name}",
                 variable.kind,
@@ -94,7 +94,7 @@ def parameters_of(system: System) -> list[ParameterValue]:
                 tolerance=component.tolerances.get(variable.name),
             )
         )
-    return found
+    return values
 
 
 def write_ssv(path: AnyPath, name: str, values: Iterable[ParameterValue]) -> None:

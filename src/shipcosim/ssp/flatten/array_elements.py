@@ -37,8 +37,8 @@ def element_connectors(
     (list of Connector, dict of str to tuple of int)
         And the dimensions of the arrays among them.
     """
-    found = []
-    known = {}
+    scalar_connectors = []
+    dimensions_of = {}
     for connector in connectors:
         # The FMU's sizes win over those in the SSD, which may leave sizes open.
         written = connector.dimensions
@@ -59,13 +59,13 @@ def element_connectors(
             )
             findings.error(connector.place, f"The connector is an array of {shown}.", remedy)
         elif dimensions:
-            known[connector.name] = dimensions
+            dimensions_of[connector.name] = dimensions
             # An array becomes one connector for each element, named as FMI does.
             names = element_names(connector.name, dimensions)
-            found += [replace(connector, name=name, dimensions=()) for name in names]
+            scalar_connectors += [replace(connector, name=name, dimensions=()) for name in names]
         else:
-            found.append(connector)
-    return found, known
+            scalar_connectors.append(connector)
+    return scalar_connectors, dimensions_of
 
 
 def _fits(written: tuple[int | None, ...], dimensions: tuple[int | None, ...]) -> bool:
@@ -104,10 +104,10 @@ def element_links(link: Link, start: Dimensions, end: Dimensions, findings: Find
     # An index picks one element, which is a scalar. Shapes must be equal then.
     shapes = [() if link.start_indices else start, () if link.end_indices else end]
     if shapes[0] != shapes[1]:
-        found = f"{shape_text(shapes[0])} cannot be connected to {shape_text(shapes[1])}."
+        message = f"{shape_text(shapes[0])} cannot be connected to {shape_text(shapes[1])}."
         findings.error(
             link.place,
-            found,
+            message,
             "Both must have the same shape; startIndices and endIndices name an element.",
         )
         return []
@@ -152,10 +152,10 @@ def element_values(value: ParameterValue, findings: Findings) -> list[ParameterV
     if not value.dimensions:
         return [value]
     if min(value.dimensions) < 1 or prod(value.dimensions) != len(value.value):
-        found = (
+        message = (
             f"{value.name} is {shape_text(value.dimensions)}, but has {len(value.value)} values."
         )
-        findings.error(value.place, found, f"Give {prod(value.dimensions)}.")
+        findings.error(value.place, message, f"Give {prod(value.dimensions)}.")
         return []
     pairs = zip(element_names(value.name, value.dimensions), value.value, strict=True)
-    return [replace(value, name=name, value=one, dimensions=()) for name, one in pairs]
+    return [replace(value, name=name, value=element, dimensions=()) for name, element in pairs]

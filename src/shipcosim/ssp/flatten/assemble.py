@@ -62,7 +62,7 @@ def assemble_package(
     # Lay out with the FMUs' own array sizes. If the values set other sizes, do it once more with
     # these; findings of the first pass are dropped.
     system = flat({})
-    if any(found for component in system.components.values() for found in resized(component)):
+    if any(problem for component in system.components.values() for problem in resized(component)):
         findings.back_to(before)
         system = flat(sizes_wanted(system.components))
     return system
@@ -99,8 +99,8 @@ def _system(tree: Hierarchy, structure: Structure, file: str, findings: Findings
     components = with_whole_steps(components_of(tree, settings), experiment.step_size, findings)
     _check_names(tree, findings)
     for component in components.values():
-        for found in resized(component):
-            findings.error(component.name, found, RESIZE)
+        for problem in resized(component):
+            findings.error(component.name, problem, RESIZE)
     findings.problems += alias_remarks(components, connections)
     # With errors the rest cannot be relied on; the components suffice for further messages.
     name = structure.name or structure.system.name
@@ -174,13 +174,13 @@ def _check_names(tree: Hierarchy, findings: Findings) -> None:
         for name in () if fmu is None else fmu.named("input", "output", "parameter"):
             signal = ".".join((*path, name))
             if signals.setdefault(signal, path) != path:
-                found = f"Two components have a variable whose full name is '{signal}'."
-                findings.error(element.place, found, "Rename one of the components.")
+                message = f"Two components have a variable whose full name is '{signal}'."
+                findings.error(element.place, message, "Rename one of the components.")
     for key, port in tree.ports.items():
         if key.path == () and port.owner == "system":
             if key.name == "time":
-                found = "A connector of the system is called 'time', as the time of the results."
-                findings.error(port.place, found, "Rename it.")
+                message = "A connector of the system is called 'time', as the time of the results."
+                findings.error(port.place, message, "Rename it.")
             elif key.name in signals:
-                found = f"A connector of the system is called as the variable {key.name}."
-                findings.error(port.place, found, "Rename it.")
+                message = f"A connector of the system is called as the variable {key.name}."
+                findings.error(port.place, message, "Rename it.")

@@ -76,9 +76,9 @@ def _settings(
     tree: Hierarchy, values: ParameterSet, path: ElementPath, prefix: str, near: bool
 ) -> list[Setting]:
     return [
-        Setting(path, prefix + one.name, one, near=near)
+        Setting(path, prefix + element_value.name, element_value, near=near)
         for value in values.values
-        for one in element_values(value, tree.findings)
+        for element_value in element_values(value, tree.findings)
     ]
 
 
@@ -95,20 +95,20 @@ def _mapped(
     # The mapping may convert the value too; the conversion happens on the way to the variable.
     templates = [entry for entry in mapping if not entry.source and "" not in by_name]
     if templates:
-        found = f"{len(templates)} entries of the mapping name no source; they are not used."
-        tree.findings.flaw(templates[0].place, found, "Fill them in, or remove them.")
+        message = f"{len(templates)} entries of the mapping name no source; they are not used."
+        tree.findings.flaw(templates[0].place, message, "Fill them in, or remove them.")
     for entry in mapping:
         if entry in templates:
             continue
         if entry.source not in by_name:
-            found = f"The parameter set '{values.name}' has no '{entry.source}'."
-            tree.findings.error(entry.place, found, it_has(entry.source, by_name))
+            message = f"The parameter set '{values.name}' has no '{entry.source}'."
+            tree.findings.error(entry.place, message, it_has(entry.source, by_name))
             continue
         how = (entry.transformation, entry.suppress_unit_conversion)
         renamed = replace(by_name[entry.source], name=entry.target)
         settings += [
-            Setting(path, one.name, one, *how, near=True)
-            for one in element_values(renamed, tree.findings)
+            Setting(path, element_value.name, element_value, *how, near=True)
+            for element_value in element_values(renamed, tree.findings)
         ]
     _remark_left_out(tree, by_name, path, mapping)
     return settings
@@ -133,5 +133,5 @@ def _remark_left_out(
         if name in named or name not in variables:
             continue
         element = ".".join(path) or "The system"
-        found = f"{element} has a parameter '{name}', but the mapping does not name it; the value is not used."
-        tree.findings.remark(value.place, found, "Map it, or take it out of the parameter set.")
+        message = f"{element} has a parameter '{name}', but the mapping does not name it; the value is not used."
+        tree.findings.remark(value.place, message, "Map it, or take it out of the parameter set.")

@@ -89,8 +89,8 @@ def _incoming(tree: Hierarchy, findings: Findings) -> dict[Key, Wire]:
     for wire in tree.wires:
         if wire.target in incoming:
             first = incoming[wire.target]
-            found = f"A second connection into {wire.target}. It gets {first.source} already ({first.place})."
-            findings.error(wire.place, found, "Remove one of them.")
+            message = f"A second connection into {wire.target}. It gets {first.source} already ({first.place})."
+            findings.error(wire.place, message, "Remove one of them.")
         else:
             incoming[wire.target] = wire
     return incoming

@@ -124,8 +124,8 @@ def advance(
     # A linear transformation works on the number in the port's unit.
     if transformation is not None and transformation.kind == "Linear":
         if flow.type not in ("Real", None):
-            found = f"A linear transformation of {flow.type} values."
-            findings.error(place, found, "It is for Real; use a mapping transformation.")
+            message = f"A linear transformation of {flow.type} values."
+            findings.error(place, message, "It is for Real; use a mapping transformation.")
         return flow.in_unit(port.unit).scaled(transformation.factor, transformation.offset)
     return flow
 
@@ -139,12 +139,12 @@ def _compare_units(
     related = relation(flow.unit, port.unit)
     # Where one name has two definitions, only the definitions tell what differs.
     given, wanted = told_apart(flow.unit, port.unit)
-    found = f"{names[0]} is in {given}, {names[1]} in {wanted}"
+    message = f"{names[0]} is in {given}, {names[1]} in {wanted}"
     if flow.unit.name == port.unit.name and related == "convertible":
         if contradicts(flow.unit, port.unit):
             findings.remark(
                 place,
-                f"{found}: one name, two definitions. The value is converted from one to the other.",
+                f"{message}: one name, two definitions. The value is converted from one to the other.",
                 "Correct the definition that is wrong.",
             )
         return
@@ -154,15 +154,15 @@ def _compare_units(
             if names[0] == "the value"
             else "Connect like quantities or correct a unit."
         )
-        findings.error(place, f"{found}; these cannot be converted.", remedy)
+        findings.error(place, f"{message}; these cannot be converted.", remedy)
     elif related == "unknown":
         findings.remark(
             place,
-            f"{found}: not converted, the definition of one of them is missing.",
+            f"{message}: not converted, the definition of one of them is missing.",
             "Add it to Units.",
         )
     elif related == "angle":
-        findings.remark(place, f"{found}: taken as equal kinds, with 1 rad = 1.")
+        findings.remark(place, f"{message}: taken as equal kinds, with 1 rad = 1.")
 
 
 def _mapped(
@@ -190,8 +190,8 @@ def _mapped(
         for names, items in ((table, flow.items), (table.values(), target)):
             for name in names:
                 if name not in items:
-                    found = f"The enumeration has no item '{name}'."
-                    findings.error(place, found, it_has(name, items))
+                    message = f"The enumeration has no item '{name}'."
+                    findings.error(place, message, it_has(name, items))
         table = {
             flow.items[a]: target[b] for a, b in table.items() if a in flow.items and b in target
         }
@@ -210,10 +210,10 @@ def _check_numbers(
     # Values outside the table pass unchanged.
     made = {table.get(value, value) for value in (source.values() or table)}
     if lost := sorted(made - set(target.values())):
-        found = f"The mapping gives {', '.join(map(str, lost))}, which the target's enumeration has not."
+        message = f"The mapping gives {', '.join(map(str, lost))}, which the target's enumeration has not."
         findings.error(
             place,
-            found,
+            message,
             f"It has: {', '.join(f'{name} ({value})' for name, value in target.items())}.",
         )
 
@@ -227,8 +227,8 @@ def _items_checked(
     # A number must exist in the target, and mean the item of the same name.
     lost = sorted(set(flow.items.values()) - set(port.items.values()))
     if lost:
-        found = f"Values {', '.join(map(str, lost))} of the source's enumeration do not exist in the target's."
-        findings.error(place, found, "Add an EnumerationMappingTransformation.")
+        message = f"Values {', '.join(map(str, lost))} of the source's enumeration do not exist in the target's."
+        findings.error(place, message, "Add an EnumerationMappingTransformation.")
     elif any(port.items.get(name, value) != value for name, value in flow.items.items()):
         findings.error(
             place,

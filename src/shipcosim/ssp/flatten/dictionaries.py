@@ -28,12 +28,12 @@ def dictionaries_of(
     Dictionaries
         By name: their place among the ports, and their entries.
     """
-    found = {}
+    dictionaries = {}
     for name, source in element.dictionaries.items():
         document = tree.library.content(source, place)
         entries = {} if document is None else tree.library.parsed(read_dictionary, document)
-        found[name] = (*path, "", name), entries
-    return found
+        dictionaries[name] = (*path, "", name), entries
+    return dictionaries
 
 
 def take_reference(
@@ -54,13 +54,15 @@ def take_reference(
     """
     # The innermost dictionary of the name counts, as with variables in nested blocks.
     lookup = (
-        known[element.dictionary] for known in place.dictionaries if element.dictionary in known
+        around[element.dictionary] for around in place.dictionaries if element.dictionary in around
     )
     owner, entries = next(lookup, (None, None))
     if entries is None:
-        known = {name for names in place.dictionaries for name in names}
-        found = f"There is no signal dictionary '{element.dictionary}' here or in a system around."
-        tree.findings.error(element.place, found, suggestion(element.dictionary, known))
+        visible = {name for names in place.dictionaries for name in names}
+        message = (
+            f"There is no signal dictionary '{element.dictionary}' here or in a system around."
+        )
+        tree.findings.error(element.place, message, suggestion(element.dictionary, visible))
     for connector in element.connectors:
         key = Key(path, connector.name)
         fields = (connector.kind, connector.type, "reference", connector.unit, connector.items)
@@ -68,8 +70,8 @@ def take_reference(
         if owner is None or entries is None:
             continue
         if connector.name not in entries:
-            found = f"The dictionary '{element.dictionary}' has no '{connector.name}'."
-            tree.findings.error(connector.place, found, it_has(connector.name, entries))
+            message = f"The dictionary '{element.dictionary}' has no '{connector.name}'."
+            tree.findings.error(connector.place, message, it_has(connector.name, entries))
             continue
         entry = entries[connector.name]
         # The entry becomes a port itself, so that all references to it share one value.

@@ -85,9 +85,9 @@ def _port(connector: Connector, fmu: FmuDescription | None, findings: Findings) 
     variable = None if fmu is None else fmu.variables.get(connector.name)
     if fmu is None or variable is None:
         if fmu is not None:
-            found = f"{fmu.path.name} has no {CAUSALITIES.get(connector.kind, connector.kind)} '{connector.name}'."
-            known = fmu.named(connector.kind) or list(fmu.variables)
-            findings.error(connector.place, found, it_has(connector.name, known))
+            message = f"{fmu.path.name} has no {CAUSALITIES.get(connector.kind, connector.kind)} '{connector.name}'."
+            names = fmu.named(connector.kind) or list(fmu.variables)
+            findings.error(connector.place, message, it_has(connector.name, names))
         fields = (connector.kind, connector.type, "component", connector.unit, connector.items)
         return Port(*fields, place=connector.place)
     # The SSD may state its own unit and description; the FMU fills the gaps.
@@ -106,24 +106,26 @@ def _compare(
     name = fmu.path.name
     place = connector.place
     if connector.kind in KIND_NAMES and connector.kind != variable.causality:
-        found = f"The connector is of kind {connector.kind}, the variable in {name} of causality {variable.causality}."
-        findings.error(place, found, f'Write kind="{variable.causality}".')
+        message = f"The connector is of kind {connector.kind}, the variable in {name} of causality {variable.causality}."
+        findings.error(place, message, f'Write kind="{variable.causality}".')
     if connector.type not in (None, variable.kind):
-        found = f"The connector is of type {connector.type}, but in {name} the variable is {variable.type}."
-        findings.error(place, found, f"Write <{variable.type}>, or leave the type out.")
+        message = f"The connector is of type {connector.type}, but in {name} the variable is {variable.type}."
+        findings.error(place, message, f"Write <{variable.type}>, or leave the type out.")
     # Another unit is allowed if it can be converted; the conversion is noted.
-    own = find_unit(variable.unit, fmu.units)
-    if own is None or connector.unit is None:
+    own_unit = find_unit(variable.unit, fmu.units)
+    if own_unit is None or connector.unit is None:
         return
-    related = relation(connector.unit, own)
-    given, wanted = told_apart(connector.unit, own)
-    found = f"The connector is in {given}, the variable in {name} in {wanted}"
+    related = relation(connector.unit, own_unit)
+    given, wanted = told_apart(connector.unit, own_unit)
+    message = f"The connector is in {given}, the variable in {name} in {wanted}"
     if related == "incompatible":
-        findings.error(place, f"{found}; these cannot be converted.", f'Write unit="{own.name}".')
+        findings.error(
+            place, f"{message}; these cannot be converted.", f'Write unit="{own_unit.name}".'
+        )
     elif related != "same":
         how = (
             "not converted, a definition is missing"
             if related == "unknown"
             else "values are converted"
         )
-        findings.remark(place, f"{found}: {how}.")
+        findings.remark(place, f"{message}: {how}.")

@@ -84,14 +84,15 @@ def loop_problems(system: System) -> Iterator[Problem]:
         shown = ", ".join(
             f"{'.'.join(source)} -> {'.'.join(target)}" for source, target in loop.links
         )
-        found = f"An algebraic loop, outputs that follow inputs at once: {shown}."
+        message = f"An algebraic loop, outputs that follow inputs at once: {shown}."
         if loop.others:
-            found += f" {loop.others} more connections belong to it."
-        found += " In a run with fixed steps each link delays by one step, and the start is iterated, which may not settle."
+            message += f" {loop.others} more connections belong to it."
+        message += " In a run with fixed steps each link delays by one step,"
+        message += " and the start is iterated, which may not settle."
         if loop.silent:
-            found += f" These FMUs do not declare it, so it is assumed: {', '.join(loop.silent)}."
+            message += f" These FMUs do not declare it, so it is assumed: {', '.join(loop.silent)}."
         where = f"{system.file}: {', '.join(loop.components)}"
-        yield Problem(where, found, _remedy(loop), "remark")
+        yield Problem(where, message, _remedy(loop), "remark")
 
 
 def _remedy(loop: AlgebraicLoop) -> str:
@@ -142,7 +143,7 @@ def _shortest(links: list[Edge], edges: list[Edge]) -> list[Edge]:
     """Connections of the shortest cycle."""
     graph = _graph(edges)
     ways = []
-    known = set(links)
+    inner = set(links)
     # Breadth-first search from the end of each connection back to its start.
     for source, target in links[:MOST_STARTS]:
         before: dict[Node, Node | None] = {target: None}
@@ -160,7 +161,7 @@ def _shortest(links: list[Edge], edges: list[Edge]) -> list[Edge]:
             way.insert(0, node)
         # Keep only connections: edges inside components are no part of the message.
         steps = list(zip([source, *way], way, strict=False))
-        ways.append([step for step in steps if step in known])
+        ways.append([step for step in steps if step in inner])
     return min(ways, key=len)
 
 
@@ -182,7 +183,7 @@ def _strong(graph: Mapping, edges: Iterable[tuple]) -> list[list]:
         done.add(start)
         while stack:
             node, following = stack[-1]
-            fresh = next((one for one in following if one not in done), None)
+            fresh = next((successor for successor in following if successor not in done), None)
             if fresh is None:
                 order.append(node)
                 stack.pop()
@@ -199,7 +200,7 @@ def _strong(graph: Mapping, edges: Iterable[tuple]) -> list[list]:
         placed.add(start)
         while queue:
             part.append(node := queue.popleft())
-            fresh = [one for one in back[node] if one not in placed]
+            fresh = [predecessor for predecessor in back[node] if predecessor not in placed]
             placed.update(fresh)
             queue.extend(dict.fromkeys(fresh))
         # A single node counts only if it has an edge to itself.

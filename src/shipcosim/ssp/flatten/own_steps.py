@@ -39,9 +39,9 @@ def with_whole_steps(
         # plan.
         n = None if step is None or not base else _multiple(steps_in(step, base), as_libcosim)
         if n is not None and step is not None and base and abs(n * base - step) > EXACT * step:
-            found = f"Its step of {step:.9g} s is no multiple of the base step of {base:.9g} s"
+            message = f"Its step of {step:.9g} s is no multiple of the base step of {base:.9g} s"
             findings.flaw(
-                name, f"{found}; it takes {n} of them, {n * base:.9g} s.", "Write a multiple."
+                name, f"{message}; it takes {n} of them, {n * base:.9g} s.", "Write a multiple."
             )
             component = replace(component, step_size=n * base)
         fitted[name] = component

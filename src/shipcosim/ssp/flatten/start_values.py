@@ -91,12 +91,12 @@ class Settings:
             for key in keys:
                 self._deliver(value.value, flow, setting, key, value.place)
         for name, unused in self.unused.items():
-            found = f"{self.tree.swapped[name].name} takes its place and has no {', '.join(dict.fromkeys(unused))}."
-            self.findings.remark(f"{WHERE}, {name}", found, "These values are not used.")
+            message = f"{self.tree.swapped[name].name} takes its place and has no {', '.join(dict.fromkeys(unused))}."
+            self.findings.remark(f"{WHERE}, {name}", message, "These values are not used.")
         for (_, element), places in self.astray.items():
             what = "the value is" if len(places) == 1 else f"its {len(places)} values are"
-            found = f"There is no element '{element}' in this system; {what} not used."
-            self.findings.remark(places[0], found)
+            message = f"There is no element '{element}' in this system; {what} not used."
+            self.findings.remark(places[0], message)
 
     def _deliver(
         self, value: Value, flow: Flow, step: Wire | Setting, key: Key, place: str
@@ -173,8 +173,10 @@ class Settings:
             return  # its FMU is missing, which is an error already
         # FMI lets parameters and inputs be set, not calculated variables.
         if not variable.settable:
-            found = f"{key} is of causality {variable.causality}, a value that the FMU calculates."
-            self.findings.error(place, found, "Set parameters and inputs.")
+            message = (
+                f"{key} is of causality {variable.causality}, a value that the FMU calculates."
+            )
+            self.findings.error(place, message, "Set parameters and inputs.")
             return
         # Convert to the FMU's own unit, then check its bounds.
         convert = flow.in_unit(port.variable_unit or port.unit)
@@ -200,28 +202,28 @@ class Settings:
             return
         # The standard lets a set hold more than is used. A misspelt name must not pass silently,
         # though.
-        element, known = self._nearest(setting)
+        element, names = self._nearest(setting)
         # A swapped FMU may lack parameters of the original; they are listed in one remark.
         if element is not None and element in self.tree.swapped:
             self.unused.setdefault(element, []).append(name.removeprefix(f"{element}."))
             return
         if element is not None:
-            found = f"{element} has no parameter '{name}'."
+            message = f"{element} has no parameter '{name}'."
             # True if a parameter's name looks like a misspelt one of those that there are: part by part the same or
             # close.
             parts = name.split(".")
             candidates = [
-                one.split(".")
-                for one in list(known)[:MOST_COMPARED]
-                if one.count(".") == len(parts) - 1
+                candidate.split(".")
+                for candidate in list(names)[:MOST_COMPARED]
+                if candidate.count(".") == len(parts) - 1
             ]
             is_slip = any(all(map(_is_close, parts, others)) for others in candidates)
             if is_slip:
-                self.findings.error(place, found, it_has(name, known))
+                self.findings.error(place, message, it_has(name, names))
             else:
-                self.findings.flaw(place, f"{found} The value is not used.", it_has(name, known))
+                self.findings.flaw(place, f"{message} The value is not used.", it_has(name, names))
             return
-        elements = sorted({key.split(".")[0] for key in known})
+        elements = sorted({key.split(".")[0] for key in names})
         first = name.split(".")[0]
         close = get_close_matches(first, elements, n=1, cutoff=0.8)
         if close and not _differ_in_number(first, close[0]):
@@ -256,17 +258,17 @@ class Settings:
         ]
 
 
-def _is_close(one: str, other: str) -> bool:
+def _is_close(first: str, other: str) -> bool:
     """True if a part of a name may stand for another; very short ones always may."""
-    if one == other or max(len(one), len(other)) <= SHORT:
+    if first == other or max(len(first), len(other)) <= SHORT:
         return True
-    near = len(one) < LONGEST_NAME and get_close_matches(one, [other], n=1)
-    return bool(near) and not _differ_in_number(one, other)
+    near = len(first) < LONGEST_NAME and get_close_matches(first, [other], n=1)
+    return bool(near) and not _differ_in_number(first, other)
 
 
-def _differ_in_number(one: str, other: str) -> bool:
+def _differ_in_number(first: str, other: str) -> bool:
     """True if two names differ only in a number: ``thruster_1`` and ``thruster_2``."""
-    return re.sub(r"\d+", "", one).strip("_") == re.sub(r"\d+", "", other).strip("_")
+    return re.sub(r"\d+", "", first).strip("_") == re.sub(r"\d+", "", other).strip("_")
 
 
 def check_bounds(

@@ -29,15 +29,15 @@ def take_swapped(tree: Hierarchy) -> None:
     tree : Hierarchy
         With all components, ports and wires; takes what is wrong.
     """
-    known = {".".join(path): path for path in tree.components}
+    paths = {".".join(path): path for path in tree.components}
     wired = {key for wire in tree.wires for key in (wire.source, wire.target)}
     for name in tree.swapped:
-        if name not in known:
+        if name not in paths:
             tree.findings.error(
-                f"{WHERE}, {name}", f"There is no component '{name}'.", suggestion(name, known)
+                f"{WHERE}, {name}", f"There is no component '{name}'.", suggestion(name, paths)
             )
-        elif (fmu := tree.components[known[name]][1]) is not None:
-            _take(tree, known[name], fmu, wired)
+        elif (fmu := tree.components[paths[name]][1]) is not None:
+            _take(tree, paths[name], fmu, wired)
 
 
 def _take(tree: Hierarchy, path: ElementPath, fmu: FmuDescription, wired: set[Key]) -> None:
@@ -53,7 +53,9 @@ def _take(tree: Hierarchy, path: ElementPath, fmu: FmuDescription, wired: set[Ke
         return
     name = ".".join(path)
     lacks = shortened((key.name for key in missed), MOST_NAMED)
-    found = f"{fmu.path.name} cannot take the place of '{name}': it lacks {lacks}, which are wired."
+    message = (
+        f"{fmu.path.name} cannot take the place of '{name}': it lacks {lacks}, which are wired."
+    )
     # Offer variables of similar names that are still free.
     close = []
     for key in missed[:MOST_NAMED]:
@@ -63,4 +65,4 @@ def _take(tree: Hierarchy, path: ElementPath, fmu: FmuDescription, wired: set[Ke
         close += [f"{name} ({key.name})" for name in get_close_matches(key.name, names, n=1)]
     has = ", ".join([*fmu.named("input"), *fmu.named("output")][:40])
     remedy = f"Close to them are {', '.join(close)}." if close else f"It has: {has}."
-    tree.findings.error(f"{WHERE}, {name}", found, remedy)
+    tree.findings.error(f"{WHERE}, {name}", message, remedy)

@@ -53,9 +53,9 @@ class Component:
     @property
     def left_out(self) -> list[str]:
         """Parameters that the FMU must be given and the system does not set."""
-        known = self.variables.items()
+        items = self.variables.items()
         return [
-            name for name, v in known if v.required and self.start.get(name, v.start) == v.start
+            name for name, v in items if v.required and self.start.get(name, v.start) == v.start
         ]
 
 
@@ -132,7 +132,9 @@ class System:
     @property
     def deviations(self) -> list[Problem]:
         """Remarks on what a run does otherwise than the files ask; `check` names free inputs as well."""
-        return [one for one in self.remarks if one.flaw or one.where not in self.components]
+        return [
+            remark for remark in self.remarks if remark.flaw or remark.where not in self.components
+        ]
 
     def __repr__(self) -> str:
         counts = f"{len(self.components)} components, {len(self.connections)} connections"
@@ -199,12 +201,14 @@ class System:
         if owners:
             owner = max(owners, key=len)
             variable = signal[len(owner) + 1 :]
-            known = self.components[owner].variables
-            return Problem(where, f"{owner} has no variable '{variable}'.", it_has(variable, known))
+            choices = self.components[owner].variables
+            return Problem(
+                where, f"{owner} has no variable '{variable}'.", it_has(variable, choices)
+            )
         element = signal.split(".")[0]
-        known = [*self.components, *self.inputs, *self.outputs, *self.parameters]
+        choices = [*self.components, *self.inputs, *self.outputs, *self.parameters]
         return Problem(
-            where, f"There is no component or connector '{element}'.", suggestion(element, known)
+            where, f"There is no component or connector '{element}'.", suggestion(element, choices)
         )
 
 
@@ -240,8 +244,8 @@ def alias_remarks(
         for (_, reference, _), values in names.items():
             if len(set(values.values())) > 1:
                 *others, used = values
-                found = f"{', '.join(others)} and {used} are one variable of its FMU (value reference {reference})"
-                found += f" and get different values; that of {used} is used."
+                message = f"{', '.join(others)} and {used} are one variable of its FMU (value reference {reference})"
+                message += f" and get different values; that of {used} is used."
                 where = f"{component.name}.{used}"
-                remarks.append(Problem(where, found, "Give one of them.", "remark"))
+                remarks.append(Problem(where, message, "Give one of them.", "remark"))
     return remarks

@@ -91,7 +91,8 @@ def _take_system(
             tree.arrays.get(path if owner is None else (*path, owner), {}) for owner, _ in link.ends
         ]
         start, end = (
-            known.get(name, ()) for known, (_, name) in zip(owners, link.ends, strict=True)
+            connectors.get(name, ())
+            for connectors, (_, name) in zip(owners, link.ends, strict=True)
         )
         for single in element_links(link, start, end, tree.findings):
             wire = wire_of(single, element, path, tree)
@@ -121,17 +122,17 @@ def _take_other_file(
     tree: Hierarchy, element: ComponentElement, path: ElementPath, place: Surroundings
 ) -> None:
     """Treat a component that is a system elsewhere as if it stood here."""
-    found = _system_of(tree, element, place)
+    target = _system_of(tree, element, place)
     # A file that contains itself would never end.
-    if found is not None and found[1].place in place.around:
+    if target is not None and target[1].place in place.around:
         tree.findings.error(
             element.place, f"'{element.source}' contains itself.", "Break the circle."
         )
-        found = None
-    if found is None:
+        target = None
+    if target is None:
         tree.components[path] = element, None
         return
-    structure, system, package = found
+    structure, system, package = target
     # The inner system keeps its own file for addresses, but sees the outer dictionaries.
     inner = Surroundings(structure, package, place.dictionaries, (*place.around, system.place))
     _take_system(tree, system, path, inner, ((element.bindings, place),))
@@ -171,4 +172,4 @@ def _with_id(system: SystemElement, wanted: str) -> SystemElement | None:
     if system.id == wanted:
         return system
     inner = (_with_id(part, wanted) for part in system.elements if isinstance(part, SystemElement))
-    return next((found for found in inner if found is not None), None)
+    return next((candidate for candidate in inner if candidate is not None), None)

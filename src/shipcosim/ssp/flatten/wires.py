@@ -91,8 +91,8 @@ def _directed(
         takes = kinds[target] in FREE or not target.gives(kinds[target])
         feeding = FEEDS.get(kinds[target], KIND_NAMES)
         if gives and takes and kinds[source] not in (*FREE, *feeding):
-            found = f"{source} ({kinds[source]}) cannot feed {target} ({kinds[target]})."
-            findings.error(link.place, found, f"Feed it from one of: {', '.join(feeding)}.")
+            message = f"{source} ({kinds[source]}) cannot feed {target} ({kinds[target]})."
+            findings.error(link.place, message, f"Feed it from one of: {', '.join(feeding)}.")
             return None
         if gives and takes:
             return source, target
@@ -101,8 +101,8 @@ def _directed(
         if start.gives(kinds[start])
         else "take a value, and neither gives one"
     )
-    found = f"{start} ({kinds[start]}) and {end} ({kinds[end]}): both {which}."
-    findings.error(link.place, found, "Connect an output to an input.")
+    message = f"{start} ({kinds[start]}) and {end} ({kinds[end]}): both {which}."
+    findings.error(link.place, message, "Connect an output to an input.")
     return None
 
 
@@ -112,18 +112,18 @@ def _exists(end: End, ends: list[End], link: Link, system: SystemElement, tree: 
         return True
     names = [part.name for part in system.elements]
     if end.element is not None and end.element not in names:
-        found = f"There is no element '{end.element}' in {system.name}."
-        tree.findings.error(link.place, found, suggestion(end.element, names))
+        message = f"There is no element '{end.element}' in {system.name}."
+        tree.findings.error(link.place, message, suggestion(end.element, names))
         return False
     # The FMU may have the variable although the SSD declares no connector: accept it.
     component, fmu = tree.components.get(end.key.path, (None, None))
     if fmu is not None and end.name in fmu.variables:
         return _undeclared(end, fmu, link, tree)
     if component is None or fmu is not None:
-        wanted, known = _wanted(end, ends, fmu, tree)
+        wanted, there = _wanted(end, ends, fmu, tree)
         owner = end.element or system.name
         tree.findings.error(
-            link.place, f"{owner} has no {wanted} '{end.name}'.", it_has(end.name, known)
+            link.place, f"{owner} has no {wanted} '{end.name}'.", it_has(end.name, there)
         )
     return False
 
@@ -132,9 +132,9 @@ def _undeclared(end: End, fmu: FmuDescription, link: Link, tree: Hierarchy) -> b
     """Add the port of a variable that only the FMU declares, with a remark."""
     port = variable_port(fmu.variables[end.name], fmu, link.place)
     tree.ports[end.key] = port
-    found = f"{end} is not declared as a connector; it is taken from {fmu.path.name}."
+    message = f"{end} is not declared as a connector; it is taken from {fmu.path.name}."
     tree.findings.remark(
-        link.place, found, f'Add <Connector name="{end.name}" kind="{port.kind}"/>.'
+        link.place, message, f'Add <Connector name="{end.name}" kind="{port.kind}"/>.'
     )
     return True
 
@@ -155,6 +155,6 @@ def _wanted(
         else {name: variable.causality for name, variable in fmu.variables.items()}
     )
     for wanted in kinds:
-        if known := [name for name, kind in have.items() if kind == wanted]:
-            return wanted, known
+        if names := [name for name, kind in have.items() if kind == wanted]:
+            return wanted, names
     return "connector", list(have)

@@ -115,8 +115,8 @@ def _set(
     if not _fits(value, variable, variable.kind, place, findings):
         return
     if not variable.settable:
-        found = f"It is of causality {variable.causality}, a value that the FMU calculates."
-        findings.error(place, found, "Set parameters and inputs.")
+        message = f"It is of causality {variable.causality}, a value that the FMU calculates."
+        findings.error(place, message, "Set parameters and inputs.")
     elif check_bounds(value, variable, place, variable.name, findings):
         # In the order of setting: of two names of one variable the last one holds.
         start.pop(variable.name, None)
@@ -138,8 +138,8 @@ def _fits(
         return False
     # JSON and TOML can hold NaN and infinity; models cannot start from them.
     if isinstance(value, (int, float)) and not is_finite(value):
-        found = f"{str(value):.60} is not a finite number."
-        findings.error(place, found, _wanted(kind, owner.unit))
+        message = f"{str(value):.60} is not a finite number."
+        findings.error(place, message, _wanted(kind, owner.unit))
         return False
     if kind == "Integer" and not -LARGEST <= value < LARGEST:
         findings.error(

@@ -52,7 +52,7 @@ def feedthrough(fmu: FmuDescription) -> dict[str, frozenset[str]]:
     # An output with an attribute `dependencies`, which may be empty, states what it follows.
     return {
         names[part.get(key)]: frozenset(
-            names[one] for one in part.get("dependencies").split() if one in names
+            names[index] for index in part.get("dependencies").split() if index in names
         )
         for part in listed
         if part.get("dependencies") is not None and part.get(key) in names
@@ -61,10 +61,10 @@ def feedthrough(fmu: FmuDescription) -> dict[str, frozenset[str]]:
 
 def _direct(variables: Iterable[etree._Element]) -> dict[str, frozenset[str]]:
     """Outputs of FMI 1.0 with a list of direct dependencies."""
-    found = {}
+    outputs = {}
     for variable in variables:
         for part in parts_in(variable, "DirectDependency"):
-            found[variable.get("name")] = frozenset(
+            outputs[variable.get("name")] = frozenset(
                 (name.text or "").strip() for name in parts_in(part)
             )
-    return found
+    return outputs

@@ -131,9 +131,9 @@ def _is_fmi(root: etree._Element, file: str, findings: Findings) -> bool:
         )
         return False
     if not version.startswith(("1.", "2.", "3.")):
-        found = f"FMI version '{version}'."
+        message = f"FMI version '{version}'."
         findings.error(
-            file, found, "Versions 1.0, 2.0 and 3.0 are read: export the FMU in one of them."
+            file, message, "Versions 1.0, 2.0 and 3.0 are read: export the FMU in one of them."
         )
         return False
     return True
@@ -185,12 +185,14 @@ def _experiment(document: Document, given: dict[str, str], findings: Findings) -
     if numbers.get("stopTime", inf) < numbers.get("startTime", 0.0):
         unusable.add("stopTime")
     for name in sorted(unusable):
-        found = f"The default experiment has {name}={given[name]!r}, which is not used."
-        findings.flaw(f"{document.file}: DefaultExperiment", found, "Correct it, or leave it out.")
+        message = f"The default experiment has {name}={given[name]!r}, which is not used."
+        findings.flaw(
+            f"{document.file}: DefaultExperiment", message, "Correct it, or leave it out."
+        )
         del numbers[name]
     return numbers
 
 
 def _interfaces(root: etree._Element) -> dict[str, dict[str, str]]:
-    known = ("CoSimulation", "ModelExchange", "ScheduledExecution")
-    return {local(part): dict(part.attrib) for part in root if local(part) in known}
+    interfaces = ("CoSimulation", "ModelExchange", "ScheduledExecution")
+    return {local(part): dict(part.attrib) for part in root if local(part) in interfaces}

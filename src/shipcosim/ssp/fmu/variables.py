@@ -53,8 +53,8 @@ def read_variables(document: Document, findings: Findings) -> dict[str, Variable
                     same = first == second
                     what = "the same value" if same else f"another value ({second})"
                     more = "" if same else "; this one cannot be reached"
-                    found = f"A second variable has this name, for {what}. The name means the first one{more}."
-                    findings.flaw(document.place(element, name), found, "Names must differ.")
+                    message = f"A second variable has this name, for {what}. The name means the first one{more}."
+                    findings.flaw(document.place(element, name), message, "Names must differ.")
                 variables.setdefault(name, variable)
                 if outside := _start_outside(variable):
                     findings.remark(document.place(element, name), outside)
@@ -180,8 +180,8 @@ def _items(declared: etree._Element | None, is_first: bool) -> dict[str, int]:
     declaration = _declaration(declared)
     if is_first:
         return items_of(declaration)
-    found = [] if declaration is None else parts_in(declaration, "Item")
-    return by_name("item", ((item.get("name"), int(item.get("value"))) for item in found))
+    items = [] if declaration is None else parts_in(declaration, "Item")
+    return by_name("item", ((item.get("name"), int(item.get("value"))) for item in items))
 
 
 def _start(typed: etree._Element, kind: str, dimensions: tuple[int, ...]) -> Value | None:

@@ -80,23 +80,25 @@ class ConnectionReader:
                 variable = ends["Variable" if kind == "Signal" else "VariableGroup"]
                 kinds[kind](variable, ends[kind], place)
             else:
-                one, other = parts_in(element)
-                self._pair(one, other, place)
+                first, other = parts_in(element)
+                self._pair(first, other, place)
         # Connections through functions follow once all their signals are known.
         for signal, connection in self.wiring.connections():
             self._add(connection, signal)
         return self.connections
 
-    def _pair(self, one: etree._Element, other: etree._Element, place: str) -> None:
+    def _pair(self, first: etree._Element, other: etree._Element, place: str) -> None:
         """A connection of two variables, or of the variables of two groups one by one."""
-        if local(one) == "Variable":
-            ends = [end for part in (one, other) if (end := self._end(part, place)) is not None]
+        if local(first) == "Variable":
+            ends = [end for part in (first, other) if (end := self._end(part, place)) is not None]
             if len(ends) == 2:
                 self._direct(ends[0], ends[1], place)
             return
-        groups = [group for part in (one, other) if (group := self._group(part, place)) is not None]
+        groups = [
+            group for part in (first, other) if (group := self._group(part, place)) is not None
+        ]
         if len(groups) == 2:
-            self._join(groups, [one.get("simulator"), other.get("simulator")], place)
+            self._join(groups, [first.get("simulator"), other.get("simulator")], place)
 
     def _join(self, groups: Sequence[Group], simulators: Sequence[str], place: str) -> None:
         """Connect two groups in order: their inner groups, then their variables."""
@@ -107,13 +109,13 @@ class ConnectionReader:
                 f"{simulator}.{group.name}"
                 for simulator, group in zip(simulators, groups, strict=True)
             ]
-            found = f"{names[0]} has {_counted(*counts[0])}, {names[1]} {_counted(*counts[1])}."
-            self.findings.error(place, found, "Connect groups of one make.")
+            message = f"{names[0]} has {_counted(*counts[0])}, {names[1]} {_counted(*counts[1])}."
+            self.findings.error(place, message, "Connect groups of one make.")
             return
         # Kinds may differ, as long as the numbers agree.
         if groups[0].kind != groups[1].kind:
-            found = f"A {groups[0].kind} is connected to a {groups[1].kind}, one variable after the other."
-            self.findings.remark(place, found)
+            message = f"A {groups[0].kind} is connected to a {groups[1].kind}, one variable after the other."
+            self.findings.remark(place, message)
         for inner in zip(groups[0].groups, groups[1].groups, strict=True):
             self._join(inner, simulators, place)
         for pair in zip(groups[0].variables, groups[1].variables, strict=True):
@@ -121,9 +123,11 @@ class ConnectionReader:
             if all(self._has(end) for end in ends):
                 self._direct(ends[0], ends[1], place)
 
-    def _direct(self, one: End, other: End, place: str) -> None:
+    def _direct(self, first: End, other: End, place: str) -> None:
         """Add a connection in the direction that the causalities give."""
-        source, target = (one, other) if self._variable(one).causality in SOURCES else (other, one)
+        source, target = (
+            (first, other) if self._variable(first).causality in SOURCES else (other, first)
+        )
         self._add(Connection(source, target, place=place))
 
     def _add(self, connection: Connection, signal: tuple[str, str] | None = None) -> None:
@@ -136,12 +140,14 @@ class ConnectionReader:
         feeding = self._fed.get(connection.target)
         self._fed[connection.target] = signal or (place,)
         if source.causality not in SOURCES or target.causality != "input":
-            found = f"{names[0]} is of causality {source.causality}, {names[1]} {target.causality}."
-            self.findings.error(place, found, "A connection leads from an output to an input.")
+            message = (
+                f"{names[0]} is of causality {source.causality}, {names[1]} {target.causality}."
+            )
+            self.findings.error(place, message, "A connection leads from an output to an input.")
         elif source.kind != target.kind or (signal and target.kind != "Real"):
-            found = f"{names[0]} is {source.kind}, {names[1]} is {target.kind}."
+            message = f"{names[0]} is {source.kind}, {names[1]} is {target.kind}."
             remedy = "Functions take and give Real alone." if signal else "Connect equal types."
-            self.findings.error(place, found, remedy)
+            self.findings.error(place, message, remedy)
         elif feeding is not None and feeding != signal:
             self.findings.error(
                 place, f"A second connection into {names[1]}.", "Remove one of them."
@@ -160,9 +166,9 @@ class ConnectionReader:
             units.append(find_unit(fmu.variables[variable].unit, fmu.units))
         if None not in units and relation(units[0], units[1]) in ("convertible", "incompatible"):
             source, target = told_apart(units[0], units[1])
-            found = f"{names[0]} is in {source}, {names[1]} in {target}: OSP converts no units."
+            message = f"{names[0]} is in {source}, {names[1]} in {target}: OSP converts no units."
             self.findings.remark(
-                connection.place, found, "Put a LinearTransformation between them."
+                connection.place, message, "Put a LinearTransformation between them."
             )
 
     def _signal(self, variable: etree._Element, signal: etree._Element, place: str) -> None:
@@ -172,7 +178,7 @@ class ConnectionReader:
 
     def _signal_group(self, group: etree._Element, signal: etree._Element, place: str) -> None:
         # Both the group and the function's group must exist, with the same number of signals.
-        found = self._group(group, place)
+        named_group = self._group(group, place)
         if not self._has_function(signal, place):
             return
         function = self.functions[signal.get("function")]
@@ -181,18 +187,16 @@ class ConnectionReader:
             text = f"The {function.kind} '{function.name}' has no group of signals '{name}'."
             self.findings.error(place, text, it_has(name, function.groups))
             return
-        if found is None:
+        if named_group is None:
             self.wiring.give_up(function.name)
             return
-        if len(found.variables) != function.dimension:
+        if len(named_group.variables) != function.dimension:
             self.wiring.give_up(function.name)
-            text = (
-                f"{group.get('simulator')}.{found.name} has {_counted(len(found.variables), 0)}, "
-            )
+            text = f"{group.get('simulator')}.{named_group.name} has {_counted(len(named_group.variables), 0)}, "
             self.findings.error(place, f"{text}{function.name} the dimension {function.dimension}.")
             return
         # Each variable of the group feeds the signal of the same number.
-        for j, variable in enumerate(found.variables):
+        for j, variable in enumerate(named_group.variables):
             end = group.get("simulator"), variable
             self.wiring.take(function.name, f"{name}[{j}]", end if self._has(end) else None, place)
 
@@ -215,8 +219,8 @@ class ConnectionReader:
             self._groups[fmu.path] = read_groups(fmu, self.document.folder, self.findings)
         groups = self._groups[fmu.path]
         if groups is None:
-            found = f"The variable groups of {fmu.path.name} are described nowhere."
-            self.findings.error(place, found, f"Put {file_names(fmu)[0]} beside it.")
+            message = f"The variable groups of {fmu.path.name} are described nowhere."
+            self.findings.error(place, message, f"Put {file_names(fmu)[0]} beside it.")
         elif name not in groups:
             self.findings.error(
                 place, f"{simulator} has no variable group '{name}'.", it_has(name, groups)

@@ -126,10 +126,10 @@ class Wiring:
             self.give_up(function)
             return
         # The signal must exist.
-        known = self.functions[function]
-        if signal not in known.signals:
-            found = f"The {known.kind} '{function}' has no signal '{signal}'."
-            self.findings.error(place, found, it_has(signal, known.signals))
+        declared = self.functions[function]
+        if signal not in declared.signals:
+            message = f"The {declared.kind} '{function}' has no signal '{signal}'."
+            self.findings.error(place, message, it_has(signal, declared.signals))
             return
         # An input takes one connection; an output may have
         # several, of which libcosim makes the first.
@@ -139,10 +139,10 @@ class Wiring:
                 place, f"A second connection into {function}:{signal}.", "Remove one of them."
             )
         elif ends:
-            found = (
+            message = (
                 f"{function}:{signal} has more than one connection; libcosim makes the first alone."
             )
-            self.findings.remark(place, found, "Give each target a function of its own.")
+            self.findings.remark(place, message, "Give each target a function of its own.")
         ends.append((end, place))
 
     def connections(self) -> Iterator[tuple[tuple[str, str], Connection]]:
@@ -154,9 +154,9 @@ class Wiring:
                     name for name in (*inputs, output) if (function.name, name) not in self._ends
                 ]
                 if missing:
-                    found = f"The {function.kind} '{function.name}' has nothing connected to {', '.join(missing[:5])}."
+                    message = f"The {function.kind} '{function.name}' has nothing connected to {', '.join(missing[:5])}."
                     self.findings.error(
-                        function.place, found, "Connect every signal of it, or remove it."
+                        function.place, message, "Connect every signal of it, or remove it."
                     )
                     continue
                 # Each source to each target, with the function's factor and offset.

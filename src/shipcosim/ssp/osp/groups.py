@@ -59,19 +59,19 @@ def read_groups(fmu: FmuDescription, folder: Path, findings: Findings) -> dict[s
     document = None if file is None else read_document(file, str(file), findings)
     if document is None:
         return None
-    found = {}
+    groups = {}
     # Inner groups are found by their own names, so all names must differ.
     for listed in parts_in(document.root, "VariableGroups"):
         for element in filter(local, listed):
             for group in _group(element, fmu, document, findings).all():
-                if group.name in found:
+                if group.name in groups:
                     findings.error(
                         document.place(element, group.name),
                         "A second group has this name.",
                         "Rename it.",
                     )
-                found[group.name] = group
-    return found
+                groups[group.name] = group
+    return groups
 
 
 def file_names(fmu: FmuDescription) -> list[str]:
@@ -87,8 +87,8 @@ def _file(fmu: FmuDescription, folder: Path, findings: Findings) -> Path | None:
         for place in places:
             if "/" not in name and (place / name).is_file():
                 if name != wanted:
-                    found = f"libcosim looks for {wanted} instead, by the model's name."
-                    findings.remark(str(place / name), found, "Rename the file.")
+                    message = f"libcosim looks for {wanted} instead, by the model's name."
+                    findings.remark(str(place / name), message, "Rename the file.")
                 return place / name
     return None
 
@@ -103,10 +103,10 @@ def _group(
         if local(part) == "Variable":
             name = part.get("ref", "")
             if name not in fmu.variables:
-                found = f"{fmu.path.name} has no variable '{name}'."
+                message = f"{fmu.path.name} has no variable '{name}'."
                 findings.error(
                     document.place(part, element.get("name", "")),
-                    found,
+                    message,
                     it_has(name, fmu.variables),
                 )
             variables.append(name)

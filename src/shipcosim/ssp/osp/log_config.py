@@ -46,12 +46,12 @@ def read_log_config(path: AnyPath) -> LogConfig:
         if local(simulator) != "simulator":
             continue
         name = simulator.get("name", "")
-        variables = [one.get("name", "") for one in parts_in(simulator, "variable")]
+        variables = [variable.get("name", "") for variable in parts_in(simulator, "variable")]
         signals += [f"{name}.{variable}" for variable in variables or ["*"]]
         factor = simulator.get("decimationFactor", "1")
         if not factor.isascii() or not factor.isdecimal() or int(factor) < 1:
             where = f"{path}, line {simulator.sourceline}: {name}"
-            found = f"decimationFactor = '{factor}' is no number of steps."
-            raise error_at(where, found, "Right would be a whole number from 1 on.")
+            message = f"decimationFactor = '{factor}' is no number of steps."
+            raise error_at(where, message, "Right would be a whole number from 1 on.")
         steps.append(int(factor))
     return LogConfig(tuple(signals), min(steps, default=1))

@@ -46,21 +46,21 @@ def mend_osp(document: Document, findings: Findings) -> None:
     _set_namespace(document, findings)
     version = root.get("version")
     if version != VERSION:
-        found = "It has no version" if not version else f"Its version is '{version}'"
+        message = "It has no version" if not version else f"Its version is '{version}'"
         root.set("version", VERSION)
         remedy = f'Write version="{VERSION}".'
-        findings.flaw(document.place(root), f"{found}; {VERSION} is taken.", remedy)
-    known = names_in(SCHEMA).elements
+        findings.flaw(document.place(root), f"{message}; {VERSION} is taken.", remedy)
+    names = names_in(SCHEMA).elements
     for element in list(root.iter(etree.Element)):
-        drop_unknown(document, element, known, findings)
+        drop_unknown(document, element, names, findings)
         drop_empty_attributes(document, element, findings, EMPTY_IS_ABSENT)
         mend_boolean(document, element, findings)
     # An empty time or algorithm says nothing.
     for part in parts_in(root):
         if local(part) in TEXTS and not (part.text or "").strip():
             root.remove(part)
-            found = f"<{local(part)}> is empty; it is taken as if it were not there."
-            findings.flaw(document.place(part), found, "Remove it.")
+            message = f"<{local(part)}> is empty; it is taken as if it were not there."
+            findings.flaw(document.place(part), message, "Remove it.")
     sort_parts(document, root, ORDER, findings)
 
 
@@ -73,5 +73,5 @@ def _set_namespace(document: Document, findings: Findings) -> None:
     for element in root.iter(f"{{{space}}}*"):
         element.tag = f"{{{NAMESPACE}}}{local(element)}"
     its = f"the namespace '{space}'" if space else "no namespace"
-    found = f"It is in {its}; it is taken for one of {NAMESPACE}."
-    findings.flaw(document.place(root), found, f'Add xmlns="{NAMESPACE}".')
+    message = f"It is in {its}; it is taken for one of {NAMESPACE}."
+    findings.flaw(document.place(root), message, f'Add xmlns="{NAMESPACE}".')

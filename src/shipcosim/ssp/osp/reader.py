@@ -77,7 +77,7 @@ def assemble_osp(
     folders = [Path(folder) for folder in fmus]
     system = _system(document, folders, sets, Hierarchy(findings, swapped=swapped))
     # If sizes differ from the FMU's, read again with the arrays in these sizes.
-    if any(found for component in system.components.values() for found in resized(component)):
+    if any(problem for component in system.components.values() for problem in resized(component)):
         findings.problems[:] = before
         tree = Hierarchy(findings, sizes=sizes_wanted(system.components), swapped=swapped)
         system = _system(document, folders, sets, tree)
@@ -87,9 +87,9 @@ def assemble_osp(
 def _is_osp(document: Document, findings: Findings) -> bool:
     if document.root.tag == f"{{{NAMESPACE}}}OspSystemStructure":
         return True
-    found = f"Its outermost element is <{local(document.root)}> of '{document.root.tag.partition('}')[0].lstrip('{')}'."
+    message = f"Its outermost element is <{local(document.root)}> of '{document.root.tag.partition('}')[0].lstrip('{')}'."
     remedy = f'Right would be <OspSystemStructure xmlns="{NAMESPACE}">.'
-    findings.error(document.place(document.root), found, remedy)
+    findings.error(document.place(document.root), message, remedy)
     return False
 
 

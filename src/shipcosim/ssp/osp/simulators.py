@@ -14,7 +14,7 @@ from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.fmu.reader import describe_fmu
 from shipcosim.ssp.osp.schema import NAMESPACE
 from shipcosim.ssp.osp.times import own_step
-from shipcosim.ssp.read.addresses import PROXY, alike, path_of
+from shipcosim.ssp.read.addresses import PROXY, differing_in_case, path_of
 from shipcosim.ssp.read.package import remark_copy
 from shipcosim.ssp.read.parameters import ParameterValue
 from shipcosim.ssp.read.structure import FMU, ComponentElement
@@ -57,8 +57,8 @@ class Simulators:
     def fmu_of(self, simulator: str, place: str) -> FmuDescription | None:
         """FMU of a simulator, or None, with an error unless it was reported before."""
         if (simulator,) not in self.tree.components:
-            found = f"There is no simulator '{simulator}'."
-            self.findings.error(place, found, suggestion(simulator, self.names))
+            message = f"There is no simulator '{simulator}'."
+            self.findings.error(place, message, suggestion(simulator, self.names))
             return None
         return self.tree.components[simulator,][1]
 
@@ -68,8 +68,10 @@ class Simulators:
         name = element.get("name")
         place = self.document.place(element, name)
         if not name or (name,) in self.tree.components:
-            found = f"A second simulator is named '{name}'." if name else "A simulator has no name."
-            self.findings.error(place, found, "Names must differ.")
+            message = (
+                f"A second simulator is named '{name}'." if name else "A simulator has no name."
+            )
+            self.findings.error(place, message, "Names must differ.")
             return
         # The FMU, or the one that replaces it.
         file = self.tree.swapped.get(name) or self._located(element.get("source"), place)
@@ -102,14 +104,14 @@ class Simulators:
         try:
             # A proxy address names a file and a process: only the file is used.
             if "\\" in source:
-                found = f"'{source}' has backslashes; they are taken for slashes."
-                self.findings.flaw(place, found, "Write an address: folder/name.fmu.")
+                located = f"'{source}' has backslashes; they are taken for slashes."
+                self.findings.flaw(place, located, "Write an address: folder/name.fmu.")
                 source = source.replace("\\", "/")
             parts = urlsplit(source)
             if parts.scheme == PROXY and (text := path_of(source)) is not None:
-                found = f"'{source}' is an FMU in a process of its own; {text} is run here."
+                located = f"'{source}' is an FMU in a process of its own; {text} is run here."
                 self.findings.flaw(
-                    place, found, "Name the FMU's file; `--isolate` runs each FMU in a process."
+                    place, located, "Name the FMU's file; `--isolate` runs each FMU in a process."
                 )
                 parts = urlsplit(text)
                 source = text
@@ -125,22 +127,22 @@ class Simulators:
             paths = [self.document.folder / path, self.document.folder / source]
             elsewhere = [folder / Path(path).name for folder in self.searched]
             paths += elsewhere
-            paths += alike(paths[0])  # upper and lower case, as Windows takes them
-            found = next((path for path in paths if path.is_file()), None)
-            if found is not None:
-                remark_copy(found, elsewhere, place, self.findings)
-                if found not in paths[:2] and found.name != Path(path).name:
+            paths += differing_in_case(paths[0])  # upper and lower case, as Windows takes them
+            located = next((path for path in paths if path.is_file()), None)
+            if located is not None:
+                remark_copy(located, elsewhere, place, self.findings)
+                if located not in paths[:2] and located.name != Path(path).name:
                     self.findings.flaw(
                         place,
-                        f"There is no '{source}'; {found.name} is taken.",
+                        f"There is no '{source}'; {located.name} is taken.",
                         "Write this name.",
                     )
         except (ValueError, OSError) as error:
             self.findings.error(place, f"'{source[:80]}' is no usable address: {error}.")
             return None
         # Suggest a similar file of the same folder.
-        if found is None:
+        if located is None:
             there = {file.name for file in paths[0].parent.glob("*.fmu")}
             remedy = f"In {paths[0].parent} there{suggestion(paths[0].name, there).removeprefix('There')}"
             self.findings.error(place, f"The file '{source}' does not exist.", remedy)
-        return found
+        return located

@@ -29,8 +29,8 @@ def read_experiment(document: Document, findings: Findings) -> Experiment:
     read = {name: _seconds(document, part, part.text, findings) for name, part in times.items()}
     # Without a base step libcosim takes its default: so do we.
     if "BaseStepSize" not in times:
-        found = f"It has no BaseStepSize: {DEFAULT_STEP} s is taken, as libcosim does."
-        findings.remark(document.place(root), found, "Add one.")
+        message = f"It has no BaseStepSize: {DEFAULT_STEP} s is taken, as libcosim does."
+        findings.remark(document.place(root), message, "Add one.")
     elif read["BaseStepSize"] is not None and read["BaseStepSize"] <= 0.0:
         place = document.place(times["BaseStepSize"])
         findings.error(place, "The base step size must be positive.", "Give it in seconds.")
@@ -60,8 +60,10 @@ def own_step(document: Document, element: etree._Element, findings: Findings) ->
         return None
     step = _seconds(document, element, element.get("stepSize"), findings)
     if step is not None and step < 0.0:
-        found = f"stepSize is {step:g}."
-        findings.error(document.place(element, element.get("name")), found, "It must be positive.")
+        message = f"stepSize is {step:g}."
+        findings.error(
+            document.place(element, element.get("name")), message, "It must be positive."
+        )
     return step or None
 
 
@@ -69,13 +71,13 @@ def _remark_algorithm(document: Document, findings: Findings) -> None:
     # Only the fixed step algorithm is known to libcosim.
     parts = {local(part): part for part in document.root}
     if "Algorithm" not in parts:
-        found = "It names no algorithm, and libcosim refuses such a file."
+        message = "It names no algorithm, and libcosim refuses such a file."
         findings.remark(
-            document.place(document.root), found, "Add <Algorithm>fixedStep</Algorithm>."
+            document.place(document.root), message, "Add <Algorithm>fixedStep</Algorithm>."
         )
     elif (name := (parts["Algorithm"].text or "").strip()) != "fixedStep":
-        found = f"The algorithm '{name}' is not known: it runs with fixed steps."
-        findings.remark(document.place(parts["Algorithm"]), found)
+        message = f"The algorithm '{name}' is not known: it runs with fixed steps."
+        findings.remark(document.place(parts["Algorithm"]), message)
     if "EccoConfiguration" in parts:
         place = document.place(parts["EccoConfiguration"])
         findings.remark(place, "The configuration of the algorithm ecco is not used.")

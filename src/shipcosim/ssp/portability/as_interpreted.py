@@ -72,13 +72,13 @@ def taken_by(
         return [], None
     whole = subject.system
     # Each kind of deviation alone, for its description, and all of them together.
-    found = []
+    taken = []
     for change in (_values, _connections, _steps, _forms):
         what, changed = change(host, subject, subject.system)
         if what:
-            found.append(Taken(what, changed))
+            taken.append(Taken(what, changed))
             whole = change(host, subject, whole)[1]
-    return found, whole
+    return taken, whole
 
 
 def _values(host: str, subject: Subject, system: System) -> tuple[str, System]:
@@ -112,8 +112,8 @@ def _values(host: str, subject: Subject, system: System) -> tuple[str, System]:
 
 def _takes(host: str, value: ParameterValue, variable: Variable, fmu: FmuDescription) -> bool:
     if host == "libcosim":
-        known = ("input",) if fmu.fmi_version.startswith("1") else ("parameter", "input")
-        if value.kind != variable.kind or variable.causality not in known:
+        causalities = ("input",) if fmu.fmi_version.startswith("1") else ("parameter", "input")
+        if value.kind != variable.kind or variable.causality not in causalities:
             return False
     return variable.kind in ("Real", "Integer", "Boolean", "String") and value.kind != "Enumeration"
 
@@ -207,5 +207,5 @@ def _forms(host: str, subject: Subject, system: System) -> tuple[str, System]:
     return _listed("forms are not looked at", other), replace(system, components=plain)
 
 
-def _listed(what: str, found: list[str]) -> str:
-    return f"{what}: {shortened(found, between='; ')}" if found else ""
+def _listed(what: str, texts: list[str]) -> str:
+    return f"{what}: {shortened(texts, between='; ')}" if texts else ""

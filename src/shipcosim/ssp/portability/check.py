@@ -66,18 +66,20 @@ def check_for(
     if subject is None:
         return []
     # Only features that this tool does not support.
-    known = (feature for feature in FEATURES if host in feature.becomes)
+    features = (feature for feature in FEATURES if host in feature.becomes)
     return list(
-        dict.fromkeys(problem for feature in known for problem in _problems(host, feature, subject))
+        dict.fromkeys(
+            problem for feature in features for problem in _problems(host, feature, subject)
+        )
     )
 
 
 def _problems(host: str, feature: Feature, subject: Subject) -> Iterator[Problem]:
     verdict = feature.becomes[host]
     for place, what in feature.find(subject):
-        found = f"{what or feature.about}: {host} {verdict}."
-        named = not found.partition(" ")[0].isalpha()  # such as gain.fmu
-        problem = Problem(place, found if named else capitalised(found), feature.remedy)
+        message = f"{what or feature.about}: {host} {verdict}."
+        named = not message.partition(" ")[0].isalpha()  # such as gain.fmu
+        problem = Problem(place, message if named else capitalised(message), feature.remedy)
         yield replace(problem, severity="remark") if verdict == TOLD else problem
 
 

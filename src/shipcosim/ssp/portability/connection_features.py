@@ -121,7 +121,7 @@ def unit_conversions(subject: Subject) -> Found:
             continue
         written = (how.factor, how.offset) if how is not None else (1.0, 0.0)
         pairs = zip(written, (whole.factor, whole.offset), strict=True)
-        if not all(isclose(one, other, rel_tol=1e-12) for one, other in pairs):
+        if not all(isclose(first, other, rel_tol=1e-12) for first, other in pairs):
             yield (
                 link.place,
                 f"a conversion of units, {whole.factor:.6g} times the value plus {whole.offset:.6g}",

@@ -64,13 +64,13 @@ def set_units(subject: Subject) -> Found:
     """A value in another unit than the FMU's."""
     # Only convertible units can change a value.
     for value, variable, fmu in subject.values:
-        own = find_unit(variable.unit, fmu.units)
+        own_unit = find_unit(variable.unit, fmu.units)
         if (
             value.unit is not None
-            and own is not None
-            and relation(value.unit, own) == "convertible"
+            and own_unit is not None
+            and relation(value.unit, own_unit) == "convertible"
         ):
-            yield value.place, f"a value in {value.unit.name}, where the FMU has {own.name}"
+            yield value.place, f"a value in {value.unit.name}, where the FMU has {own_unit.name}"
 
 
 def set_enumerations(subject: Subject) -> Found:

@@ -77,12 +77,12 @@ class Subject:
     @cached_property
     def links(self) -> list[tuple[Link, Port | None, Port | None]]:
         """Connections between elements of the outermost system, with their ports if known."""
-        found = []
+        links = []
         for link in () if self.structure is None else self.structure.system.links:
             if link.start_element and link.end_element:
                 start = self._port(link.start_element, link.start_connector)
-                found.append((link, start, self._port(link.end_element, link.end_connector)))
-        return found
+                links.append((link, start, self._port(link.end_element, link.end_connector)))
+        return links
 
     def _port(self, element: str, connector: str) -> Port | None:
         return None if self.tree is None else self.tree.ports.get(Key((element,), connector))
@@ -90,7 +90,7 @@ class Subject:
     @cached_property
     def sets(self) -> list[tuple[ComponentElement, FmuDescription | None, Binding, ParameterSet]]:
         """(component element, FMU, binding, ParameterSet) of sets bound to components."""
-        found = []
+        sets = []
         for part in self.components:
             _, fmu = (
                 (None, None)
@@ -100,8 +100,8 @@ class Subject:
             for binding in part.bindings:
                 document = binding.values.inline or self._file(binding)
                 if document is not None:
-                    found.append((part, fmu, binding, read_parameter_set(document, Findings())))
-        return found
+                    sets.append((part, fmu, binding, read_parameter_set(document, Findings())))
+        return sets
 
     def _file(self, binding: Binding) -> Document | None:
         """File of a set that is bound by an address in the package."""

@@ -63,12 +63,12 @@ def _candidates(text: str, base: Path, folder: Path, rooted: bool) -> Iterator[P
     yield (base / text).resolve()
     if rooted:
         yield (folder / text.lstrip("/")).resolve()
-    yield from (path.resolve() for path in alike(base / text))
+    yield from (path.resolve() for path in differing_in_case(base / text))
 
 
-def alike(path: Path) -> list[Path]:
+def differing_in_case(path: Path) -> list[Path]:
     """The only file of a folder whose name is this one except for upper and lower case, or none."""
     if not path.parent.is_dir():
         return []
-    found = [one for one in path.parent.iterdir() if one.name.lower() == path.name.lower()]
-    return found if len(found) == 1 else []
+    files = [file for file in path.parent.iterdir() if file.name.lower() == path.name.lower()]
+    return files if len(files) == 1 else []

@@ -81,10 +81,10 @@ class Library:
         if first := self._kept.get(key):
             self.findings.error(owner.place, first.found, first.remedy)
             return None
-        found = place.package.locate(uri, place.folder, owner.place, self.findings)
-        if found is None:
+        located = place.package.locate(uri, place.folder, owner.place, self.findings)
+        if located is None:
             self._kept[key] = self.findings.problems[-1]
-        return found
+        return located
 
     def package(self, address: str | Path, fmus: Iterable[Path], shown: str) -> Package | None:
         """Package at an address, or None."""

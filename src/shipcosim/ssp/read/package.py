@@ -124,13 +124,13 @@ class Package:
         elsewhere = [
             folder / paths[0].name for folder in self.fmus if inside and paths[0].suffix == ".fmu"
         ]
-        found = (
+        file = (
             next((path for path in (*paths, *elsewhere) if self._is_there(path)), None)
             if inside
             else None
         )
         # Non-standard addresses are accepted if they can mean one file only.
-        if found is None and (wild := meant(uri, base, folder, self.unpacked is None)) is not None:
+        if file is None and (wild := meant(uri, base, folder, self.unpacked is None)) is not None:
             return self._taken(uri, wild, place, findings)
         # Explain what is wrong with the address.
         if not plain:
@@ -146,42 +146,42 @@ class Package:
                 "Put the file beside the SSD, in resources/.",
             )
             return None
-        if found is None:
+        if file is None:
             is_folder = any(path.is_dir() for path in (*paths, *elsewhere))
             what = "is a folder, not a file" if is_folder else "does not exist"
             findings.error(place, f"The file '{uri}' {what}.", self._present(paths[0]))
             return None
         # An edited package may hold the file elsewhere; remember where it belongs.
-        held = self.held.get(found)
+        held = self.held.get(file)
         if isinstance(held, Path):
-            found, name = held, found
+            file, name = held, file
         else:
-            name = found if found in paths else paths[0]
-            remark_copy(found, elsewhere, place, findings)
-        self.located[name.relative_to(folder).as_posix()] = found
-        return found
+            name = file if file in paths else paths[0]
+            remark_copy(file, elsewhere, place, findings)
+        self.located[name.relative_to(folder).as_posix()] = file
+        return file
 
-    def _taken(self, uri: str, found: Path, place: str, findings: Findings) -> Path | None:
+    def _taken(self, uri: str, file: Path, place: str, findings: Findings) -> Path | None:
         """Accept the file of a non-standard address: report it, keep it for writing the package."""
-        shown = self.show(found)
+        shown = self.show(file)
         findings.flaw(place, f"'{uri}' is no address within the package; {shown} is taken.", INSIDE)
         folder = self.folder.resolve()
         # A file outside comes into resources/ when the package is written.
         name = (
-            found.relative_to(folder).as_posix()
-            if found.is_relative_to(folder)
-            else f"resources/{found.name}"
+            file.relative_to(folder).as_posix()
+            if file.is_relative_to(folder)
+            else f"resources/{file.name}"
         )
         # Two different files must not get one name.
-        if self.located.setdefault(name, found) != found:
+        if self.located.setdefault(name, file) != file:
             findings.error(
                 place,
-                f"Two files are named {found.name}: {shown} and {self.located[name]}.",
+                f"Two files are named {file.name}: {shown} and {self.located[name]}.",
                 INSIDE,
             )
             return None
         self.moved[uri] = name
-        return found
+        return file
 
     def _is_there(self, path: Path) -> bool:
         held = self.held.get(path, path)
@@ -225,8 +225,8 @@ def open_package(
         tables = sorted(file for file in path.iterdir() if file.name.endswith(TABLES))
         if tables and not variant and not any(path.glob("*.ssd")):
             # Someone means the logs in it.
-            found = f"This folder has no system, but logs or tables, such as {tables[0].name}."
-            findings.error(shown, found, f"Give one of them: {Path(shown) / tables[0].name}.")
+            message = f"This folder has no system, but logs or tables, such as {tables[0].name}."
+            findings.error(shown, message, f"Give one of them: {Path(shown) / tables[0].name}.")
             return None
         remark_others(path, shown, variant or SYSTEM_STRUCTURE, variant, findings)
         return Package(path, shown, variant or SYSTEM_STRUCTURE, fmus)
@@ -265,27 +265,27 @@ def open_package(
     return package
 
 
-def remark_copy(found: Path, elsewhere: Iterable[Path], place: str, findings: Findings) -> None:
+def remark_copy(copy: Path, elsewhere: Iterable[Path], place: str, findings: Findings) -> None:
     """Add a remark if an FMU beside its system runs, and the project has a different one of that name."""
-    other = next((path for path in elsewhere if path.is_file()), found)
-    if not filecmp.cmp(found, other, shallow=False):
-        text = f"{found.name} beside the system runs. It is not the same as {other}, which does not run."
+    other = next((path for path in elsewhere if path.is_file()), copy)
+    if not filecmp.cmp(copy, other, shallow=False):
+        text = f"{copy.name} beside the system runs. It is not the same as {other}, which does not run."
         findings.remark(place, text, "Delete the copy to run that one, or copy it again.")
 
 
-def remark_others(folder: Path, shown: str, taken: str, asked: str, findings: Findings) -> None:
+def remark_others(folder: Path, shown: str, taken: str, chosen: str, findings: Findings) -> None:
     """Add a remark if a folder has several system structures and the user chose none."""
     others = sorted(
         file.name
         for file in folder.iterdir()
         if file.is_file() and (file.suffix.lower() == ".ssd" or file.name == OSP_STRUCTURE)
     )
-    if not asked and taken in others and len(others) > 1:
+    if not chosen and taken in others and len(others) > 1:
         others.remove(taken)
-        found = (
+        message = (
             f"It holds {len(others) + 1} system structures. {taken} runs, not {', '.join(others)}."
         )
-        findings.remark(shown, found, "Name the one to run: FOLDER/NAME, or ARCHIVE.ssp#NAME.")
+        findings.remark(shown, message, "Name the one to run: FOLDER/NAME, or ARCHIVE.ssp#NAME.")
 
 
 def read_in_component(

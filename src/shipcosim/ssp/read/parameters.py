@@ -167,11 +167,11 @@ def has_root(document: Document, tag: str, findings: Findings) -> bool:
     findings.problems += document.flaws
     if document.root.tag == qualified(tag):
         return True
-    found = f"Its outermost element is <{local(document.root)}>."
+    message = f"Its outermost element is <{local(document.root)}>."
     prefix, name = tag.split(":")
     findings.error(
         document.place(document.root),
-        found,
+        message,
         f'Right would be <{name} xmlns="{NAMESPACES[prefix]}">.',
     )
     return False
@@ -205,15 +205,15 @@ def read_parameter_set(document: Document, findings: Findings) -> ParameterSet:
         if value is not None and value.name in values:
             first = values[value.name]
             line = first.place.rpartition(", line ")[2].partition(":")[0]
-            found = f"The set has this parameter already, in line {line}"
+            message = f"The set has this parameter already, in line {line}"
             if (first.kind, first.value, first.unit) == (value.kind, value.value, value.unit):
                 findings.flaw(
                     value.place,
-                    f"{found}, with the same value; it counts once.",
+                    f"{message}, with the same value; it counts once.",
                     "Keep one of them.",
                 )
             else:
-                findings.error(value.place, f"{found}.", "Keep one of them.")
+                findings.error(value.place, f"{message}.", "Keep one of them.")
         elif value is not None:
             values[value.name] = value
     return ParameterSet(root.get("name", ""), tuple(values.values()), document.file)

@@ -152,12 +152,12 @@ class _Reader:
 
     def connectors(self, element: etree._Element) -> tuple[Connector, ...]:
         owner = element.get("name", "")
-        found = [
+        connectors = [
             self.connector(part, owner)
             for part in children(element, "ssd:Connectors", "ssd:Connector")
         ]
-        self.distinct(found, "connector", owner)
-        return tuple(found)
+        self.distinct(connectors, "connector", owner)
+        return tuple(connectors)
 
     def connector(self, element: etree._Element, owner: str) -> Connector:
         # The type is an element; without one the SSD leaves it open.
@@ -199,18 +199,18 @@ class _Reader:
             if is_slip(name, self.enumerations):
                 self.findings.error(place, what, suggestion(name, self.enumerations))
             else:
-                found = f"{what} Its items are those of the variable, where there is one."
-                self.findings.flaw(place, found, "Add it to Enumerations.")
+                message = f"{what} Its items are those of the variable, where there is one."
+                self.findings.flaw(place, message, "Add it to Enumerations.")
         return self.enumerations.get(name, {})
 
     def distinct(self, named: Iterable, what: str, owner: str) -> None:
         seen = set()
-        for one in named:
-            if one.name in seen:
+        for part in named:
+            if part.name in seen:
                 self.findings.error(
-                    one.place, f"{owner} has a second {what} '{one.name}'.", "Names must differ."
+                    part.place, f"{owner} has a second {what} '{part.name}'.", "Names must differ."
                 )
-            seen.add(one.name)
+            seen.add(part.name)
 
     def link(self, element: etree._Element) -> Link:
         # Both ends, with the element or without one for the system itself.
@@ -232,8 +232,8 @@ class _Reader:
         )
 
     def bindings(self, element: etree._Element) -> tuple[Binding, ...]:
-        found = children(element, "ssd:ParameterBindings", "ssd:ParameterBinding")
-        return tuple(self.binding(part) for part in found)
+        bindings = children(element, "ssd:ParameterBindings", "ssd:ParameterBinding")
+        return tuple(self.binding(part) for part in bindings)
 
     def binding(self, element: etree._Element) -> Binding:
         mapping = child(element, "ssd:ParameterMapping")
@@ -276,8 +276,8 @@ class _Reader:
         start = start or 0.0
         if stop is not None and stop <= start:
             place = self.place(element, "DefaultExperiment")
-            found = f"startTime is {start:g}, stopTime {stop:g}."
-            self.findings.error(place, found, "The stop comes after the start.")
+            message = f"startTime is {start:g}, stopTime {stop:g}."
+            self.findings.error(place, message, "The stop comes after the start.")
         return Experiment(
             start, stop, annotated_number(self.document, element, STEP_SIZES, self.findings)
         )

@@ -75,7 +75,10 @@ def _asks(part: etree._Element) -> bool:
 
 def _repeats(part: etree._Element, honoured: list[etree._Element]) -> bool:
     """True if an element states the step size that applies anyway."""
-    sizes = [one.get(STEP_SIZES.get(local(one), "stepSize")) for one in (part, *honoured)]
+    sizes = [
+        annotation.get(STEP_SIZES.get(local(annotation), "stepSize"))
+        for annotation in (part, *honoured)
+    ]
     return len(sizes) == 2 and sizes[0] is not None and sizes[0] == sizes[1]
 
 
@@ -89,8 +92,8 @@ def _remark(
         "description" if part.get("description") else numbers.get(local(part), "description")
     )
     detail = f" ({part.get(attribute)})" if part.get(attribute) else ""
-    found = f"An annotation asks for {local(part)}{detail}, which is ignored."
+    message = f"An annotation asks for {local(part)}{detail}, which is ignored."
     remedy = "All components step with one fixed base step, or a multiple of it that their StepSizeHint gives."
     if local(part) in ("Bus", "Connection"):
         remedy = "Only the connections of the standard are made."
-    findings.remark(document.place(part, owner.get("name") or local(owner)), found, remedy)
+    findings.remark(document.place(part, owner.get("name") or local(owner)), message, remedy)

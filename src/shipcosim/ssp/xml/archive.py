@@ -43,9 +43,9 @@ def unpack(path: AnyPath, folder: AnyPath, shown: str | None = None) -> None:
             for entry in archive.infolist():
                 archive.extract(entry, folder)
         except OSError as error:
-            found = f"Cannot be unpacked into {folder}: {error.strerror}."
+            message = f"Cannot be unpacked into {folder}: {error.strerror}."
             raise error_at(
-                shown, found, "Make room there, or name another folder in TMPDIR."
+                shown, message, "Make room there, or name another folder in TMPDIR."
             ) from None
         except Exception as error:  # of a damaged archive the decompressors raise anything
             raise _damaged(shown, error) from None
@@ -130,7 +130,7 @@ def _damaged(shown: str, error: object) -> ShipcosimError:
 def _check(archive: zipfile.ZipFile, shown: str) -> None:
     # Entries outside the folder, too many, too large, or with absurd compression.
     listed = archive.infolist()
-    problems = [Problem(shown, found) for entry in listed if (found := _unsafe(entry))]
+    problems = [Problem(shown, complaint) for entry in listed if (complaint := _unsafe(entry))]
     total = sum(e.file_size for e in listed)
     packed = sum(e.compress_size for e in listed)
     if len(listed) > MOST_ENTRIES:

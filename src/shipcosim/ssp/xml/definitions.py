@@ -43,8 +43,8 @@ def read_units(elements: Iterable[etree._Element]) -> dict[str, Unit]:
 
 def _says_nothing(element: etree._Element, base: etree._Element) -> bool:
     """True if the base unit is empty although the unit's name commonly has a dimension."""
-    known = spelled_unit(element.get("name", ""))
-    return not base.attrib and known is not None and any(known.exponents or ())
+    usual = spelled_unit(element.get("name", ""))
+    return not base.attrib and usual is not None and any(usual.exponents or ())
 
 
 def noted_units(
@@ -73,19 +73,21 @@ def noted_units(
                 _note_contradiction(unit, document.place(element), findings)
         for base in parts_in(element, "BaseUnit"):
             if _says_nothing(element, base):
-                found = f"The base unit of '{name}' is empty; the unit has its usual meaning."
+                message = f"The base unit of '{name}' is empty; the unit has its usual meaning."
                 findings.flaw(
-                    document.place(base), found, "State its exponents, or leave BaseUnit out."
+                    document.place(base), message, "State its exponents, or leave BaseUnit out."
                 )
     return units
 
 
 def _note_contradiction(unit: Unit, place: str, findings: Findings) -> None:
     """Remark a unit whose definition is not what its name commonly means; the file's definition counts."""
-    known = None if unit.name in AMBIGUOUS else spelled_unit(unit.name)
-    if known is not None and contradicts(unit, known):
-        found = f"'{unit.name}' is defined as {unit.definition}; commonly it is {known.definition}."
-        findings.remark(place, found, "Correct the definition, or give the unit another name.")
+    usual = None if unit.name in AMBIGUOUS else spelled_unit(unit.name)
+    if usual is not None and contradicts(unit, usual):
+        message = (
+            f"'{unit.name}' is defined as {unit.definition}; commonly it is {usual.definition}."
+        )
+        findings.remark(place, message, "Correct the definition, or give the unit another name.")
 
 
 def read_enumerations(elements: Iterable[etree._Element]) -> dict[str, dict[str, int]]:
@@ -120,11 +122,13 @@ def by_name(what: str, pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
     ValueError
         If one name stands for two things. The same definition twice does no harm.
     """
-    found: dict[str, Any] = {}
+    definitions: dict[str, Any] = {}
     for name, defined in pairs:
-        if found.setdefault(name, defined) != defined:
-            raise ValueError(f"The {what} '{name}' is defined twice: {found[name]} and {defined}.")
-    return found
+        if definitions.setdefault(name, defined) != defined:
+            raise ValueError(
+                f"The {what} '{name}' is defined twice: {definitions[name]} and {defined}."
+            )
+    return definitions
 
 
 def define_unit(root: etree._Element, tag: str, unit: Unit) -> bool:
@@ -163,9 +167,9 @@ def define_enumeration(root: etree._Element, name: str, items: Mapping[str, int]
     """
     defined = read_enumerations(children(root, "ssd:Enumerations", "ssc:Enumeration"))
     # The same items serve under any name.
-    for known, its in defined.items():
+    for enumeration, its in defined.items():
         if its == dict(items):
-            return known
+            return enumeration
     free = free_name(name, defined)
     element = add(ensure(root, "ssd:Enumerations"), "ssc:Enumeration", name=free)
     for item, value in items.items():

@@ -344,14 +344,14 @@ def with_prefixes(data: bytes, shown: str, findings: Findings) -> bytes:
         return data
     spaces = {p: NAMESPACES.get(p.decode(), f"urn:undeclared:{p.decode()}") for p in missing}
     listed = ", ".join(f"'{prefix.decode()}'" for prefix in missing)
-    known = ", ".join(
+    declarations = ", ".join(
         f'xmlns:{prefix.decode()}="{uri}"' for prefix, uri in spaces.items() if "urn:" not in uri
     )
     line = data[: start.start()].count(b"\n") + 1
     findings.flaw(
         f"{shown}, line {line}",
         f"Prefixes that are not declared: {listed}. Those of SSP have their usual meaning, others are unknown.",
-        f"Add {known} to the outermost element." if known else "Declare them.",
+        f"Add {declarations} to the outermost element." if declarations else "Declare them.",
     )
     declared = b"".join(
         b' xmlns:%s="%s"' % (prefix, uri.encode()) for prefix, uri in spaces.items()

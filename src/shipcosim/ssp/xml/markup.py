@@ -84,8 +84,8 @@ def put(parent: etree._Element, element: etree._Element) -> None:
 def ensure(parent: etree._Element, *tags: str) -> etree._Element:
     """Child of the last tag of a path, created if missing."""
     for tag in tags:
-        found = child(parent, tag)
-        parent = add(parent, tag) if found is None else found
+        inner = child(parent, tag)
+        parent = add(parent, tag) if inner is None else inner
     return parent
 
 
@@ -140,11 +140,11 @@ def to_bytes(root: etree._Element, *prefixes: str) -> bytes:
     """
     # Prefixes of the standard that are in use, that of the root first.
     used = {etree.QName(element).namespace for element in root.iter(etree.Element)}
-    known = NAMESPACES | {"osp": osp_namespace(root)}
-    known = dict(
-        sorted(known.items(), key=lambda item: item[1] != etree.QName(root).namespace)
+    spaces = NAMESPACES | {"osp": osp_namespace(root)}
+    spaces = dict(
+        sorted(spaces.items(), key=lambda item: item[1] != etree.QName(root).namespace)
     )  # its own one first
-    names = {prefix: uri for prefix, uri in known.items() if prefix in prefixes or uri in used}
+    names = {prefix: uri for prefix, uri in spaces.items() if prefix in prefixes or uri in used}
     # Foreign prefixes stay, unless they would clash.
     foreign = {
         p: uri
@@ -169,11 +169,11 @@ def to_bytes(root: etree._Element, *prefixes: str) -> bytes:
 
 def osp_namespace(root: etree._Element) -> str:
     """Namespace of OSP's annotations in a file, the algorithm's first; the usual one if none."""
-    found = [
+    annotated = [
         element.tag for element in root.iter("{*}Algorithm", "{*}*") if OSP_MARK in element.tag
     ]
-    found.sort(key=lambda tag: not tag.endswith("}Algorithm"))
-    return etree.QName(found[0]).namespace if found else OSP
+    annotated.sort(key=lambda tag: not tag.endswith("}Algorithm"))
+    return etree.QName(annotated[0]).namespace if annotated else OSP
 
 
 def free_name(name: str, taken: Container[str]) -> str:

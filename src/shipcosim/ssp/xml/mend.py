@@ -87,8 +87,8 @@ def mend(document: Document, tag: str) -> None:
     noted = Findings()
     _set_namespaces(document, prefix, noted)
     _complete(document, noted)
-    known = names_of("ssd").elements | KINDS.keys() | {"Dimension", "MetaData", "Signature"}
-    for element in list(_own(document.root)):
+    names = names_of("ssd").elements | KINDS.keys() | {"Dimension", "MetaData", "Signature"}
+    for element in list(_own_elements(document.root)):
         drop_empty_attributes(document, element, noted)
         _move_source(document, element, noted)
         # The type of a connector that is an enumeration without a name gets an empty one.
@@ -98,7 +98,7 @@ def mend(document: Document, tag: str) -> None:
         if is_type and element.get("name") is None and _prefix_in(element) == "ssc":
             element.set("name", "")
         mend_boolean(document, element, noted)
-        _drop_what_1_0_lacks(document, element, known, noted)
+        _drop_what_1_0_lacks(document, element, names, noted)
         sort_parts(document, element, ORDER.get(local(element), "").split(), noted)
         _join_lists(document, element, noted)
         _drop_empty_lists(document, element, noted)
@@ -107,7 +107,7 @@ def mend(document: Document, tag: str) -> None:
     document.flaws[:] = dict.fromkeys([*document.flaws, *noted.problems])
 
 
-def _own(element: etree._Element) -> Iterator[etree._Element]:
+def _own_elements(element: etree._Element) -> Iterator[etree._Element]:
     """An element and its parts that the standard describes, without contents of annotations."""
     ahead = [element]
     while ahead:
@@ -120,9 +120,9 @@ def _own(element: etree._Element) -> Iterator[etree._Element]:
 def _set_namespaces(document: Document, prefix: str, noted: Findings) -> None:
     """Correct namespaces that are missing or of another part of the standard, by place."""
     # Walk down with the kind of file, which changes within bindings.
-    said = set()
+    noted_pairs = set()
     ahead = [(document.root, prefix)]
-    known = names_of("ssd").elements
+    names = names_of("ssd").elements
     # Some tools write the standard's names under an address of their own.
     endings = tuple(f"/{uri.rpartition('/')[2]}" for uri in NAMESPACES.values())
     while ahead:
@@ -134,18 +134,18 @@ def _set_namespaces(document: Document, prefix: str, noted: Findings) -> None:
         ours = not space or plain.endswith(endings)
         right = NAMESPACES[_prefix_of(element, kind)]
         # Report each pair of wrong and right namespace once.
-        if ours and space != right and name in known:
-            if (space, right) not in said:
+        if ours and space != right and name in names:
+            if (space, right) not in noted_pairs:
                 its = f"the namespace '{space}'" if space else "no namespace"
-                found = f"<{name}> is in {its}"
+                message = f"<{name}> is in {its}"
                 noted.flaw(
                     document.place(element),
-                    f"{found}; it is taken for one of {right}.",
+                    f"{message}; it is taken for one of {right}.",
                     "Correct xmlns.",
                 )
-            said.add((space, right))
+            noted_pairs.add((space, right))
             element.tag = f"{{{right}}}{name}"
-        if name != "Annotation" and (ours or name in known):
+        if name != "Annotation" and (ours or name in names):
             ahead += [(part, _kind_within(element, part, kind)) for part in parts_in(element)]
 
 
@@ -232,8 +232,8 @@ def _move_source(document: Document, element: etree._Element, noted: Findings) -
     if local(element) == "ParameterValues" and element.get("source") and parent is not None:
         if parent.get("source") in (None, "", element.get("source")):
             parent.set("source", element.attrib.pop("source"))
-            found = "The source stands at <ParameterValues>; it is taken for that of the binding."
-            noted.flaw(document.place(element), found, "Write it at <ParameterBinding>.")
+            message = "The source stands at <ParameterValues>; it is taken for that of the binding."
+            noted.flaw(document.place(element), message, "Write it at <ParameterBinding>.")
             parent.remove(element)
 
 
@@ -257,22 +257,22 @@ def mend_boolean(document: Document, element: etree._Element, noted: Findings) -
 
 
 def _drop_what_1_0_lacks(
-    document: Document, element: etree._Element, known: Collection[str], noted: Findings
+    document: Document, element: etree._Element, names: Collection[str], noted: Findings
 ) -> None:
     """Remove parts that SSP 1.0 does not know; what 1.0 lacks may be something of 2.0."""
     if (document.root.get("version") or "").startswith("2"):
         return
-    if local(element) in known and local(element) != "Annotation" and local(element) not in KINDS:
-        drop_unknown(document, element, known, noted)
+    if local(element) in names and local(element) != "Annotation" and local(element) not in KINDS:
+        drop_unknown(document, element, names, noted)
 
 
 def drop_unknown(
-    document: Document, element: etree._Element, known: Collection[str], noted: Findings
+    document: Document, element: etree._Element, names: Collection[str], noted: Findings
 ) -> None:
     """Remove unknown parts of an element, except misspelt known ones."""
     for part in parts_in(element):
         name = local(part)
-        if name not in known and not is_slip(name, known):
+        if name not in names and not is_slip(name, names):
             noted.flaw(
                 document.place(part),
                 f"The element <{name}> is not of the standard. It is not used.",
@@ -309,13 +309,13 @@ def _join_lists(document: Document, element: etree._Element, noted: Findings) ->
             continue
         first[name].extend(list(part))
         element.remove(part)
-        found = f"A second <{name}>; its parts are taken for parts of the first."
-        noted.flaw(document.place(part), found, "Write them into one list.")
+        message = f"A second <{name}>; its parts are taken for parts of the first."
+        noted.flaw(document.place(part), message, "Write them into one list.")
 
 
 def _drop_empty_lists(document: Document, element: etree._Element, noted: Findings) -> None:
     for part in parts_in(element, *LISTS):
-        if not any(local(one) for one in part):
+        if not any(local(inner) for inner in part):
             element.remove(part)
             noted.flaw(
                 document.place(part),
@@ -328,15 +328,15 @@ def _drop_repeated(document: Document, element: etree._Element, noted: Findings)
     """Remove elements that repeat an earlier one."""
     seen = {}
     for part in parts_in(element, *ONCE):
-        said = _said(part)
-        if said in seen:
-            found = f"<{local(part)}> says the same as line {seen[said]}; it counts once."
-            noted.flaw(document.place(part, part.get("name") or ""), found, "Keep one of them.")
+        content = _content(part)
+        if content in seen:
+            message = f"<{local(part)}> says the same as line {seen[content]}; it counts once."
+            noted.flaw(document.place(part, part.get("name") or ""), message, "Keep one of them.")
             element.remove(part)
-        seen.setdefault(said, part.sourceline)
+        seen.setdefault(content, part.sourceline)
 
 
-def _said(element: etree._Element) -> tuple:
+def _content(element: etree._Element) -> tuple:
     """Content of an element, without drawing and description."""
     attributes = {
         name: text for name, text in element.attrib.items() if name not in ("id", "description")
@@ -350,5 +350,5 @@ def _said(element: etree._Element) -> tuple:
         element.tag,
         tuple(sorted(attributes.items())),
         (element.text or "").strip(),
-        tuple(map(_said, parts)),
+        tuple(map(_content, parts)),
     )

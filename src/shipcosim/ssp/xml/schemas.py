@@ -45,7 +45,7 @@ class Names:
     attributes: frozenset[str]
 
 
-def is_slip(name: str, known: Collection[str]) -> bool:
+def is_slip(name: str, names: Collection[str]) -> bool:
     """True if an unknown name looks like a misspelt known one.
 
     Examples
@@ -54,8 +54,8 @@ def is_slip(name: str, known: Collection[str]) -> bool:
     (True, False)
     """
     shown = name[:LONGEST_NAME].lower()
-    return name in known or bool(
-        get_close_matches(shown, [one.lower() for one in known], n=1, cutoff=0.77)
+    return name in names or bool(
+        get_close_matches(shown, [candidate.lower() for candidate in names], n=1, cutoff=0.77)
     )
 
 
@@ -87,7 +87,7 @@ def report_schema(
         text, _, choice = re.sub(r"\[facet '[^']*'\] ", "", text).partition(
             " is not an element of the set "
         )
-        found, _, expected = (f"{text} does not exist." if choice else text).partition(
+        complaint, _, expected = (f"{text} does not exist." if choice else text).partition(
             " Expected is "
         )
         where = f"{file}, line {entry.line}" if entry.line else file
@@ -103,7 +103,9 @@ def report_schema(
         findings.refused_lines.add(where)
         if choice:
             expected = f"one of: {choice.strip('{}.')}."
-        findings.error(where, found, f"Expected is {expected}" if expected else remedy_for(found))
+        findings.error(
+            where, complaint, f"Expected is {expected}" if expected else remedy_for(complaint)
+        )
 
 
 def _is_flaw(text: str, names: Names) -> bool:
@@ -126,8 +128,8 @@ def schema_of(name: str) -> etree.XMLSchema:
 @cache
 def names_of(name: str) -> Names:
     """Names in a schema of SCHEMAS and in its neighbours."""
-    beside = sorted(_file_of(name).parent.glob("*.xsd"))
-    return names_in("".join(file.read_text(encoding="utf-8") for file in beside))
+    schemas = sorted(_file_of(name).parent.glob("*.xsd"))
+    return names_in("".join(file.read_text(encoding="utf-8") for file in schemas))
 
 
 def names_in(text: str) -> Names:

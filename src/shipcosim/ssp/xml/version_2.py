@@ -31,10 +31,10 @@ def validate_2(root: etree._Element, schema: str, file: str, findings: Findings)
                 findings.error(f"{file}, line {element.sourceline}", *wrong)
             _reduce(element)
     # Check the copy, and sort the findings: unknown parts are only remarks.
-    found = Findings()
-    report_schema(schema_of(schema), names_of(schema), reduced, file, found)
-    findings.refused_lines |= found.refused_lines
-    for problem in found.problems:
+    complaints = Findings()
+    report_schema(schema_of(schema), names_of(schema), reduced, file, complaints)
+    findings.refused_lines |= complaints.refused_lines
+    for problem in complaints.problems:
         if problem.flaw:
             findings.flaw(problem.where, problem.found, problem.remedy)
         elif any(mark in problem.found for mark in UNKNOWN):
@@ -80,7 +80,7 @@ def _reduce_type(element: etree._Element, name: str) -> None:
     if text is not None and kind in ("Real", "Integer", "Boolean"):
         # A wrong value stands for all, so that the schema reports it.
         texts = text.split() or [""]
-        bad = [one for one in texts if not _is(kind, one)]
+        bad = [text for text in texts if not _is(kind, text)]
         element.set("value", bad[0] if bad else "0" if kind == "Integer" else texts[0])
     element.tag = f"{space}}}{kind}"
 

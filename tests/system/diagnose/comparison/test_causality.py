@@ -20,28 +20,28 @@ def closed_loop(seed, sense=1.0, n=3000, h=0.4):
         r[k + 1] = r[k] + h * (moment[k] + weather[k] - 0.2 * r[k])
         psi[k + 1] = psi[k] + h * r[k + 1]
     still = np.zeros(n)
-    felt = SimpleNamespace(
+    measured = SimpleNamespace(
         motion=Motion(still, still, psi, still, still, r),
         usable=np.ones(n, bool),
         kernel=SimpleNamespace(step=h),
     )
     load = np.stack([still, still, sense * moment])
-    return felt, SimpleNamespace(thrusters={"one": load}, hull=0.0 * load)
+    return measured, SimpleNamespace(thrusters={"one": load}, hull=0.0 * load)
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_the_right_sense_is_told_although_a_controller_answers_the_motion(seed):
-    felt, right = closed_loop(seed)
+    measured, right = closed_loop(seed)
     _, wrong = closed_loop(seed, -1.0)
-    one, other = causal_support(felt, [right, wrong], 1.0)
+    one, other = causal_support(measured, [right, wrong], 1.0)
     assert one > other + 8.0
 
 
 def test_commands_that_do_nothing_tell_nothing():
-    felt, _ = closed_loop(4)
-    noise = np.random.default_rng(5).standard_normal((3, felt.usable.size))
+    measured, _ = closed_loop(4)
+    noise = np.random.default_rng(5).standard_normal((3, measured.usable.size))
     gains = causal_support(
-        felt,
+        measured,
         [SimpleNamespace(thrusters={"one": s * noise}, hull=0.0 * noise) for s in (1, -1)],
         1.0,
     )

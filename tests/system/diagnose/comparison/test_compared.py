@@ -1,4 +1,4 @@
-"""What commanded force against felt says of small craft with gross faults, and that it says nothing of healthy ones."""
+"""What commanded against measured force says of small craft with gross faults, and that it says nothing of healthy ones."""
 
 from dataclasses import replace
 from functools import cache
@@ -168,7 +168,7 @@ def test_thrusters_that_answer_weather_which_nobody_knows_are_not_said_to_run_th
 
 
 def check_unknown_weather(seed, tmp_path, minutes=40):
-    """In stationkeeping what is commanded goes against what is felt, and most of what is felt is not the thrusters'."""
+    """In stationkeeping commands oppose the measured force, most of which is not the thrusters'."""
     draw("hold", seed, causes="unknown", minutes=minutes).save(tmp_path / "log.csv")
     ship = ship_model_of(twin.system())
     found = compared(checked(ReadLog(read_log(tmp_path / "log.csv"), ship, read_catalogue())))

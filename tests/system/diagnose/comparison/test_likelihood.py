@@ -8,7 +8,7 @@ from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.comparison.commanded import commanded_by
 from shipcosim.diagnose.comparison.label_hypotheses import LabelError, driven
 from shipcosim.diagnose.comparison.likelihood import blocks_of, likelihood_of, smoothed
-from shipcosim.diagnose.comparison.measured_force import felt_by
+from shipcosim.diagnose.comparison.measured_force import measured_force_of
 from shipcosim.diagnose.inference.problem import as_logged
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.ship.inputs import record_of
@@ -21,11 +21,11 @@ def told():
     log = checked(ReadLog(read_log(usv.log(8.0, 11)), ship_model_of(usv.structure().checked()), {}))
     ship = as_logged(log.ship, log.repaired)
     record = record_of(log.repaired, ship)
-    felt = felt_by(record, ship.parts["hull"].length)
-    blocks = blocks_of(felt, commanded_by(record, smoothed(felt), ship), ship)
+    measured = measured_force_of(record, ship.parts["hull"].length)
+    blocks = blocks_of(measured, commanded_by(record, smoothed(measured), ship), ship)
 
     def likelihood(units):
-        commanded = driven(units, record, smoothed(felt), ship)
+        commanded = driven(units, record, smoothed(measured), ship)
         return likelihood_of(
             blocks, commanded, {name: speed >= 0.0 for name, (speed, _) in units.items()}
         )

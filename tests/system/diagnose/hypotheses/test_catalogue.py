@@ -56,7 +56,7 @@ SEA_TRIALS = {  # sought only where a ship manoeuvres at speed
     "yaw_inertia": {"inertia": "kg.m2"},
 }
 BY_COMPARISON = {name for name in CONTRACT if name.endswith("_to_inertia")}
-"""Found by holding commanded against felt force, so no hypothesis of a fit."""
+"""Found by holding commanded against measured force, so no hypothesis of a fit."""
 WHERE = {
     "thrust_loss": ["port", "starboard", "tunnel"],
     "azimuth_offset": ["port", "starboard"],

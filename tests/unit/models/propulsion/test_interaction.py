@@ -21,9 +21,9 @@ TANDEM = InteractionParameters(x_1=10.0, diameter_1=2.0, x_2=0.0, diameter_2=2.0
 
 def shares(parameters, azimuths, washes, **more):
     idle = (0.0,) * (6 - len(azimuths))
-    return thrust_shares((*azimuths, *idle), (*washes, *idle), found=pairs(parameters), **more)[
-        : len(azimuths)
-    ]
+    return thrust_shares(
+        (*azimuths, *idle), (*washes, *idle), unit_pairs=pairs(parameters), **more
+    )[: len(azimuths)]
 
 
 @pytest.mark.parametrize(

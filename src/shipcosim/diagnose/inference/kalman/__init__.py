@@ -42,7 +42,7 @@ def library() -> ctypes.CDLL:
     try:
         return ctypes.CDLL(str(file))
     except OSError as error:
-        there = sorted(one.stem for end in SUFFIXES.values() for one in FOLDER.glob(f"*{end}"))
+        there = sorted(file.stem for end in SUFFIXES.values() for file in FOLDER.glob(f"*{end}"))
         remedy = f"There are filters for {', '.join(there)}; compile.py beside them makes others."
         raise error_at(
             str(file), f"The diagnosis cannot load its filter: {error}.", remedy
@@ -72,7 +72,7 @@ def weights(
     R: np.ndarray,
     Q: np.ndarray,
     C: np.ndarray,
-    known: np.ndarray,
+    with_value: np.ndarray,
     lost: np.ndarray,
     is_last: np.ndarray,
     begun: np.ndarray,
@@ -93,7 +93,7 @@ def weights(
         Covariance that a step adds.
     C : (m, s, s) array
         Covariance of the first state before its measurement. Changed: into that of the row after the last one.
-    known : (k,) bool array
+    with_value : (k,) bool array
         Whether what drives the ship over the step that follows is known; where not, `lost` is added too.
     lost : (s, s) array
     is_last : (n,) bool array
@@ -116,8 +116,8 @@ def weights(
     logdet = np.empty((n, m))
     covariances = np.empty((n if keep else 0, m, s, s))
     sizes = n, m, o, s, A.shape[-1], len(A), A.shape[1], H.shape[1]
-    found = gain, root, logdet, covariances if keep else None
-    _call("weights", sizes, A, W, H, R, Q, C, known, lost, is_last, begun, *found)
+    results = gain, root, logdet, covariances if keep else None
+    _call("weights", sizes, A, W, H, R, Q, C, with_value, lost, is_last, begun, *results)
     return gain, root, logdet, covariances
 
 
@@ -210,10 +210,24 @@ def smoothed(
     (n, m, s) array
     """
     n, m, s = states.shape
-    found = np.empty((n, m, s))
+    states_out = np.empty((n, m, s))
     sizes = n, m, white.shape[2], s, A.shape[-1], len(A), A.shape[1], H.shape[1]
-    _call("smoothed", sizes, A, W, H, white, gain, root, states, covariances, is_last, pull, found)
-    return found
+    _call(
+        "smoothed",
+        sizes,
+        A,
+        W,
+        H,
+        white,
+        gain,
+        root,
+        states,
+        covariances,
+        is_last,
+        pull,
+        states_out,
+    )
+    return states_out
 
 
 def log_likelihoods(
@@ -226,7 +240,7 @@ def log_likelihoods(
     R: np.ndarray,
     Q: np.ndarray,
     P: np.ndarray,
-    known: np.ndarray,
+    with_value: np.ndarray,
     lost: np.ndarray,
     is_last: np.ndarray,
 ) -> np.ndarray:
@@ -258,7 +272,7 @@ def log_likelihoods(
     """
     (n, o, s) = H.shape
     m = R.shape[1]
-    found = np.empty(m)
+    likelihoods = np.empty(m)
     _call(
         "log_likelihoods",
         (n, m, o, s, A.shape[-1], b.shape[1]),
@@ -271,9 +285,9 @@ def log_likelihoods(
         R,
         Q,
         P,
-        known,
+        with_value,
         lost,
         is_last,
-        found,
+        likelihoods,
     )
-    return found
+    return likelihoods

@@ -158,8 +158,8 @@ def wrong_clock(log: dict) -> list[Finding]:
         return []
     # A segment needs both comparisons, or one of them and the rate of such a segment.
     sure = [s for s in segments if _is_said_by_both(s)]
-    alike = [s for s in segments if s not in sure and _is_like(s, sure)]
-    return _findings([*sure, *alike])
+    similar = [s for s in segments if s not in sure and _is_like(s, sure)]
+    return _findings([*sure, *similar])
 
 
 def _block_edges(sides):
@@ -220,10 +220,10 @@ def sums_of_runs(match: np.ndarray, gram: np.ndarray) -> tuple[np.ndarray, np.nd
     # With the double cumulated sum G of the Gram matrix, the
     # energy of blocks i to j is G_ii + G_jj - G_ij - G_ji.
     grams = np.pad(np.cumsum(np.cumsum(gram, axis=0), axis=1), ((1, 0), (1, 0)))
-    own = np.diag(grams)
+    on_diagonal = np.diag(grams)
     return (
         differences(running_sums(match)),
-        own[None, :] + own[:, None] - grams - grams.T,
+        on_diagonal[None, :] + on_diagonal[:, None] - grams - grams.T,
     )
 
 
@@ -306,7 +306,7 @@ def _agree(apart, rate):
 
 
 def _findings(segments):
-    found = []
+    findings = []
     # Group segments of equal rate around the one with most evidence.
     while segments:
         lead = max(segments, key=lambda s: s.gain)
@@ -325,5 +325,5 @@ def _findings(segments):
         std = float(np.hypot(weight.sum() ** -0.5, RATE_UNSURE * abs(rate - 1.0)))
         rates = {"rate": ParameterEstimate(rate, std, "1")}
         note = "positions and headings go at another rate than speeds and yaw rates say"
-        found.append(log_fault("clock", ("time",), note, spans, probability, rates))
-    return found
+        findings.append(log_fault("clock", ("time",), note, spans, probability, rates))
+    return findings

@@ -45,16 +45,16 @@ def examine(log: xarray.Dataset) -> list[Finding]:
     empty = {
         role: logged[role] for role, values in table.items() if np.isnan(values).all()
     }  # not lost, but unusable
-    found = gaps(table | empty)
+    in_parts = gaps(table | empty)
     if not any(finding.alternatives for finding in throughout):
-        right = without_findings(table, found)
-        found += _in_parts(right, _stated_units(log), labels.contradiction)
+        right = without_findings(table, in_parts)
+        in_parts += _in_parts(right, _stated_units(log), labels.contradiction)
     # Segments were found in corrected time; give them in the log's own.
     rate = rate_of(throughout)
-    found = [
-        replace(f, segments=tuple(_as_logged(s, start, rate) for s in f.segments)) for f in found
+    in_parts = [
+        replace(f, segments=tuple(_as_logged(s, start, rate) for s in f.segments)) for f in in_parts
     ]
-    return sorted([*useless, *throughout, *found], key=lambda finding: -finding.probability)
+    return sorted([*useless, *throughout, *in_parts], key=lambda finding: -finding.probability)
 
 
 def _unless_in_part(throughout, table, stated):

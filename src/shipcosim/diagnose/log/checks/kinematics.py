@@ -225,9 +225,9 @@ def filter_for(motion: Motion, levels: np.ndarray | None = None) -> list[Filter]
     stds = np.zeros((len(drafts), levels.shape[2]))
     scores = np.zeros((len(drafts), levels.shape[2]))
     for number, draft in enumerate(drafts):
-        known = draft.gains < 1.0
-        stds[number], calm = _spreads(draft(levels)[known])
-        scores[number] = -calm - np.mean(np.log(draft.scale[known]))
+        settled = draft.gains < 1.0
+        stds[number], calm = _spreads(draft(levels)[settled])
+        scores[number] = -calm - np.mean(np.log(draft.scale[settled]))
     # The most likely ratio for each level.
     best = np.argmax(scores, axis=0)
     return [Filter(drafts[b].gains, drafts[b].scale, stds[b, k]) for k, b in enumerate(best)]

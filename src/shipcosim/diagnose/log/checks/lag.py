@@ -56,7 +56,7 @@ def late_channels(log: dict) -> list[Finding]:
     log : dict of (n,) arrays
         `time` [s] and roles in their units, NaN where not to be used; labels corrected.
     """
-    found = []
+    findings = []
     relations = (
         (logged_heading, ("heading",), ("yaw_rate",)),
         (logged_position, POSITION, VELOCITY),
@@ -69,10 +69,10 @@ def late_channels(log: dict) -> list[Finding]:
         channels, others = (velocity, position) if lag.seconds > 0.0 else (position, velocity)
         size = ParameterEstimate(abs(lag.seconds), lag.std, "s")
         finding = finding_of(late(channels, others, size.estimate), MOST_SURE, lag.segment)
-        found.append(replace(finding, parameters={"lag": size}))
+        findings.append(replace(finding, parameters={"lag": size}))
         # The corrected heading turns the velocities that are compared next.
         log = undone(log, finding.mislabel, finding.segments)
-    return found
+    return findings
 
 
 def _way(logged: Logged, lag: float) -> np.ndarray:
@@ -138,7 +138,10 @@ def _white(logged, rows, lags):
     starts = after_gaps(time) | jumps(seen)
     whiteners = filter_for(Motion(time, seen, seen, starts), levels)
     # The filter of the lag that leaves least is that of the log's noise.
-    noise = [np.mean(np.log(one.std * one.scale[one.gains < 1.0])) for one in whiteners]
+    noise = [
+        np.mean(np.log(whitener.std * whitener.scale[whitener.gains < 1.0]))
+        for whitener in whiteners
+    ]
     turn = logged.axes(logged.turn)[rows]
     series = np.dstack([levels, _way(logged, 0.0)[rows], turn])
     white = whiteners[int(np.argmin(noise))](series)

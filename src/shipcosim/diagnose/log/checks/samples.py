@@ -61,23 +61,23 @@ def gaps(log: dict) -> list[Finding]:
     """
     time = log["time"]
     # Rows that are missing.
-    found = _missing(log)
+    runs = _missing(log)
     # Rows in which the whole navigation is empty, held or interpolated; other channels may follow.
     everywhere = list(_flat_runs(log, tuple(role for role in NAVIGATION if role in log)))
-    found += [_with_followers(log, run) for run in everywhere]
+    runs += [_with_followers(log, run) for run in everywhere]
     # The same for groups of channels and for single ones, where what they belong to is not lost as a whole.
     singles = tuple((role,) for group in GROUPS if len(group) > 1 for role in group)
     for group in GROUPS + singles:
-        known = [*everywhere, *(run for run in found if group[0] in run.channels)]
+        others = [*everywhere, *(run for run in runs if group[0] in run.channels)]
         for run in _flat_runs(log, tuple(role for role in group if role in log)):
-            if not any(_overlap(run, one) for one in known):
-                found.append(run)
+            if not any(_overlap(run, other) for other in others):
+                runs.append(run)
     # Leaps of the position, which lost rows leave when a logger closes the gap.
-    found += _leaps(log)
+    runs += _leaps(log)
     # Gaps of the same channels and kind are one finding.
     step = np.median(np.diff(time))
     segments: dict[tuple[tuple[str, ...], str], list[Segment]] = {}
-    for run in found:
+    for run in runs:
         inner = step if run.kind == NO_ROWS else 0.0
         segment = (float(time[run.first] + inner), float(time[run.last] - inner))
         segments.setdefault((run.channels, run.kind), []).append(segment)
@@ -173,14 +173,18 @@ def _leaps(log):
     speed = np.hypot(surge, sway)
     # Way made between rows, against the larger of both reported speeds times the step.
     went = np.hypot(np.diff(north), np.diff(east))
-    told = np.maximum(speed[1:], speed[:-1]) * steps
+    travelled = np.maximum(speed[1:], speed[:-1]) * steps
     # Usual scatter between both, but not below the resolution of the position.
-    usual = np.nanquantile(np.abs(went - told), 0.9) if np.isfinite(went - told).any() else np.inf
+    usual = (
+        np.nanquantile(np.abs(went - travelled), 0.9)
+        if np.isfinite(went - travelled).any()
+        else np.inf
+    )
     usual = max(
         usual, np.hypot(quantum(north), quantum(east))
     )  # between two steps of its resolution no ship leaps
     with np.errstate(invalid="ignore"):
-        leaping = went > LEAP * (told + usual)
+        leaping = went > LEAP * (travelled + usual)
     for first, last in runs(leaping):
         if last - first >= FEWEST_LEAPS:
             yield _Run(int(first), int(last), roles[:2] + ("heading",), LEAPING)
@@ -195,9 +199,9 @@ def _missing(log):
     return [_Run(int(row), int(row) + 1, every, NO_ROWS) for row in np.flatnonzero(lost)]
 
 
-def _overlap(one, other):
-    shared = min(one.last, other.last) - max(one.first, other.first)
-    return shared > 0.5 * min(one.last - one.first, other.last - other.first)
+def _overlap(first, other):
+    shared = min(first.last, other.last) - max(first.first, other.first)
+    return shared > 0.5 * min(first.last - first.first, other.last - other.first)
 
 
 def _flat_runs(log, roles):
@@ -234,16 +238,16 @@ def _flat_runs(log, roles):
         for first, last in stuck
         if any(noise[r] > NOISE_SEEN * _to_next_level(log[r], log[r][first]) for r in roles)
     ]
-    found = []
+    kept_runs = []
     for first, last in [*stuck, *flat]:
         kind = _kind(values[first:last])
         last = min(last + (kind == STRAIGHT), len(time) - 1)  # rows of the line, both ends included
         run = _Run(first + 1, last - (kind == STRAIGHT), roles, kind)
         is_long = time[last] - time[first] >= SHORTEST_GAP
-        if is_long and not any(_overlap(run, one) for one in found):
+        if is_long and not any(_overlap(run, other) for other in kept_runs):
             if len(roles) > 2 or _is_line(log, roles, first, last):
-                found.append(run)
-    yield from found
+                kept_runs.append(run)
+    yield from kept_runs
 
 
 def _noise(values, role):
@@ -413,10 +417,10 @@ def _long_way(time, heading, a, b, tolerance, faster):
     )
     # The craft must not be turning as fast as this right before and after it.
     turning = np.nan_to_num(np.abs(wrap_series(np.diff(heading))))
-    beside = np.minimum(
+    noise = np.minimum(
         np.r_[0.0, turning[: n - 1]], np.r_[turning[between + 1 :], 0.0]
     )  # before a, after b
-    crossing &= np.abs(b - a) > 2.0 * beside * (between + 1)
+    crossing &= np.abs(b - a) > 2.0 * noise * (between + 1)
     some = np.zeros(n, bool)
     # Every sample between them must lie on the straight line of the numbers.
     for k in range(1, between + 1):
@@ -434,14 +438,14 @@ def _round_south(log, faster):
     """
     bad = np.zeros(len(log["heading"]), bool)
     # Only rows with a heading, in (-180, 180], so that north is 0.
-    known = np.flatnonzero(np.isfinite(log["heading"]))
-    time = log["time"][known]
-    heading = wrap_series(log["heading"][known])
+    with_heading = np.flatnonzero(np.isfinite(log["heading"]))
+    time = log["time"][with_heading]
+    heading = wrap_series(log["heading"][with_heading])
     change = np.abs(wrap_series(np.diff(heading)))
     longest = (2 * LONGEST_WRAP + 1.5) * np.median(np.diff(log["time"]))
     # Short excursions to the south between headings on both sides of north.
     for first, last in runs(np.abs(heading) > NEAR_NORTH):
-        if first == 0 or last == len(known) or time[last] - time[first - 1] > longest:
+        if first == 0 or last == len(with_heading) or time[last] - time[first - 1] > longest:
             continue
         if (
             heading[first - 1] * heading[last] < 0.0
@@ -451,7 +455,7 @@ def _round_south(log, faster):
                 first > 1 and change[first - 2] > faster
             )  # samples near north may lie on the line too
             last += last < len(change) and change[last] > faster
-            bad[known[first:last]] = True
+            bad[with_heading[first:last]] = True
     return bad
 
 

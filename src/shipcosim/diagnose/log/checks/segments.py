@@ -76,18 +76,18 @@ def refined(log: dict, mislabel: Mislabel, segment: Segment) -> Segment:
         segments = [time[[k, ends[1]] if end == 0 else [ends[0], k]] for k in places]
         # Cost of each place: squared innovations with the label
         # undone there, and a penalty for each leap that is left.
-        changed = [motion_of(undone(log, mislabel, [one])) for one in segments]
+        changed = [motion_of(undone(log, mislabel, [candidate])) for candidate in segments]
         # A place at which other rows can be compared has no cost that could be held against the others.
         kept = [
-            (place, one)
-            for place, one in zip(places, changed, strict=True)
-            if one is not None and len(one.time) == len(right.time)
+            (place, motion)
+            for place, motion in zip(places, changed, strict=True)
+            if motion is not None and len(motion.time) == len(right.time)
         ]
         if not kept:
             continue
         places, tried = zip(*kept, strict=True)
-        levels = np.stack([one.level for one in tried], axis=2)
+        levels = np.stack([motion.level for motion in tried], axis=2)
         white = np.clip(whitener(levels), -LABEL_CLIP, LABEL_CLIP)
-        left = LABEL_CLIP**2 * np.array([one.starts.sum() for one in tried])
+        left = LABEL_CLIP**2 * np.array([motion.starts.sum() for motion in tried])
         ends[end] = places[int(np.argmin(np.sum(white**2, axis=(0, 1)) + left))]
     return float(time[ends[0]]), float(time[ends[1]])

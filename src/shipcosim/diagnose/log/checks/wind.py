@@ -128,13 +128,13 @@ def _finding(time, wind, smooth, slow, whitener: Filter, frame, segment, gain):
         kind: np.exp(-0.5 * ((slope - b) / np.hypot(std, 0.1)) ** 2) + 1e-12
         for kind, b in kinds.items()
     }
-    kind = max(weights, key=lambda one: weights[one])
+    kind = max(weights, key=lambda name: weights[name])
     return [_named(LABEL[frame, kind], segment, gain, weights[kind] / sum(weights.values()))]
 
 
 def _unit(time, y, x, smooth, wind, slow):
     """Another unit, or the wind over ground with its direction from the bow, if the slope clearly says so."""
-    found = []
+    findings = []
     # For each slope the gain in log-likelihood over slope 1, in rows, and the segment of most gain.
     for kind, b in SLOPES[BOW].items():
         gains = 0.5 * np.sum(
@@ -152,17 +152,17 @@ def _unit(time, y, x, smooth, wind, slow):
         # logged and smoothed: noise affects these differently.
         slope, std = _slope(in_segment(y, time, segment), in_segment(x, time, segment))
         also, _ = _slope(in_segment(smooth, time, segment), in_segment(x, time, segment))
-        near = all(abs(one - b) < max(WIND_SLOPE_NEAR * b, 0.2) for one in (slope, also))
+        near = all(abs(estimate - b) < max(WIND_SLOPE_NEAR * b, 0.2) for estimate in (slope, also))
         # A unit changes the speed by its factor at both ends,
         # and corrected the wind goes on as beside the segment.
         near &= b == 0.0 or leaps(time, np.hypot(*wind.T), segment, b)
         near &= _goes_on(time, wind - slow, wind / b - slow if b else wind, segment)
         # The slope must be precise, and clearly not 1.
         if near and std < WIND_SLOPE_STD * max(b, 1.0) and abs(slope - 1.0) > 3.0 * std:
-            found.append(
+            findings.append(
                 _named(LABEL[BOW, kind], segment, gain / rough + (0.0 if segment else 6.0), 1.0)
             )
-    return sorted(found, key=lambda finding: -finding.probability)[:1]
+    return sorted(findings, key=lambda finding: -finding.probability)[:1]
 
 
 def leaps(time: np.ndarray, speed: np.ndarray, segment: Segment | None, factor: float) -> bool:
@@ -178,10 +178,12 @@ def leaps(time: np.ndarray, speed: np.ndarray, segment: Segment | None, factor: 
         Logged wind speed inside over that outside.
     """
     # Compare medians close to the ends of the segment, where the wind itself has hardly changed.
-    here, beside = _about(time, segment)
-    if not here.any() or not beside.any():
+    here, outside = _about(time, segment)
+    if not here.any() or not outside.any():
         return True
-    return bool(abs(np.log(np.median(speed[here]) / np.median(speed[beside]) / factor)) < WIND_JUMP)
+    return bool(
+        abs(np.log(np.median(speed[here]) / np.median(speed[outside]) / factor)) < WIND_JUMP
+    )
 
 
 def _goes_on(time, labelled, right, segment):
@@ -189,11 +191,11 @@ def _goes_on(time, labelled, right, segment):
 
     The ship's own way makes the wind that she meets stronger and weaker too, most of all that of a fast small craft.
     """
-    here, beside = _about(time, segment)
+    here, outside = _about(time, segment)
     # Without neighbours there is nothing to compare.
-    if not here.any() or not beside.any():
+    if not here.any() or not outside.any():
         return True
-    usual = labelled[beside].mean(axis=0)
+    usual = labelled[outside].mean(axis=0)
     off, off_labelled = (np.hypot(*(wind[here].mean(axis=0) - usual)) for wind in (right, labelled))
     return bool(off < WIND_GOES_ON * off_labelled)
 

@@ -33,20 +33,20 @@ def jumping_wind(log: dict) -> list[Finding]:
         return []
     part = {role: log[role][rows] for role in ("time", *ROLES)}
     logged = _wind(part)
-    found = []
+    candidates = []
     # For each label find the two jumps that undoing it explains best.
     for label in WIND_LABELS:
         undone = _wind(part | label.undo(part))
         gain, first, last = _best_pair(logged, undone)
         if gain > JUMPS_GAIN:
             segment = float(part["time"][first]), float(part["time"][last])
-            found.append((gain, label, segment, _unsteadiness(undone[first:last])))
-    if not found:
+            candidates.append((gain, label, segment, _unsteadiness(undone[first:last])))
+    if not candidates:
         return []
     # Labels that explain nearly as well are distinguished by the steadier wind over ground.
-    most = max(gain for gain, *_ in found)
+    most = max(gain for gain, *_ in candidates)
     gain, label, segment, _ = min(
-        (entry for entry in found if entry[0] > most - JUMPS_TIED), key=lambda entry: entry[3]
+        (entry for entry in candidates if entry[0] > most - JUMPS_TIED), key=lambda entry: entry[3]
     )
     probability = float(0.99 / (1.0 + np.exp(-gain)))
     return [finding_of(label, probability, segment)]

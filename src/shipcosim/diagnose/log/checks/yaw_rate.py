@@ -52,8 +52,8 @@ def silent_rate(log: dict) -> list[Finding]:
     # The segment must be much quieter, and the heading must turn more than the rate reports.
     inner = in_segment(bends, motion.time, segment).mean()
     outer = usual
-    told = np.std(in_segment(motion.slow(rate), motion.time, segment))
-    if inner > QUIETER * outer or not _turns(motion, segment) > 3.0 * told:
+    reported = np.std(in_segment(motion.slow(rate), motion.time, segment))
+    if inner > QUIETER * outer or not _turns(motion, segment) > 3.0 * reported:
         return []
     return [finding_of(RADIAN, 0.9, segment)]
 
@@ -68,8 +68,8 @@ def _signs_turn(motion):
     """Whether the signs of the rate, also of its zeros, agree with the turning of the heading."""
     sign = 1.0 - 2.0 * np.signbit(motion.velocity)
     turning = np.gradient(motion.seen, motion.time, axis=0)
-    told, seen = (motion.slow(series)[:, 0] for series in (sign, turning))
-    return bool(np.corrcoef(told, seen)[0, 1] > LIKELY_SIGNS)
+    reported, seen = (motion.slow(series)[:, 0] for series in (sign, turning))
+    return bool(np.corrcoef(reported, seen)[0, 1] > LIKELY_SIGNS)
 
 
 def _turns(motion, segment):

@@ -44,7 +44,9 @@ def tables_of_bag(path: Path) -> dict[str, LogColumns]:
                 message = reader.deserialize(raw, connection.msgtype)
                 row = {"time": 1e-9 * stamp} | dict(_numbers(message, "", 0))
                 rows.setdefault(connection.topic.strip("/").replace("/", "."), []).append(row)
-    tables = {topic: _table(path, told) for topic, told in rows.items() if len(told[0]) > 1}
+    tables = {
+        topic: _table(path, messages) for topic, messages in rows.items() if len(messages[0]) > 1
+    }
     if not tables:
         raise error_at(str(path), "is a bag without numbers.", "Record the topics of the ship.")
     return tables

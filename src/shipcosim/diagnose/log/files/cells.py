@@ -61,14 +61,14 @@ def numbers_of(name: str, cells: Any, decimal: str) -> tuple[np.ndarray, list[st
     there = int((~missing).sum())
     if count > _MOST_DAMAGED * there and count > 0:
         return text.astype(object).where(~missing, None).to_numpy(object), []
-    said = []
+    remarks = []
     if count:
         row = int(np.flatnonzero(damaged)[0])
         shown = text.iloc[row][:30]
-        said = [
+        remarks = [
             f"Column '{name}': {count} cells that are no number, the first '{shown}' in row {row + 2}: left empty."
         ]
-    return numbers.to_numpy(float), said
+    return numbers.to_numpy(float), remarks
 
 
 def without_fillers(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
@@ -82,22 +82,22 @@ def without_fillers(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str
     >>> without_fillers("surge", np.array([1.0, -9999.0, 1.5, -9999.0, 1e30]))[0].tolist()
     [1.0, nan, 1.5, nan, nan]
     """
-    known = finite(values)
-    if len(known) < 3:
+    numbers = finite(values)
+    if len(numbers) < 3:
         return values, []
-    rows = np.abs(values) > _NO_NUMBER * max(np.median(np.abs(known)), 1.0)
-    for filler in (known.min(), known.max()):
-        rest = known[known != filler]
-        is_usual = len(rest) < len(known) - 1 and _FILLERS.fullmatch(f"{abs(filler):.12g}")
+    rows = np.abs(values) > _NO_NUMBER * max(np.median(np.abs(numbers)), 1.0)
+    for filler in (numbers.min(), numbers.max()):
+        rest = numbers[numbers != filler]
+        is_usual = len(rest) < len(numbers) - 1 and _FILLERS.fullmatch(f"{abs(filler):.12g}")
         if is_usual and len(rest) and np.abs(rest - filler).min() > max(np.ptp(rest), 10.0):
             rows |= values == filler
     if not rows.any():
         return values, []
     where = counted(rows.sum(), "row")
-    said = f"Column '{name}': {values[rows][0]:g} means 'no value' in {where}."
+    message = f"Column '{name}': {values[rows][0]:g} means 'no value' in {where}."
     # Another number may mean the same.
     left, more = without_fillers(name, np.where(rows, np.nan, values))
-    return left, [said, *more]
+    return left, [message, *more]
 
 
 def with_unit(cells: np.ndarray, decimal: str) -> tuple[np.ndarray, str] | None:
@@ -109,14 +109,14 @@ def with_unit(cells: np.ndarray, decimal: str) -> tuple[np.ndarray, str] | None:
     (array([5.5, nan, 6. ]), 'kn')
     """
     # All cells must have one and the same unit.
-    found = [None if cell is None else re.fullmatch(WITH_UNIT, cell) for cell in cells]
-    told = {match["unit"] for match in found if match}
-    if len(told) != 1 or any(
-        m is None and cell is not None for m, cell in zip(found, cells, strict=True)
+    matches = [None if cell is None else re.fullmatch(WITH_UNIT, cell) for cell in cells]
+    stated = {match["unit"] for match in matches if match}
+    if len(stated) != 1 or any(
+        m is None and cell is not None for m, cell in zip(matches, cells, strict=True)
     ):
         return None
-    unit = told.pop()
+    unit = stated.pop()
     if unit in _SIDES:
         return None
-    numbers = [np.nan if m is None else float(m["number"].replace(decimal, ".")) for m in found]
+    numbers = [np.nan if m is None else float(m["number"].replace(decimal, ".")) for m in matches]
     return np.array(numbers), unit

@@ -56,12 +56,12 @@ def text_of_sheet(path: Path, sheet: str | None = None) -> tuple[str, list[str]]
         if size > LARGEST_WORKBOOK:
             raise error_at(str(path), f"cannot be read: it unpacks to {size / 2**30:.3g} GiB.")
         book = openpyxl.load_workbook(content, read_only=True, data_only=True)
-        sheets = {one.title: _rows(one) for one in book.worksheets}
+        sheets = {worksheet.title: _rows(worksheet) for worksheet in book.worksheets}
     except (ShipcosimError, MemoryError):
         raise
     except Exception as error:  # openpyxl raises anything where a part is damaged
-        found = "cannot be read: it is no workbook of Excel, or a damaged one."
-        raise error_at(str(path), found, "Save it again, as .xlsx or .csv.") from error
+        message = "cannot be read: it is no workbook of Excel, or a damaged one."
+        raise error_at(str(path), message, "Save it again, as .xlsx or .csv.") from error
     if sheet is not None and sheet not in sheets:
         raise error_at(str(path), f"has no sheet '{sheet}'.", suggestion(sheet, sheets))
     if not sheets:
@@ -69,10 +69,10 @@ def text_of_sheet(path: Path, sheet: str | None = None) -> tuple[str, list[str]]
     # Without a name the sheet with the most cells is read.
     used = sheet or max(sheets, key=lambda name: sum(len(row) for row in sheets[name]))
     rows = [[_text(cell) for cell in row] for row in sheets[used]]
-    said = (
+    remarks = (
         [f"Sheet '{used}' of {len(sheets)} is read."] if sheet is None and len(sheets) > 1 else []
     )
-    return "\n".join("\t".join(row) if any(row) else "" for row in rows), said
+    return "\n".join("\t".join(row) if any(row) else "" for row in rows), remarks
 
 
 def _rows(sheet: Any) -> list[tuple[Any, ...]]:

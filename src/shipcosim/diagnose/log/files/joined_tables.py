@@ -53,19 +53,19 @@ def joined(
     """
     first = next(iter(tables))
     if None in times.values():
-        found = f"table '{next(name for name in times if times[name] is None)}' has no time."
-        raise error_at(str(path), found, "Take it out of the folder, or name its time 'time'.")
+        message = f"table '{next(name for name in times if times[name] is None)}' has no time."
+        raise error_at(str(path), message, "Take it out of the folder, or name its time 'time'.")
     clocks = {name: channel.columns for name, channel in times.items() if channel}
     # All clocks must be of one kind, and count from a common start: a date or the time of day.
     kinds = {name: _kind(table, times[name]) for name, table in tables.items()}
     other = next((name for name in tables if kinds[name] != kinds[first]), None)
     if other is not None:
-        found = f"the times of '{first}' and '{other}' are written in different ways."
-        raise error_at(str(path), found, "Write the same kind of time in all tables.")
+        message = f"the times of '{first}' and '{other}' are written in different ways."
+        raise error_at(str(path), message, "Write the same kind of time in all tables.")
     values = tables[first].values[clocks[first][0]]
     if len(tables) > 1 and values.dtype.kind == "f" and epoch_unit(values) is None:
-        found = f"the times of '{first}' and the other tables may count from different starts."
-        raise error_at(str(path), found, "Write times since 1970, or one table with one time.")
+        message = f"the times of '{first}' and the other tables may count from different starts."
+        raise error_at(str(path), message, "Write times since 1970, or one table with one time.")
     return _below_each_other(path, tables, clocks)
 
 
@@ -102,16 +102,16 @@ def _below_each_other(path, tables, clocks):
             )
             values[label][end - count : end] = cells
             units[label] = table.units[column]
-    said = [f"Tables joined by time: {', '.join(tables)}."]
-    said += [f"{name}: {remark}" for name, table in tables.items() for remark in table.remarks]
-    doubled = tuple(one for table in tables.values() for one in table.doubled)
-    return LogColumns(str(path), values, units, tuple(said), doubled, joined=True)
+    remarks = [f"Tables joined by time: {', '.join(tables)}."]
+    remarks += [f"{name}: {remark}" for name, table in tables.items() for remark in table.remarks]
+    doubled = tuple(column for table in tables.values() for column in table.doubled)
+    return LogColumns(str(path), values, units, tuple(remarks), doubled, joined=True)
 
 
 def _needs_table(name, column, names):
     """Whether a column needs its table's name: its own name is not clear, or the table has set points."""
-    told = vocabulary()["words"]
-    fillers = set(told["filler"])
+    words = vocabulary()["words"]
+    fillers = set(words["filler"])
     says_little = all(word in fillers or len(word) == 1 for word in words_of(column))
-    of_others = {*told["command"], *told["other"]} & set(words_of(name))
+    of_others = {*words["command"], *words["other"]} & set(words_of(name))
     return names.count(column) > 1 or says_little or bool(of_others)

@@ -24,7 +24,7 @@ def text_of_records(path: Path) -> tuple[str, list[str]]:
     """
     import pandas
 
-    text, said = text_of(path)
+    text, remarks = text_of(path)
     try:
         content = json.loads(text)
     except ValueError:
@@ -38,7 +38,7 @@ def text_of_records(path: Path) -> tuple[str, list[str]]:
         isinstance(values, (list, dict)) for values in content.values()
     )
     frame = pandas.DataFrame(content) if is_by_column else pandas.json_normalize(content)
-    return frame.to_csv(sep="\t", index=False), said
+    return frame.to_csv(sep="\t", index=False), remarks
 
 
 def _rows_of_delta(record):

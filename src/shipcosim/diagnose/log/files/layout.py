@@ -27,7 +27,7 @@ class Layout:
     first : int
         Index of the first line of values.
     remarks : tuple of str
-        What is to be said of all this.
+        Remarks on the layout.
     """
 
     separator: str
@@ -49,7 +49,7 @@ def layout_of(
     lines : list of str
         Its lines.
     form : FileLayout
-        What was said of it.
+        What a channel file says of the form of the log.
     is_unit : callable
         Whether a text is the spelling of a unit.
 
@@ -69,9 +69,9 @@ def layout_of(
     at, units, header = _header(lines, above, separator, width, is_unit)
     if header is None:
         names = ", ".join(f'"column {i + 1}"' for i in range(min(width, 3)))
-        found = f"no names of columns stand above the first row of numbers, line {first + 1}, which has {width}."
+        message = f"no names of columns stand above the first row of numbers, line {first + 1}, which has {width}."
         raise error_at(
-            source, found, f"Name them in a channel file: file = {{names = [{names}, ...]}}."
+            source, message, f"Name them in a channel file: file = {{names = [{names}, ...]}}."
         )
     # An index column of data frames has values, but no name.
     if (
@@ -100,14 +100,14 @@ def _first_row(source: str, lines: list[str], separator: str) -> tuple[int, int]
     # First line of this width that holds mostly figures, or begins with one as messages do.
     for i in rows:
         cells = cells_in(lines[i], separator)
-        told = [cell for cell in cells if not is_nothing(cell)]
-        figures = sum(map(is_figure, told))
+        filled = [cell for cell in cells if not is_nothing(cell)]
+        figures = sum(map(is_figure, filled))
         is_message = figures > 1 and is_figure(cells[0])
         if (
             width > 1
             and len(cells) == width
             and figures
-            and (is_message or figures >= 0.5 * len(told))
+            and (is_message or figures >= 0.5 * len(filled))
         ):
             return i, width
     if rows and width > 1:
@@ -133,12 +133,12 @@ def _header(lines, above, separator, width, is_unit):
             elif below is None or i < below - 1:
                 break
             continue
-        told = [cell for cell in row if cell]
-        if not units and told and _is_row_of_units(row, is_unit):
+        filled = [cell for cell in row if cell]
+        if not units and filled and _is_row_of_units(row, is_unit):
             units = [cell.strip("[]() ") for cell in row]
             below = i
             continue
-        if sum(map(is_figure, told)) < 0.5 * len(told):
+        if sum(map(is_figure, filled)) < 0.5 * len(filled):
             return i, units, _with_groups(row, lines[i - 1] if i else "", separator)
         break
     return 0, (), None
@@ -162,11 +162,11 @@ def _with_groups(row, above, separator):
 
 def _is_row_of_units(row, is_unit):
     # Most cells must be spellings of units; in brackets half of them are enough.
-    told = [cell.strip("[]() ") for cell in row if cell.strip("[]() ")]
+    filled = [cell.strip("[]() ") for cell in row if cell.strip("[]() ")]
     marked = sum(cell[:1] in "([" and cell[-1:] in ")]" for cell in row if cell)
-    known = sum(map(is_unit, told))
-    return bool(told) and (
-        known >= 0.75 * len(told) or (marked == len(told) and known >= 0.5 * len(told))
+    units = sum(map(is_unit, filled))
+    return bool(filled) and (
+        units >= 0.75 * len(filled) or (marked == len(filled) and units >= 0.5 * len(filled))
     )
 
 

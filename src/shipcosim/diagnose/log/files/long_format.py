@@ -39,8 +39,8 @@ def spread(log: LogColumns, form: FileLayout) -> LogColumns:
     """
     for name in filter(None, (form.name, form.value)):
         if name not in log.values:
-            found = f"there is no column '{name}'."
-            raise error_at(log.source, found, suggestion(name, log.values))
+            message = f"there is no column '{name}'."
+            raise error_at(log.source, message, suggestion(name, log.values))
     names, value = _long(log, form)
     if not names or value is None:
         return log
@@ -85,8 +85,8 @@ def _plain(column):
 def _is_of_names(values):
     if values.dtype.kind != "O":
         return False
-    told = {value for value in values if value is not None}
-    return 2 <= len(told) <= min(_MOST_NAMES, len(values) // 2)
+    names = {value for value in values if value is not None}
+    return 2 <= len(names) <= min(_MOST_NAMES, len(values) // 2)
 
 
 def _is_clock(values):
@@ -101,13 +101,13 @@ def _wide(log, names, value, clock, unit):
 
     # Rows with a name and a time; several columns of names are joined.
     frame: Any = pandas.DataFrame({column: log.values[column] for column in log.values})
-    told = frame[names].notna().all(axis=1) & frame[clock].notna()
+    complete = frame[names].notna().all(axis=1) & frame[clock].notna()
     bad = np.zeros(len(frame), bool)
     for flag in log.values:
         if FLAGS >= set(words_of(flag)):
             bad |= bad_rows(words_of(flag), log.values[flag])
-    told &= ~bad
-    frame = frame[told]
+    complete &= ~bad
+    frame = frame[complete]
     key = frame[names[0]].astype("str")
     for more in names[1:]:
         key = key + "." + frame[more].astype("str")
@@ -127,16 +127,16 @@ def _wide(log, names, value, clock, unit):
         values[name] = texts.to_numpy(object) if is_text else numbers.to_numpy(float)
         stated = frame[unit][key == name].dropna().unique() if unit else ()
         units[name] = str(stated[0]) if len(stated) == 1 else ""
-    said = [
+    remarks = [
         f"One value a row: '{' and '.join(names)}' names {len(values) - 1} channels, '{value}' holds them."
     ]
     if bad.any():
-        said.append(f"{bad.sum()} values that are called bad left out.")
+        remarks.append(f"{bad.sum()} values that are called bad left out.")
     if again:
-        said.append(
+        remarks.append(
             f"{again} values of a channel at a time that it has one for already: the first is kept."
         )
-    return LogColumns(log.source, values, units, (*log.remarks, *said))
+    return LogColumns(log.source, values, units, (*log.remarks, *remarks))
 
 
 def brought_together(
@@ -169,10 +169,10 @@ def brought_together(
         (n for n in ("heading", "latitude", "north", "surge") if n in there), next(iter(there))
     )
     clock = np.unique(time[there[base] & np.isfinite(time)])
-    found = {}
+    interpolated = {}
     # Interpolate each channel from its own rows, in order of time and without repeated times.
     for name, (values, unit) in signals.items():
         rows = usable_rows(np.where(is_finite[name], time, np.nan))
-        found[name] = at_times(clock, time[rows], values[rows], unit), unit
-    said = f"Rows hold one sensor each: all channels are interpolated to the {len(clock)} times of {base}."
-    return clock, found, [said]
+        interpolated[name] = at_times(clock, time[rows], values[rows], unit), unit
+    message = f"Rows hold one sensor each: all channels are interpolated to the {len(clock)} times of {base}."
+    return clock, interpolated, [message]

@@ -46,16 +46,16 @@ def columns_of_matlab(
         remedy = "In MATLAB `writetable(struct2table(S), 'log.csv')` makes a table."
         raise error_at(str(path), "cannot be read: its content is damaged.", remedy)
     content = pickle.loads(child.stdout)
-    found = dict(_series({k: v for k, v in content.items() if not k.startswith("__")}, ""))
-    if not found:
+    series_by_name = dict(_series({k: v for k, v in content.items() if not k.startswith("__")}, ""))
+    if not series_by_name:
         remedy = "Save arrays: in MATLAB `S = table2struct(T, 'ToScalar', true)`, `save(FILE, '-struct', 'S')`."
         raise error_at(str(path), "holds no series of numbers.", remedy)
     # The series of a log are equally long; what is not is left out.
-    length = Counter(map(len, found.values())).most_common(1)[0][0]
-    others = [name for name, values in found.items() if len(values) != length]
-    values = {name: series for name, series in found.items() if len(series) == length}
-    said = [f"Series of other lengths left out: {', '.join(others)}."] if others else []
-    return values, dict.fromkeys(values, ""), tuple(said)
+    length = Counter(map(len, series_by_name.values())).most_common(1)[0][0]
+    others = [name for name, values in series_by_name.items() if len(values) != length]
+    values = {name: series for name, series in series_by_name.items() if len(series) == length}
+    remarks = [f"Series of other lengths left out: {', '.join(others)}."] if others else []
+    return values, dict.fromkeys(values, ""), tuple(remarks)
 
 
 def _series(value: Any, name: str):

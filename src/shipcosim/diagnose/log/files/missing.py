@@ -23,11 +23,11 @@ def without_missing(log: LogColumns) -> LogColumns:
         As it stands in the file, one column for each channel.
     """
     values = dict(log.values)
-    said = list(log.remarks)
+    remarks = list(log.remarks)
     for name, cells in log.values.items():
         if cells.dtype.kind == "f":
             values[name], more = without_fillers(name, cells)
-            said += more
+            remarks += more
     for flag, cells in log.values.items():
         # The flag of a channel, or of a sensor with several channels, begins as their names do.
         words = words_of(flag)
@@ -36,12 +36,12 @@ def without_missing(log: LogColumns) -> LogColumns:
         if not of or not bad.any():
             continue
         for name in log.values:
-            told = words_of(name)
-            is_flagged = told[: len(of)] == of and not FLAGS & set(told)
+            flag_words = words_of(name)
+            is_flagged = flag_words[: len(of)] == of and not FLAGS & set(flag_words)
             if is_flagged and values[name].dtype.kind == "f":
                 values[name] = np.where(bad, np.nan, values[name])
-                said.append(f"'{flag}' calls {bad.sum()} rows of '{name}' bad: left empty.")
-    return replace(log, values=values, remarks=tuple(said))
+                remarks.append(f"'{flag}' calls {bad.sum()} rows of '{name}' bad: left empty.")
+    return replace(log, values=values, remarks=tuple(remarks))
 
 
 def bad_rows(words: tuple[str, ...], cells: np.ndarray) -> np.ndarray:
@@ -62,12 +62,12 @@ def bad_rows(words: tuple[str, ...], cells: np.ndarray) -> np.ndarray:
     [False, False, True]
     """
     none = np.zeros(len(cells), bool)
-    told = vocabulary()["flags"]
+    flag_terms = vocabulary()["flags"]
     # Of a quality or status 0 may be good.
-    if not FLAGS & set(words) or (1.0 in cells and not set(words) & set(told["yes"])):
+    if not FLAGS & set(words) or (1.0 in cells and not set(words) & set(flag_terms["yes"])):
         return none
     texts = np.array([str(cell).lower() for cell in cells])
-    if not {*told["good"], *told["bad"]} >= set(texts):
+    if not {*flag_terms["good"], *flag_terms["bad"]} >= set(texts):
         return none
-    bad = np.isin(texts, told["bad"])
+    bad = np.isin(texts, flag_terms["bad"])
     return bad & (bad.mean() < 0.5)

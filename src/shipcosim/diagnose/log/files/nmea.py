@@ -42,7 +42,7 @@ def _clock(text: str) -> float:
 
 def _position(fields: list[str]) -> Values:
     """Latitude, its hemisphere, longitude and its hemisphere, as degrees."""
-    found = {}
+    degrees = {}
     # NMEA writes degrees times 100 plus minutes, and the hemisphere apart.
     for name, text, side, sides in (
         ("latitude", *fields[:2], "NS"),
@@ -51,8 +51,8 @@ def _position(fields: list[str]) -> Values:
         if text and side not in sides:
             raise ValueError(side)
         whole, minutes = divmod(_of(text), 100.0)
-        found[name] = (whole + minutes / 60.0) * (-1.0 if side and side == sides[1] else 1.0)
-    return found
+        degrees[name] = (whole + minutes / 60.0) * (-1.0 if side and side == sides[1] else 1.0)
+    return degrees
 
 
 def _timed(clock: str, values: Values) -> Values:
@@ -119,8 +119,8 @@ def _rpm(f: list[str]) -> Values:
 def _rsa(f: list[str]) -> Values:
     """Angles of the rudders, positive to starboard; the first is the starboard one, or the only one."""
     first = "starboard rudder angle" if f[3] else "rudder angle"
-    found = {first: _of(f[1])} if f[2] == "A" else {}
-    return found | ({"port rudder angle": _of(f[3])} if f[3] and f[4] == "A" else {})
+    angles = {first: _of(f[1])} if f[2] == "A" else {}
+    return angles | ({"port rudder angle": _of(f[3])} if f[3] and f[4] == "A" else {})
 
 
 _KINDS: Mapping[str, Callable[[list[str]], Values]] = {
@@ -199,28 +199,28 @@ def columns_of_sentences(
     read = _read(lines)
     count = len(read.sentences) + len(read.damaged)
     if len(read.damaged) > _MOST_DAMAGED * count:
-        found = f"{len(read.damaged)} of {count} sentences of NMEA do not fit their checksum or their form."
+        message = f"{len(read.damaged)} of {count} sentences of NMEA do not fit their checksum or their form."
         raise error_at(
-            f"{source}, line {read.damaged[0] + 1}", found, "Record them again, or as a table."
+            f"{source}, line {read.damaged[0] + 1}", message, "Record them again, or as a table."
         )
-    said = _told(read)
+    remarks = _left_out(read)
     # Time of each sentence, and the channels that the sentences give.
     times, more = _times(source, read)
     channels, used = _channels(read, times)
     if not channels:
-        found = (
+        message = (
             f"holds sentences of NMEA, and none gives a channel: {', '.join(read.unread) or 'ZDA'}."
         )
-        raise error_at(source, found, f"Read are {', '.join(_KINDS)}.")
+        raise error_at(source, message, f"Read are {', '.join(_KINDS)}.")
     # Bring all channels to the times of the heading or the position.
     base = next(name for name in ("heading", "latitude", *channels) if name in channels)
     clock = channels[base][0]
     values = {"time": clock} | {
         name: at_times(clock, *channels[name], _UNITS[name]) for name in channels
     }
-    sources = "; ".join(f"{', '.join(names)} from {one}" for one, names in used.items())
-    said += [*more, f"Sentences of NMEA, at the {len(clock)} times of {base}: {sources}."]
-    return values, {name: _UNITS[name] for name in values}, said
+    sources = "; ".join(f"{', '.join(names)} from {sentence}" for sentence, names in used.items())
+    remarks += [*more, f"Sentences of NMEA, at the {len(clock)} times of {base}: {sources}."]
+    return values, {name: _UNITS[name] for name in values}, remarks
 
 
 def _read(lines: list[str]) -> _Read:
@@ -251,31 +251,31 @@ def _read(lines: list[str]) -> _Read:
 
 def _checksum(body: str) -> int:
     # The checksum is the exclusive or of all characters between $ and *.
-    found = 0
+    checksum = 0
     for char in body.encode("latin-1", "replace"):
-        found ^= char
-    return found
+        checksum ^= char
+    return checksum
 
 
-def _told(read: _Read) -> list[str]:
+def _left_out(read: _Read) -> list[str]:
     """What was left out."""
-    said = []
+    remarks = []
     if lines := read.damaged:
         what = (
             f"{len(lines)} sentence{'s do' if len(lines) > 1 else ' does'} not fit checksum or form"
         )
-        said.append(f"{what}, the first in line {lines[0] + 1}: left out.")
+        remarks.append(f"{what}, the first in line {lines[0] + 1}: left out.")
     if lines := read.others:
         what = f"{len(lines)} line{'s that are' if len(lines) > 1 else ' that is'} no sentence"
-        said.append(f"{what} left out, the first is line {lines[0] + 1}.")
+        remarks.append(f"{what} left out, the first is line {lines[0] + 1}.")
     if read.unread:
-        said.append(
+        remarks.append(
             f"Sentences not read: {', '.join(f'{kind} ({n})' for kind, n in sorted(read.unread.items()))}."
         )
     winds = sum(kind.endswith("MWV") and not values for _, kind, values in read.sentences)
     if winds:
-        said.append(f"{winds} MWV without a valid wind relative to the ship left out.")
-    return said
+        remarks.append(f"{winds} MWV without a valid wind relative to the ship left out.")
+    return remarks
 
 
 def _times(source: str, read: _Read) -> tuple[np.ndarray, list[str]]:
@@ -289,16 +289,16 @@ def _times(source: str, read: _Read) -> tuple[np.ndarray, list[str]]:
             return numbers, ["Times are those that stand before the sentences."]
         except ValueError:
             pass
-        if found := seconds_of(texts):
-            return found[0], ["Times are those that stand before the sentences.", *found[1]]
+        if message := seconds_of(texts):
+            return message[0], ["Times are those that stand before the sentences.", *message[1]]
     # Else the clock times within sentences, interpolated by line number for those without.
     timed = [(k, values) for k, (_, _, values) in enumerate(read.sentences) if "clock" in values]
     if len(timed) < 2:
-        found = "holds sentences of NMEA, and none of GGA, RMC, GLL and ZDA says the time."
+        message = "holds sentences of NMEA, and none of GGA, RMC, GLL and ZDA says the time."
         remedy = "Log one of them too, or the time of reception before each sentence."
-        raise error_at(source, found, remedy)
+        raise error_at(source, message, remedy)
     rows = np.array([k for k, _ in timed])
-    seconds, said = _with_dates(timed)
+    seconds, remarks = _with_dates(timed)
     line = np.array([number for number, *_ in read.sentences], float)
     times = np.interp(line, line[rows], seconds, left=np.nan, right=np.nan)
     for k, (_, kind, _) in enumerate(read.sentences):
@@ -312,19 +312,19 @@ def _times(source: str, read: _Read) -> tuple[np.ndarray, list[str]]:
         }
     )
     if without:
-        said.append(
+        remarks.append(
             f"{', '.join(without)} have no time: it lies between those of the sentences around."
         )
-    return times, said
+    return times, remarks
 
 
 def _with_dates(timed: list[tuple[int, Values]]) -> tuple[np.ndarray, list[str]]:
     """Continuous times from times of day: past midnight, and over whole days if sentences have a date. [s]"""
     # Clock times go on past midnight; dates then show whole days that were not logged.
-    seconds, said = seconds_of_clock(np.array([values["clock"] for _, values in timed]))
+    seconds, remarks = seconds_of_clock(np.array([values["clock"] for _, values in timed]))
     dated = np.array([k for k, (_, values) in enumerate(timed) if "date" in values], int)
     if not len(dated):
-        return seconds, said
+        return seconds, remarks
     days = np.array([timed[k][1]["date"] for k in dated])
     clocks = np.array([timed[k][1]["clock"] for k in dated])
     # Whole days that are missing at each dated sentence,
@@ -333,14 +333,14 @@ def _with_dates(timed: list[tuple[int, Values]]) -> tuple[np.ndarray, list[str]]
     every = np.arange(len(timed))
     before = np.maximum(np.searchsorted(dated, every, "right") - 1, 0)
     after = np.minimum(np.searchsorted(dated, every), len(dated) - 1)
-    apart = [np.abs(seconds - seconds[dated[one]]) for one in (before, after)]
+    apart = [np.abs(seconds - seconds[dated[side]]) for side in (before, after)]
     nearest = np.where(apart[1] < apart[0], after, before)
     lacking = lacking - lacking[0]
     if lacking.any():
-        said.append(
+        remarks.append(
             f"By their dates the sentences go on after {int(lacking.max() / DAY)} whole days more."
         )
-    return seconds + lacking[nearest], said
+    return seconds + lacking[nearest], remarks
 
 
 def _channels(
@@ -348,26 +348,26 @@ def _channels(
 ) -> tuple[dict[str, tuple[np.ndarray, np.ndarray]], dict[str, list[str]]]:
     """Times and values of each channel by one source, and which channels a source gives."""
     # Sort the values by channel and kind of sentence.
-    found: dict[str, dict[str, list[tuple[float, float]]]] = {}
+    by_channel: dict[str, dict[str, list[tuple[float, float]]]] = {}
     for (_, kind, values), time in zip(read.sentences, times, strict=True):
         for name, value in values.items():
             if name in _UNITS and np.isfinite(value) and np.isfinite(time):
-                found.setdefault(name, {}).setdefault(kind, []).append((float(time), value))
+                by_channel.setdefault(name, {}).setdefault(kind, []).append((float(time), value))
     order = list(_KINDS)
     channels = {}
     used = {}
     for name in _UNITS:
-        if name not in found:
+        if name not in by_channel:
             continue
         # Of the sources with nearly the most values take the preferred one.
-        most = max(map(len, found[name].values()))
+        most = max(map(len, by_channel[name].values()))
         enough = {
-            kind: pairs for kind, pairs in found[name].items() if len(pairs) >= _ENOUGH * most
+            kind: pairs for kind, pairs in by_channel[name].items() if len(pairs) >= _ENOUGH * most
         }
-        kind = min(enough, key=lambda one: (order.index(one[-3:]), -len(enough[one])))
+        kind = min(enough, key=lambda source_: (order.index(source_[-3:]), -len(enough[source_])))
         moments, values = np.array(enough[kind]).T
         moments, first = np.unique(moments, return_index=True)
         channels[name] = moments, values[first]
-        others = sorted(set(found[name]) - {kind})
+        others = sorted(set(by_channel[name]) - {kind})
         used.setdefault(kind + (f" (not {', '.join(others)})" if others else ""), []).append(name)
     return channels, used

@@ -58,43 +58,43 @@ def tables_of_messages(path: Path) -> dict[str, LogColumns]:
     ShipcosimError
         If no message is read.
     """
-    found: dict[int, list[tuple[float, int, dict]]] = {}
+    by_pgn: dict[int, list[tuple[float, int, dict]]] = {}
     unread: Counter[int] = Counter()
     damaged = 0
     in_si = None
     for line in text_of(path)[0].splitlines():
         try:
             if found_text := _TOLD.fullmatch(line):
-                told = _of_text(found_text)
+                message = _of_text(found_text)
                 is_si = " rad" in line
             elif not line.startswith("{"):
-                told = _raw(line)
+                message = _raw(line)
                 is_si = True
             elif '"pgn"' in line:
-                told = _read(json.loads(line))
+                message = _read(json.loads(line))
                 is_si = in_si
             else:
                 # The first line of JSON says the units: std has degrees, si radians.
                 in_si = {"si": True, "std": False}.get(json.loads(line).get("units"))
                 continue
-            pgn, time, source, fields = told
+            pgn, time, source, fields = message
             if fields is None:
                 unread[pgn] += 1
             else:
                 row = time, source, _columns(fields, is_si)
-                found.setdefault(pgn, []).append(row)
+                by_pgn.setdefault(pgn, []).append(row)
         except Exception:  # a field of any type and size can stand in a damaged message
             damaged += bool(line.strip()) and not line.startswith("#")
-    if not found:
+    if not by_pgn:
         remedy = f"Read are {', '.join(map(str, _RAW_FIELDS))}."
         raise error_at(str(path), "holds messages of NMEA 2000, and none gives a channel.", remedy)
-    said = [f"{damaged} lines that are no message left out."] if damaged else []
-    said += [
+    remarks = [f"{damaged} lines that are no message left out."] if damaged else []
+    remarks += [
         f"Messages not read: {', '.join(f'{k} ({n})' for k, n in sorted(unread.items()))}."
     ] * bool(unread)
     return {
-        f"PGN {pgn}": _table(path, rows, said if k == 0 else [])
-        for k, (pgn, rows) in enumerate(found.items())
+        f"PGN {pgn}": _table(path, rows, remarks if k == 0 else [])
+        for k, (pgn, rows) in enumerate(by_pgn.items())
     }
 
 
@@ -153,7 +153,7 @@ def _columns(fields, in_si):
     reference = fields.get("COG Reference", fields.get("Reference", "unknown"))
     reference = reference.get("name", "unknown") if isinstance(reference, dict) else reference
     angle = {True: "rad", False: "deg", None: ""}[in_si]
-    found = {}
+    values = {}
     for name in (
         "Heading",
         "COG",
@@ -178,20 +178,20 @@ def _columns(fields, in_si):
             label = label if is_true or reference == "Apparent" else f"other {label}"
         elif name in ("Heading", "COG"):
             label = f"{name} {reference}"
-        found[label, unit] = float(fields[name])
-    return found
+        values[label, unit] = float(fields[name])
+    return values
 
 
-def _table(path, rows, said):
+def _table(path, rows, remarks):
     """One kind of message from the device that sends the most of them."""
     counts = Counter(source for _, source, _ in rows)
     used = counts.most_common(1)[0][0]
     others = [str(source) for source in counts if source != used]
     if others:
-        said = [*said, f"from device {used} (not {', '.join(others)})."]
+        remarks = [*remarks, f"from device {used} (not {', '.join(others)})."]
     rows = [(time, values) for time, source, values in rows if source == used]
     names = dict(key for _, values in rows for key in values)
     columns = {"time": np.array([time for time, _ in rows])}
     for key in names.items():
         columns[key[0]] = np.array([values.get(key, np.nan) for _, values in rows])
-    return LogColumns(str(path), columns, {"time": "s"} | names, tuple(said))
+    return LogColumns(str(path), columns, {"time": "s"} | names, tuple(remarks))

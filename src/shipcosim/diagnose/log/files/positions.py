@@ -33,12 +33,12 @@ def is_minutes(values: np.ndarray, largest: float) -> bool:
     [True, False, False]
     """
     # Most numbers must be too large for degrees, and nearly all must have minutes below 60.
-    known = np.abs(finite(values))
-    if not len(known) or (known > largest).mean() < 0.5:
+    sizes = np.abs(finite(values))
+    if not len(sizes) or (sizes > largest).mean() < 0.5:
         return False
     return bool(
-        (np.mod(known, 100.0) < 60.0).mean() > 0.99
-        and (known < 100.0 * largest + 60.0).mean() > 0.99
+        (np.mod(sizes, 100.0) < 60.0).mean() > 0.99
+        and (sizes < 100.0 * largest + 60.0).mean() > 0.99
     )
 
 
@@ -64,11 +64,11 @@ def hemisphere_signs(cells: np.ndarray, role: str) -> np.ndarray | None:
     role : str
         Of the numbers that the column belongs to.
     """
-    known = sides_of(role)
-    told = [str(cell).strip().upper() for cell in cells if cell is not None]
-    if cells.dtype.kind == "f" or not told or not known.keys() >= set(told):
+    signs = sides_of(role)
+    sides = [str(cell).strip().upper() for cell in cells if cell is not None]
+    if cells.dtype.kind == "f" or not sides or not signs.keys() >= set(sides):
         return None
-    return np.array([known.get(str(cell).strip().upper(), np.nan) for cell in cells])
+    return np.array([signs.get(str(cell).strip().upper(), np.nan) for cell in cells])
 
 
 def sides_of(role: str) -> dict[str, float]:
@@ -86,7 +86,7 @@ def degrees_of_texts(cells: np.ndarray, largest: float) -> np.ndarray | None:
     largest : float
         Of the degrees: 90 or 180.
     """
-    found = np.full(len(cells), np.nan)
+    decimal_degrees = np.full(len(cells), np.nan)
     # Parse degrees, minutes and seconds of each text, with the hemisphere before or behind.
     for row, cell in enumerate(cells):
         if cell is None:
@@ -107,7 +107,7 @@ def degrees_of_texts(cells: np.ndarray, largest: float) -> np.ndarray | None:
             degrees = float(degrees_of_minutes(np.array([degrees]))[0])
         parts = float(match["minutes"] or 0.0) / 60.0 + float(match["seconds"] or 0.0) / 3600.0
         hemisphere = (match["before"] or match["after"] or "N").upper()
-        found[row] = np.copysign(abs(degrees) + parts, degrees) * (
+        decimal_degrees[row] = np.copysign(abs(degrees) + parts, degrees) * (
             -1.0 if hemisphere in "SWV" else 1.0
         )
-    return found
+    return decimal_degrees

@@ -67,7 +67,7 @@ def read_file(path: Path, form: FileLayout) -> LogColumns:
     path : Path
         Text of any dialect or sentences of NMEA, also compressed by gzip; .xlsx; .nc; .parquet; .mat.
     form : FileLayout
-        What was said of it.
+        What a channel file says of the form of the log.
 
     Raises
     ------
@@ -86,25 +86,25 @@ def read_file(path: Path, form: FileLayout) -> LogColumns:
         return LogColumns(str(path), *columns_of_matlab(path))
     refuse_foreign(path)
     if is_workbook(path):
-        text, said = text_of_sheet(path, form.sheet)
+        text, remarks = text_of_sheet(path, form.sheet)
         form = form.model_copy(update={"separator": "\t"})
     elif is_json(path):
-        text, said = text_of_records(path)
+        text, remarks = text_of_records(path)
         form = form.model_copy(update={"separator": "\t"})
     else:
-        text, said = text_of(path, form.encoding)
+        text, remarks = text_of(path, form.encoding)
         if holds_sentences(lines := text.splitlines()):
             values, units, more = columns_of_sentences(str(path), lines)
-            return LogColumns(str(path), values, units, (*said, *more))
+            return LogColumns(str(path), values, units, (*remarks, *more))
     read = _of_text(str(path), text, form)
-    return replace(read, remarks=(*said, *read.remarks))
+    return replace(read, remarks=(*remarks, *read.remarks))
 
 
 def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
     # Layout first, then the rows of the right length, then the decimal sign, then each column.
     lines = text.splitlines()
     layout = layout_of(source, lines, form, is_unit)
-    rows, said = _rows(source, lines, layout)
+    rows, remarks = _rows(source, lines, layout)
     width = len(layout.header)
     frame = _checked_frame(source, rows, layout.separator, width)
     decimal, frame = _with_decimal_sign(source, frame, rows, layout.separator, form)
@@ -112,21 +112,21 @@ def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
     values = {}
     for i, name in enumerate(names):
         values[name], more = _column(name, frame[i], decimal)
-        said += more
+        remarks += more
         if (
             values[name].dtype.kind == "O"
             and not units[name]
-            and (found := with_unit(values[name], decimal))
+            and (parsed := with_unit(values[name], decimal))
         ):
-            values[name], units[name] = found
+            values[name], units[name] = parsed
     if decimal == ",":
-        said.append("Numbers are read with a decimal comma.")
-    if "time" not in values and (found := seconds_of_parts(values)):
-        parts, values["time"] = found
+        remarks.append("Numbers are read with a decimal comma.")
+    if "time" not in values and (parsed := seconds_of_parts(values)):
+        parts, values["time"] = parsed
         units["time"] = "s"
         values = {name: cells for name, cells in values.items() if name not in parts}
-        said.append(f"Time is made of {', '.join(parts)}.")
-    return LogColumns(source, values, units, (*layout.remarks, *said), doubled)
+        remarks.append(f"Time is made of {', '.join(parts)}.")
+    return LogColumns(source, values, units, (*layout.remarks, *remarks), doubled)
 
 
 def _names(layout: Layout) -> tuple[list[str], dict[str, str], tuple[str, ...]]:
@@ -151,24 +151,24 @@ def _rows(source: str, lines: list[str], layout: Layout) -> tuple[list[str], lis
     separator = layout.separator
     width = len(layout.header)
     rows = [line for line in rest if line.strip() and not (line[0] in "#%/! " and is_comment(line))]
-    said = []
+    remarks = []
     comments = sum(1 for line in rest if line.strip()) - len(rows)
     if comments:
-        said.append(f"{counted(comments, 'comment line')} between rows left out.")
+        remarks.append(f"{counted(comments, 'comment line')} between rows left out.")
     # Many short rows have empty cells at their end; a few
     # odd rows are left out; anything else is no table.
     rows, counts = _without_last_separator(rows, separator, width)
     bad = counts != width
     if (counts < width).mean() > _FEW and bad.sum() > 1 and not (counts > width).any():
-        said.append(
+        remarks.append(
             f"{counted(bad.sum(), 'row')} with fewer cells than the header: what they lack is left empty."
         )
-        return rows, said
+        return rows, remarks
     if bad.mean() > max(_FEW, 1.5 / len(rows)):
         raise ShipcosimError(_ragged(source, lines, layout, rows, counts, width))
     if bad.any():
         shown = rows[int(np.flatnonzero(bad)[0])][:40]
-        said.append(
+        remarks.append(
             f"{counted(bad.sum(), 'row')} without {width} cells left out, the first '{shown}'."
         )
         rows = [line for line, wrong in zip(rows, bad, strict=True) if not wrong]
@@ -180,9 +180,9 @@ def _rows(source: str, lines: list[str], layout: Layout) -> tuple[list[str], lis
         if header[-1] in line and cells_in(line, separator) == header
     }
     if again:
-        said.append(f"The header is repeated in {counted(len(again), 'row')}: left out.")
+        remarks.append(f"The header is repeated in {counted(len(again), 'row')}: left out.")
         rows = [line for i, line in enumerate(rows) if i not in again]
-    return rows, said
+    return rows, remarks
 
 
 def _without_last_separator(rows, separator, width):
@@ -201,11 +201,11 @@ def _ragged(source, lines, layout, rows, counts, width):
     usual = Counter(counts.tolist()).most_common(1)[0][0]
     row = int(np.flatnonzero(counts != width)[0])
     line = next(i for i in range(layout.first, len(lines)) if lines[i].startswith(rows[row]))
-    found = f"has {counts[row]} cells, and the header has {width}."
+    message = f"has {counts[row]} cells, and the header has {width}."
     remedy = "Each row needs one for each name."
     if layout.separator == "," and width < usual <= 2 * width:
         remedy = "Are these decimal commas between commas? Separate the columns by semicolons."
-    return Problem(f"{source}, line {line + 1}", found, remedy)
+    return Problem(f"{source}, line {line + 1}", message, remedy)
 
 
 def _width(line: str, separator: str) -> int:
@@ -226,8 +226,8 @@ def _checked_frame(source: str, rows: list[str], separator: str, width: int) -> 
         why = f" ({error})"
     if frame is None or len(frame) != len(rows):
         row = next((row for row in rows if row.count('"') % 2), rows[0])
-        found = f"a quotation mark is opened in a row and not closed in it: '{row[:60]}'{why}."
-        raise error_at(source, found, "Close it, or leave it out.")
+        message = f"a quotation mark is opened in a row and not closed in it: '{row[:60]}'{why}."
+        raise error_at(source, message, "Close it, or leave it out.")
     return frame
 
 
@@ -275,11 +275,11 @@ def _with_decimal_sign(source, frame, rows, separator, form):
             continue  # a point that cannot group thousands is a decimal point
         if len(dotted) and form.decimal is None:
             cell = dotted.iloc[0].strip()
-            found = f"'{cell}' can be {cell} or {cell.replace('.', '')}, as other numbers have a decimal comma."
+            message = f"'{cell}' can be {cell} or {cell.replace('.', '')}, as other numbers have a decimal comma."
             remedy = (
                 'Say which in a channel file: file = {decimal = ","} groups thousands by points.'
             )
-            raise error_at(source, found, remedy)
+            raise error_at(source, message, remedy)
         frame[i] = anew[i]
     return decimal, frame
 

@@ -54,7 +54,7 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
     content = content.replace(b"UdPbC\x00", b"")  # head of a message of IEC 61162-450
     size = len(content)
     content = re.sub(rb"\x00{4,}", b"", content)
-    said = [f"{size - len(content)} zero bytes left out."] if len(content) < size else []
+    remarks = [f"{size - len(content)} zero bytes left out."] if len(content) < size else []
     # Decode, and refuse what is no text.
     used = encoding or _encoding_of(content)
     try:
@@ -67,8 +67,8 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
             str(path), "is no text: it holds zero bytes.", "Tables are text, .xlsx or .nc."
         )
     if encoding is None and used not in ("utf-8", "utf-8-sig"):
-        said.append(f"Read as {used}, as it is not UTF-8.")
-    return text.removeprefix("\ufeff"), said
+        remarks.append(f"Read as {used}, as it is not UTF-8.")
+    return text.removeprefix("\ufeff"), remarks
 
 
 def _encoding_of(content: bytes) -> str:

@@ -52,11 +52,11 @@ def epoch_unit(values: np.ndarray) -> str | None:
     >>> epoch_unit(np.array([1.7110e18, 1.7111e18])), epoch_unit(np.array([1711107166.2])), epoch_unit(np.arange(9.0))
     ('ns', 's', None)
     """
-    known = finite(values)
-    if not len(known):
+    numbers = finite(values)
+    if not len(numbers):
         return None
     # Quantiles rather than extremes, as single stamps may be damaged.
-    first, last = np.quantile(known, [0.02, 0.98])
+    first, last = np.quantile(numbers, [0.02, 0.98])
     return next(
         (unit for unit, size in EPOCHS.items() if _SINCE < first / size and last / size < _UNTIL),
         None,
@@ -92,8 +92,8 @@ def seconds_of(
 
     # Bring all stamps to one form, without their time zone.
     cells, zone = _uniform(pandas.Series(texts, dtype="object"))
-    known = cells.dropna()
-    if not len(known):
+    stamps = cells.dropna()
+    if not len(stamps):
         return None
     if zone is not None:
         cells = cells.astype("object")
@@ -101,7 +101,7 @@ def seconds_of(
         return short
     # Clock times without a date.
     for clock in _CLOCKS:
-        if _fits(known, clock):
+        if _fits(stamps, clock):
             parsed = pandas.to_datetime(
                 "2000-01-01 " + cells, format=f"%Y-%m-%d {clock}", errors="coerce"
             )
@@ -114,7 +114,7 @@ def seconds_of(
     for key, dates in _DATES.items():
         for date, (between, clock) in product(dates.split("|"), product(_BETWEEN, _CLOCKS)):
             form = f"{date}{between}{clock}"
-            if key not in readings and (order or key) == key and _fits(known, form):
+            if key not in readings and (order or key) == key and _fits(stamps, form):
                 parsed = pandas.to_datetime(cells, format=form, errors="coerce")
                 if _whole(parsed, cells):
                     readings[key] = _since_first(parsed)
@@ -123,26 +123,26 @@ def seconds_of(
     if not readings:
         return None
     # Decide between the readings, then subtract the zones.
-    times, said = _decided(readings, str(known.iloc[0]))
+    times, remarks = _decided(readings, str(stamps.iloc[0]))
     if zone is not None:
         times = times - zone
         times = times - finite(times)[0]
-    return times, said
+    return times, remarks
 
 
-def is_clock_number(known: np.ndarray) -> bool:
+def is_clock_number(numbers: np.ndarray) -> bool:
     """Whether numbers can be hhmmss and not seconds, because minutes and seconds stay below 60.
 
     Fractions of days run slower than any clock: their steps are below a millisecond.
     """
-    whole = np.floor(known)
-    inside = known.min() >= 0.0 and known.max() < 240000.0
+    whole = np.floor(numbers)
+    inside = numbers.min() >= 0.0 and numbers.max() < 240000.0
     return bool(
         inside
         and (whole % 100 < 60).all()
         and (whole // 100 % 100 < 60).all()
-        and known.max() > 100.0
-        and float(np.ptp(known)) >= 1e-3 * (len(known) - 1)
+        and numbers.max() > 100.0
+        and float(np.ptp(numbers)) >= 1e-3 * (len(numbers) - 1)
     )
 
 
@@ -163,10 +163,10 @@ def seconds_of_parts(columns: Mapping[str, np.ndarray]) -> tuple[list[str], np.n
 
     names = list(columns)
     for start in range(len(names)):
-        beside = zip(names[start:], _PARTS.items(), strict=False)
+        neighbours = zip(names[start:], _PARTS.items(), strict=False)
         parts = dict(
             takewhile(
-                lambda pair: pair[0].lower().removesuffix(" (2)") in pair[1][1].split(), beside
+                lambda pair: pair[0].lower().removesuffix(" (2)") in pair[1][1].split(), neighbours
             )
         )
         if len(parts) < 4 or any(columns[name].dtype.kind != "f" for name in parts):
@@ -197,13 +197,13 @@ def _marks_of(form: str) -> str:
     return _WORD.sub("", datetime(2022, 10, 27, 23, 57, 30).strftime(form))
 
 
-def _fits(known, form):
+def _fits(stamps, form):
     """Whether the first and the last of the stamps have this form."""
-    if _WORD.sub("", known.iloc[0]) != _marks_of(form):
+    if _WORD.sub("", stamps.iloc[0]) != _marks_of(form):
         # Compare the separators first, which is fast, then parse the first and last stamp.
         return False
     try:
-        for cell in (known.iloc[0], known.iloc[-1]):
+        for cell in (stamps.iloc[0], stamps.iloc[-1]):
             datetime.strptime(re.sub(r"(\.\d{6})\d+", r"\1", cell), form)
     except (ValueError, TypeError):
         return False
@@ -219,7 +219,7 @@ def _uniform(cells) -> tuple[Any, np.ndarray | None]:
     """Stamps without their zone, with a point before the fraction everywhere or nowhere; what zones are ahead. [s]"""
     texts = cells.where(cells.notna(), None).astype("str").str.strip().where(cells.notna())
     texts = texts.str.replace(
-        _NAMED_ZONE, lambda found: (found["fraction"] or "") + _ZONES[found["zone"]], regex=True
+        _NAMED_ZONE, lambda match: (match["fraction"] or "") + _ZONES[match["zone"]], regex=True
     )
     is_utc = texts.str.contains(_ZONE, na=False)
     texts = texts.str.replace(_ZONE, "", regex=True)
@@ -230,7 +230,7 @@ def _uniform(cells) -> tuple[Any, np.ndarray | None]:
         sign = np.where(zones.str.startswith("-", na=False), -1.0, 1.0)
         seconds = zones.str[1:3].astype(float) * 3600 + zones.str[3:5].astype(float) * 60
         ahead = (sign * seconds).mask(is_utc, 0.0).to_numpy(float)
-        texts = texts.str.replace(_OTHER_ZONE, lambda found: found["fraction"] or "", regex=True)
+        texts = texts.str.replace(_OTHER_ZONE, lambda match: match["fraction"] or "", regex=True)
     first = texts.dropna().iloc[0] if texts.notna().any() else ""
     if _COLON_FRACTION.match(first):
         texts = _with_point(texts)
@@ -247,7 +247,7 @@ def _uniform(cells) -> tuple[Any, np.ndarray | None]:
         )
         texts = texts.str.replace(r"(:\d\d)\.0(:\d\d)", r"\1\2.0", regex=True)
     texts = texts.str.replace(
-        r"\s*([AaPp])\.?[Mm]\.?$", lambda found: f" {found[1].upper()}M", regex=True
+        r"\s*([AaPp])\.?[Mm]\.?$", lambda match: f" {match[1].upper()}M", regex=True
     )
     return texts, ahead
 
@@ -279,9 +279,9 @@ def _minutes_and_seconds(cells, unit):
         return None
     # Below 24 without a fraction it may be hours and minutes: ask.
     if not has_fraction and unit != "mm:ss" and minutes.max() < 24:
-        found = f"'{cells.dropna().iloc[0]}' can be hours and minutes or minutes and seconds."
+        message = f"'{cells.dropna().iloc[0]}' can be hours and minutes or minutes and seconds."
         remedy = 'Say which as its unit in a channel file: time = {column = "...", unit = "mm:ss"}, or "hh:mm".'
-        raise error_at("", found, remedy)
+        raise error_at("", message, remedy)
     fraction = ("0" + parts["fraction"].fillna("")).astype(float)
     return seconds_of_clock((60.0 * minutes + seconds + fraction).to_numpy(float), 3600.0)
 
@@ -291,8 +291,8 @@ def _since_first(parsed, start=None):
     import pandas
 
     stamps = parsed.to_numpy().astype("datetime64[ns]")
-    known = stamps[~np.isnat(stamps)]
-    base = np.datetime64(start, "ns") if start else known[0]
+    valid = stamps[~np.isnat(stamps)]
+    base = np.datetime64(start, "ns") if start else valid[0]
     seconds = (stamps - base) / np.timedelta64(1, "s")
     return np.where(pandas.isna(parsed), np.nan, seconds)
 
@@ -313,8 +313,8 @@ def _decided(readings: dict[str, np.ndarray], shown: str) -> tuple[np.ndarray, l
     first = readings[orders[0]]
     if all(np.allclose(readings[order], first, equal_nan=True) for order in orders[1:]):
         names = " or ".join(_NAMES[order] for order in orders)
-        said = f"Dates such as '{shown}' can be {names}: the same for times within the log."
-        return first, [said] if len(orders) > 1 else []
+        message = f"Dates such as '{shown}' can be {names}: the same for times within the log."
+        return first, [message] if len(orders) > 1 else []
     # With the wrong order of day and month the log leaps by weeks.
     leaps = {order: _largest_step(values) for order, values in readings.items()}
     smooth = [order for order, leap in leaps.items() if leap < 20 * DAY]
@@ -333,8 +333,8 @@ def _decided(readings: dict[str, np.ndarray], shown: str) -> tuple[np.ndarray, l
 
 
 def _largest_step(values):
-    known = finite(values)
-    return float(np.abs(np.diff(known)).max()) if len(known) > 1 else 0.0
+    numbers = finite(values)
+    return float(np.abs(np.diff(numbers)).max()) if len(numbers) > 1 else 0.0
 
 
 def seconds_of_clock(seconds: np.ndarray, period: float = DAY) -> tuple[np.ndarray, list[str]]:
@@ -353,11 +353,11 @@ def seconds_of_clock(seconds: np.ndarray, period: float = DAY) -> tuple[np.ndarr
     [86398.0, 86399.0, 86400.0, 86401.0]
     """
     # A fall by more than half a period is a passage of its end, a rise as large a row out of order.
-    known = np.flatnonzero(np.isfinite(seconds))
-    steps = np.diff(seconds[known])
+    valid = np.flatnonzero(np.isfinite(seconds))
+    steps = np.diff(seconds[valid])
     days = np.cumsum((steps < -0.5 * period).astype(float) - (steps > 0.5 * period))
     times = seconds.copy()
-    times[known[1:]] += period * days
+    times[valid[1:]] += period * days
     passed = int(days[-1]) if len(days) else 0
     turn = "midnight" if period == DAY else "the hour"
     return times, [

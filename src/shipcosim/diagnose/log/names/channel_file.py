@@ -24,18 +24,20 @@ def channel_file(source: str, proposal: Proposal, remarks: Iterable[str] = ()) -
     lines = [
         f"# Proposed by `shipcosim channels` for {_line(source)}. Confirm or correct the guesses."
     ]
-    lines += [f"# {_line(said)}" for said in remarks]
+    lines += [f"# {_line(remark)}" for remark in remarks]
     if form := _entry(proposal.form):
         lines += ["", f"file = {form}"]
     lines.append("")
     width = max((len(_key(guess.role)) for guess in proposal.used), default=0)
     for guess in proposal.used:
-        told = "; ".join(
-            filter(None, (f"guess: {guess.why}" if guess.is_guess else "", *guess.said))
+        reasons = "; ".join(
+            filter(None, (f"guess: {guess.why}" if guess.is_guess else "", *guess.notes))
         )
         plain = guess.channel.model_dump(exclude_defaults=True)
         entry = _text(guess.channel.column) if set(plain) == {"column"} else _entry(guess.channel)
-        lines.append(f"{_key(guess.role):{width}} = {entry}{f'  # {_line(told)}' if told else ''}")
+        lines.append(
+            f"{_key(guess.role):{width}} = {entry}{f'  # {_line(reasons)}' if reasons else ''}"
+        )
     if proposal.unused:
         lines += ["", "# Not used:"]
         lines += [f"# {_line(guess.column)}: {_line(guess.why)}" for guess in proposal.unused]
@@ -54,10 +56,10 @@ def _key(role: str) -> str:
 
 def _entry(record: BaseModel) -> str:
     """Entries of a record that differ from its defaults, as an inline table."""
-    told = record.model_dump(exclude_defaults=True)
+    entries = record.model_dump(exclude_defaults=True)
     return (
-        "{" + ", ".join(f"{key} = {_text(value)}" for key, value in told.items()) + "}"
-        if told
+        "{" + ", ".join(f"{key} = {_text(value)}" for key, value in entries.items()) + "}"
+        if entries
         else ""
     )
 

@@ -30,7 +30,7 @@ def time_of(
     log : LogColumns
         The file.
     form : FileLayout
-        What was said of it.
+        What a channel file says of the form of the log.
 
     Raises
     ------
@@ -41,9 +41,9 @@ def time_of(
     # best usable guess, or any column of texts that are stamps.
     if pair := _seconds_and_nanoseconds(log):
         return pair, [replace(g, role="", why=f"'{pair.column}' is the time") for g in guesses]
-    usable = [one for guess in guesses if (one := _usable(guess, log, form))]
+    usable = [clock for guess in guesses if (clock := _usable(guess, log, form))]
     if not usable:
-        usable = [one for name in log.values if (one := _stamps(name, log, form))]
+        usable = [clock for name in log.values if (clock := _stamps(name, log, form))]
     # Exact names first, UTC before local time, and clock times before dates.
     usable.sort(
         key=lambda g: (
@@ -72,8 +72,8 @@ def _seconds_and_nanoseconds(log):
 
 
 def _all_between(values, least, most):
-    known = finite(values)
-    return bool(len(known)) and known.min() >= least and known.max() < most
+    numbers = finite(values)
+    return bool(len(numbers)) and numbers.min() >= least and numbers.max() < most
 
 
 def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
@@ -91,8 +91,8 @@ def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
     if guess.channel.nanoseconds:
         return guess
     # A constant column is no time, unless its name is exactly that.
-    known = finite(values)
-    if len(np.unique(known[:1000])) < 2 and len(np.unique(known)) < 2:
+    numbers = finite(values)
+    if len(np.unique(numbers[:1000])) < 2 and len(np.unique(numbers)) < 2:
         return None if guess.rank > EXACT else guess
     # Counts since 1970 are recognised by their size, whatever the name.
     if epoch_unit(values):
@@ -100,7 +100,7 @@ def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
     if guess.rank == EXACT:
         return guess
     # Clock times as numbers need a name that suggests a clock.
-    if is_clock_number(known) and set(words_of(guess.column)) & {
+    if is_clock_number(numbers) and set(words_of(guess.column)) & {
         "utc",
         "hhmmss",
         "clock",
@@ -113,7 +113,7 @@ def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
     if _is_date(guess.column):
         return None
     # Without a stated unit, choose one in which the rows are a usual step apart.
-    step = usual_rise(known, 0.0)
+    step = usual_rise(numbers, 0.0)
     if step == 0.0 or _STEPS[0] <= step <= _STEPS[1]:
         return guess
     unit = next((u for u, size in _UNITS.items() if _STEPS[0] <= step * size <= _STEPS[1]), None)
@@ -133,10 +133,10 @@ def _stamps(
     """A column of texts that are stamps, with the column of dates beside it where they are clock times."""
     # Try the first, middle and last text before reading all of them.
     values = log.values[name]
-    told = [value for value in values if value is not None] if values.dtype.kind == "O" else []
-    if not told or not any(char.isdigit() for char in str(told[0])):
+    filled = [value for value in values if value is not None] if values.dtype.kind == "O" else []
+    if not filled or not any(char.isdigit() for char in str(filled[0])):
         return None
-    sample = np.array([told[0], told[len(told) // 2], told[-1]], object)
+    sample = np.array([filled[0], filled[len(filled) // 2], filled[-1]], object)
     try:
         if seconds_of(sample, form.dates) is None:
             return None
@@ -146,14 +146,18 @@ def _stamps(
     # Stamps of whole seconds take the milliseconds from a column of their own.
     for other, rest in log.values.items():
         is_rest = words_of(other) in (("ms",), ("milliseconds",)) and rest.dtype.kind == "f"
-        if is_rest and "." not in str(told[0]).rpartition(":")[2] and _all_between(rest, 0.0, 1e3):
+        if (
+            is_rest
+            and "." not in str(filled[0]).rpartition(":")[2]
+            and _all_between(rest, 0.0, 1e3)
+        ):
             guess = guess.read_as({"milliseconds": other})
     # Clock times without a date take the date from a column beside it.
-    is_clock = ":" in str(told[0]) and len(str(told[0]).split(":")[0].strip()) <= 2
+    is_clock = ":" in str(filled[0]) and len(str(filled[0]).split(":")[0].strip()) <= 2
     dates = [other for other in log.values if _is_date(other) and other != name]
     if is_clock and dates:
         guess = guess.read_as({"date": dates[0]})
     # A constant date without a clock time is no time.
-    elif ":" not in str(told[0]) and len(set(map(str, sample))) < 2:
+    elif ":" not in str(filled[0]) and len(set(map(str, sample))) < 2:
         return None
     return replace(guess, rank=min(guess.rank, SURE), why="")

@@ -66,7 +66,7 @@ def _unit_by(time, rate, change, units):
     if len(time) < 4 * _SPANS[0] or not (steps > 0.0).all():
         return None
     # Integral of the reported rate by the trapezium rule.
-    told = running_sums(0.5 * (rate[1:] + rate[:-1]) * steps)
+    integral = running_sums(0.5 * (rate[1:] + rate[:-1]) * steps)
     best = 0.0
     ratio = None
     # Compare changes over several spans: short ones drown in noise,
@@ -74,14 +74,14 @@ def _unit_by(time, rate, change, units):
     for k in _SPANS:
         if len(time) < 4 * k:
             break
-        x, y = _without_leaps(told[k:] - told[:-k], change(k))
+        x, y = _without_leaps(integral[k:] - integral[:-k], change(k))
         norm = float(np.sqrt((x @ x) * (y @ y)))
         # The unit is the same where a rate is counted the other way.
-        alike = abs(x @ y)
-        if norm > 0.0 and alike / norm > max(best, _ALIKE):
-            best = alike / norm
+        agreement = abs(x @ y)
+        if norm > 0.0 and agreement / norm > max(best, _ALIKE):
+            best = agreement / norm
             # Ratio of the energy to the cross product: slope of the inverse regression.
-            ratio = (y @ y) / alike
+            ratio = (y @ y) / agreement
     if ratio is None:
         return None
     # Nearest unit on a logarithmic scale; none if the ratio fits none of them.
@@ -146,5 +146,7 @@ def frame_of_angle(
         is_clear = abs(best) > _CLEAR and abs(np.degrees(np.angle(best))) < _BESIDE
         (clear if is_clear else unclear).append((name, abs(best), abs(np.degrees(np.angle(best)))))
     # Accept a reading only if it alone is clear, and all others clearly fail.
-    others_out = all(length < _UNCLEAR or beside > _BESIDE for _, length, beside in unclear)
+    others_out = all(
+        length < _UNCLEAR or other_length > _BESIDE for _, length, other_length in unclear
+    )
     return clear[0][0] if len(clear) == 1 and others_out else None

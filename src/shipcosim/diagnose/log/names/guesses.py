@@ -48,8 +48,8 @@ class Guess:
         ``"command"``, ``"feedback"`` or empty.
     unit : str
         As the header or the name states it; empty where they do not.
-    said : tuple of str
-        What is to be said if it is used.
+    notes : tuple of str
+        Remarks to make if it is used.
     """
 
     column: str
@@ -59,7 +59,7 @@ class Guess:
     why: str = ""
     kind: str = ""
     unit: str = ""
-    said: tuple[str, ...] = field(default=())
+    notes: tuple[str, ...] = field(default=())
 
     def read_as(self, settings: Mapping[str, Any], **more: Any) -> Guess:
         """Guess for this column with other settings of its channel and other changes."""
@@ -103,26 +103,26 @@ def guesses_of(column: str, log: LogColumns, thrusters: Thrusters | None) -> lis
         return [Guess(column, why="it has no name")]
     # Names of thrusters come before other meanings, unless they lead to no thruster.
     if drive := drive_of(words, stated, values):
-        found = _of_thruster(column, drive, stated, thrusters)
-        if found[0].role or meaning_of(words).role is None:
-            return found
+        guesses = _of_thruster(column, drive, stated, thrusters)
+        if guesses[0].role or meaning_of(words).role is None:
+            return guesses
     # A name of a thruster may end in a unit, with the thruster's number behind it.
     number = words[-1:] if words[-1].isdigit() else ()
     for target in () if stated else _THRUSTER_UNITS.values():
         rest, suffix = unit_after((*number, *words[: len(words) - len(number)]), target)
         if suffix and (drive := drive_of(rest, suffix, values)):
-            found = _of_thruster(column, drive, suffix, thrusters)
-            if found[0].role:
+            guesses = _of_thruster(column, drive, suffix, thrusters)
+            if guesses[0].role:
                 of_name = {"unit": suffix}
-                return [replace(g, channel=g.channel.model_copy(update=of_name)) for g in found]
+                return [replace(g, channel=g.channel.model_copy(update=of_name)) for g in guesses]
     # A number in a name counts sensors of a kind; with several of them each is a guess.
-    found = _by_meaning(column, words, stated, values)
+    guesses = _by_meaning(column, words, stated, values)
     bare = tuple(word for word in words if not word.isdigit())
-    if found.is_guess and bare != words and not _FACTOR.search(column):
+    if guesses.is_guess and bare != words and not _FACTOR.search(column):
         again = _by_meaning(column, bare, stated, values)
         if again.role not in ("", "time") and not again.is_guess:
             return [again]
-    return [found]
+    return [guesses]
 
 
 def _is_empty(values):
@@ -206,14 +206,14 @@ def _of_thruster(
         return [Guess(column, why=_needs_a_map(column, drive.quantity, names[0], thrusters))]
     if not drive.quantity:
         return [Guess(column, why=f"it says no quantity of {names[0]}: rpm, azimuth or thrust")]
-    found = []
+    guesses = []
     # Each possible thruster must be driven by this quantity, in a unit that converts.
     for name in names:
         role = f"{name}_{drive.quantity}"
         unit = _THRUSTER_UNITS[drive.quantity]
         wanted = (thrusters or {}).get(name, (drive.quantity,))
         if drive.quantity not in wanted:
-            found.append(
+            guesses.append(
                 Guess(
                     column,
                     why=f"the system drives {name} by {' and '.join(wanted) or 'nothing logged'}",
@@ -221,7 +221,7 @@ def _of_thruster(
             )
             continue
         if stated and not converts(stated, unit):
-            found.append(
+            guesses.append(
                 Guess(column, why=f"its unit '{stated}' is none of {role}, which is in {unit}")
             )
             continue
@@ -229,12 +229,12 @@ def _of_thruster(
         if not why and "rpm" in wanted and "rudder" in words_of(column):
             why = "a rudder's angle turns the ship the other way than an azimuth thruster's"
         channel = Channel(column=column)
-        said = ("a command; there is no feedback",) if drive.kind == "command" else ()
-        found.append(
-            Guess(column, role, channel, GUESS if why else SURE, why, drive.kind, stated, said)
+        notes = ("a command; there is no feedback",) if drive.kind == "command" else ()
+        guesses.append(
+            Guess(column, role, channel, GUESS if why else SURE, why, drive.kind, stated, notes)
         )
-    used = [guess for guess in found if guess.role]
-    return used or found[:1]
+    used = [guess for guess in guesses if guess.role]
+    return used or guesses[:1]
 
 
 def _of_a_map(column, stated, thrusters):

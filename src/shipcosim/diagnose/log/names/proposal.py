@@ -43,7 +43,7 @@ class Proposal:
     unused : tuple of Guess
         The other columns, each with why.
     form : FileLayout
-        What was said of the file.
+        What the file states of itself.
     """
 
     used: tuple[Guess, ...]
@@ -77,7 +77,7 @@ def propose(
     thrusters : mapping of str to tuple of str, optional
         Of the system, and what drives each; any without.
     form : FileLayout, optional
-        What was said of the file.
+        What the file states of itself.
     """
     form = form or FileLayout()
     # Guesses for each column alone, then the best for each role.
@@ -113,7 +113,7 @@ def _known_together(every):
     if {"u", "v", "r"} <= single:
         sure |= {"u", "v", "r"}
     roles = {"n": "north", "e": "east"}
-    found = []
+    groups = []
     for guess in every:
         words = letters[guess.column]
         letter = words[0] if len(words) == 1 else ""
@@ -123,12 +123,12 @@ def _known_together(every):
             guess = Guess(
                 guess.column, roles.get(letter, ""), Channel(column=guess.column), unit=guess.unit
             )
-        found.append(
+        groups.append(
             replace(guess, rank=min(guess.rank, SURE), why="")
             if letter in sure and guess.role
             else guess
         )
-    return found
+    return groups
 
 
 def _chosen(guesses):
@@ -143,13 +143,14 @@ def _chosen(guesses):
         )
         best = ranked[0]
         rest = ranked[1:]
-        beside = [g for g in rest if g.kind == "command" and best.kind != "command"]
-        if beside and best.rank != EXACT:
+        commands = [g for g in rest if g.kind == "command" and best.kind != "command"]
+        if commands and best.rank != EXACT:
             best = replace(
-                best, said=(f"measured; the command beside it, '{beside[0].column}', is not used",)
+                best,
+                notes=(f"measured; the command beside it, '{commands[0].column}', is not used",),
             )
         elif best.kind == "command" and rest:
-            best = replace(best, said=())
+            best = replace(best, notes=())
         # Two equal candidates make a guess of either.
         same = [g for g in rest if g.rank == best.rank == SURE and g.kind == best.kind]
         if same:
@@ -158,7 +159,7 @@ def _chosen(guesses):
         for guess in rest:
             why = (
                 "a command, and there is what was measured"
-                if guess in beside
+                if guess in commands
                 else f"'{best.column}' is the {role}"
             )
             left.append(replace(guess, role="", why=why))
@@ -246,9 +247,9 @@ def _with_hemispheres(chosen, log, left):
             signs = hemisphere_signs(log.values[name], role)
             # An A alone behind a number may mean that it is active.
             if signs is not None and (1.0 in signs or "F" not in sides_of(role)):
-                said = () if role in LARGEST else (f"its side stands in '{name}'",)
-                chosen[role] = guess.read_as({"hemisphere": name}, said=(*guess.said, *said))
-                left = [one for one in left if one.column != name]
+                notes = () if role in LARGEST else (f"its side stands in '{name}'",)
+                chosen[role] = guess.read_as({"hemisphere": name}, notes=(*guess.notes, *notes))
+                left = [other for other in left if other.column != name]
                 break
     return left
 

@@ -62,14 +62,14 @@ def drive_of(words: tuple[str, ...], unit: str, values: np.ndarray) -> Drive | N
     True
     """
     # Command or feedback, and the words without those.
-    told = vocabulary()["words"]
-    kind = next((k for k in ("feedback", "command") if any(w in told[k] for w in words)), "")
+    terms = vocabulary()["words"]
+    kind = next((k for k in ("feedback", "command") if any(w in terms[k] for w in words)), "")
     rest = [
         w
         for w in words
-        if w not in told["command"] and w not in told["feedback"] and w not in told["filler"]
+        if w not in terms["command"] and w not in terms["feedback"] and w not in terms["filler"]
     ]
-    if any(word in told["other"] for word in rest):
+    if any(word in terms["other"] for word in rest):
         return None
     generic = set(vocabulary()["thruster"]["generic"]["words"])
     # Quantity and place; the name must clearly be one of a thruster.
@@ -79,8 +79,8 @@ def drive_of(words: tuple[str, ...], unit: str, values: np.ndarray) -> Drive | N
     place = frozenset(_places().get(w, w) for w in rest if w not in generic)
     is_named = len(rest) > len(place) or word in _SURE or bool(set(rest) & set(_places()))
     is_named = is_named or bool(quantity and rest and all(w.isdigit() for w in rest))
-    known = set(_places().values())
-    if not is_named or any(w not in known and not w.isdigit() and len(w) > 1 for w in place):
+    places = set(_places().values())
+    if not is_named or any(w not in places and not w.isdigit() and len(w) > 1 for w in place):
         return None
     if not quantity and not (place or generic & set(rest)):
         return None
@@ -159,10 +159,10 @@ def _places() -> dict[str, str]:
 @cache
 def _phrases() -> list[tuple[tuple[str, ...], str]]:
     """Words that name a quantity of a thruster, those of many words first."""
-    told = vocabulary()["thruster"]
+    terms = vocabulary()["thruster"]
     quantities = ("rpm", "azimuth", "thrust", "pwm", "percent")
     phrases = sorted(
-        (words_of(phrase), quantity) for quantity in quantities for phrase in told[quantity]
+        (words_of(phrase), quantity) for quantity in quantities for phrase in terms[quantity]
     )
     # The word azimuth also names the thruster: beside another quantity it is none.
     return sorted(phrases, key=lambda pair: (-len(pair[0]), pair == (("azimuth",), "azimuth")))
@@ -181,20 +181,20 @@ def _quantity(words):
 def _by_values(quantity, word, unit, values):
     """The quantity by its unit and its numbers besides."""
     # A stated unit decides; without a quantity the range of the values does.
-    known = finite(values) if values.dtype.kind == "f" else np.empty(0)
+    numbers = finite(values) if values.dtype.kind == "f" else np.empty(0)
     if unit in OF_A_MAP:
         return OF_A_MAP[unit], ""
     # In rpm the word azimuth is the kind of thruster.
     is_kind = word == "azimuth" and unit_for(unit, "rpm") == "rpm"
     if is_kind or (quantity == "" and unit and converts(unit, "rpm")):
         return "rpm", ""
-    inside = len(known) and known.min() >= _PWM[0] and known.max() <= _PWM[1]
+    inside = len(numbers) and numbers.min() >= _PWM[0] and numbers.max() <= _PWM[1]
     if quantity == "" and inside:
         return "pwm", ""
-    if quantity == "" and len(known) and np.abs(known).max() <= 100.0:
+    if quantity == "" and len(numbers) and np.abs(numbers).max() <= 100.0:
         return "percent", ""
     if word == "revolutions" and not unit:
-        is_fast = len(known) and np.abs(known).max() > _FASTEST
+        is_fast = len(numbers) and np.abs(numbers).max() > _FASTEST
         return (
             quantity,
             "" if is_fast else "revolutions a second, as Signal K has them, or a minute",

@@ -27,20 +27,20 @@ def name_and_unit(header: str) -> tuple[str, str]:
     (('surge', 'm/s'), ('time', 's'), ('heading (true)', ''))
     """
     # A name that we have written in quotes is taken as it is.
-    if (found := _BRACKETS.match(header.strip())) and (name := name_in(found["name"])) != found[
+    if (match := _BRACKETS.match(header.strip())) and (name := name_in(match["name"])) != match[
         "name"
     ]:
-        return name, found["unit"].strip()
+        return name, match["unit"].strip()
     # Brackets are the standard form. In other forms the last part must be the spelling of a unit.
     header = header.strip().strip("'\"").strip()
-    if found := _BRACKETS.match(header):
-        return found["name"].strip(), found["unit"].strip()
-    if found := _OTHERS.match(header):
+    if match := _BRACKETS.match(header):
+        return match["name"].strip(), match["unit"].strip()
+    if match := _OTHERS.match(header):
         unit = next(
-            text for text in found.group("a", "b", "c", "d", "e") if text is not None
+            text for text in match.group("a", "b", "c", "d", "e") if text is not None
         ).strip()
-        if is_unit(unit) and found["name"].strip():
-            return found["name"].strip(), unit
+        if is_unit(unit) and match["name"].strip():
+            return match["name"].strip(), unit
     return header, ""
 
 
@@ -76,7 +76,7 @@ def unit_for(spelling: str, target: str) -> str:
         if spelled_unit(unit) is not None
     ]
     for unit in options:
-        if wanted is None or _alike(spelled_unit(unit), wanted):
+        if wanted is None or _are_equal(spelled_unit(unit), wanted):
             return unit
     return options[-1] if options else _spellings().get(_plain(spelling), (spelling,))[0]
 
@@ -89,10 +89,10 @@ def converts(unit: str, target: str) -> bool:
     >>> converts("rps", "rpm"), converts("knots", "deg")
     (True, False)
     """
-    return _alike(spelled_unit(unit_for(unit, target)), spelled_unit(target))
+    return _are_equal(spelled_unit(unit_for(unit, target)), spelled_unit(target))
 
 
-def _alike(unit: Unit | None, other: Unit | None) -> bool:
+def _are_equal(unit: Unit | None, other: Unit | None) -> bool:
     """True if two units that are defined convert into each other."""
     if unit is None or other is None:
         return False
@@ -122,7 +122,7 @@ def unit_after(words: tuple[str, ...], target: str) -> tuple[tuple[str, ...], st
             if text in _NO_SUFFIX:
                 continue
             for unit in _spellings().get(text, ()):
-                if _alike(spelled_unit(unit), wanted):
+                if _are_equal(spelled_unit(unit), wanted):
                     return words[:-count], unit
     return words, ""
 
@@ -137,9 +137,9 @@ def _plain(text: str) -> str:
 @cache
 def _spellings() -> dict[str, tuple[str, ...]]:
     """Units by every spelling of names.toml; some stand for several."""
-    found: dict[str, tuple[str, ...]] = {}
+    units: dict[str, tuple[str, ...]] = {}
     for unit, spellings in vocabulary()["units"].items():
         for spelling in (unit.lower(), *spellings):
-            if unit not in found.get(spelling, ()):
-                found[spelling] = (*found.get(spelling, ()), unit)
-    return found
+            if unit not in units.get(spelling, ()):
+                units[spelling] = (*units.get(spelling, ()), unit)
+    return units

@@ -31,7 +31,7 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: FileLayout) -> None
     log : LogColumns
         The file.
     form : FileLayout
-        What was said of it.
+        What a channel file says of the form of the log.
     """
     # Positions first, as heading, axes and speeds are judged by them.
     _settle_degrees(chosen, log)
@@ -52,9 +52,9 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: FileLayout) -> None
     for role, guess in list(chosen.items()):
         is_direction = role in ("wind_from", "true_wind_from", "course_over_ground")
         if (is_direction or role.endswith("_azimuth")) and _is_open(chosen, role):
-            known = np.abs(_finite(log.values[guess.column]))
+            sizes = np.abs(_finite(log.values[guess.column]))
             most = _DEGREES if is_direction else np.pi + 0.01
-            if len(known) and 0.0 < known.max() <= most:
+            if len(sizes) and 0.0 < sizes.max() <= most:
                 _guess(chosen, role, "rad", "no unit is stated: rad or deg")
 
 
@@ -62,14 +62,14 @@ def _settle_degrees(chosen, log):
     """Whole numbers beyond all degrees as ten millionths of them, as autopilots write."""
     for role, largest in LARGEST.items():
         guess = chosen.get(role)
-        known = (
+        sizes = (
             np.abs(_finite(log.values[guess.column])) if guess and not guess.unit else np.empty(0)
         )
         # Integers far beyond any degrees; latitude and longitude share the unit.
-        beyond = len(known) and np.median(known) > 1e4 * largest and known.max() <= 1e7 * largest
+        beyond = len(sizes) and np.median(sizes) > 1e4 * largest and sizes.max() <= 1e7 * largest
         other = chosen.get("longitude" if role == "latitude" else "latitude")
-        follows = len(known) and other is not None and other.channel.unit == TEN_MILLIONTHS
-        if (beyond or follows) and (known == np.floor(known)).all():
+        follows = len(sizes) and other is not None and other.channel.unit == TEN_MILLIONTHS
+        if (beyond or follows) and (sizes == np.floor(sizes)).all():
             _guess(
                 chosen,
                 role,
@@ -104,10 +104,10 @@ def _guess(chosen, role, unit, why):
     chosen[role] = guess.read_as({"unit": unit}, rank=GUESS, why=why)
 
 
-def _told(chosen, role, why, **update):
+def _with_doubt(chosen, role, why, **update):
     """Settled by the log itself."""
     guess = chosen[role]
-    chosen[role] = guess.read_as(update, rank=SURE, why="", said=(*guess.said, why))
+    chosen[role] = guess.read_as(update, rank=SURE, why="", notes=(*guess.notes, why))
 
 
 def _values(chosen, role, log, form) -> Any:
@@ -163,7 +163,7 @@ def _settle_heading(chosen, log, form, motion):
     if len(readings) == 1:
         return
     # Compare with the course, given positions and, if known, the drift angle.
-    found = None
+    result = None
     is_placed = all(
         chosen[role].rank < GUESS
         for role in ("north", "east", "latitude", "longitude")
@@ -175,28 +175,28 @@ def _settle_heading(chosen, log, form, motion):
             all(v is not None for v in body)
             and max(chosen[r].rank for r in ("surge", "sway")) < GUESS
         )
-        found = frame_of_angle(
+        result = frame_of_angle(
             motion[0],
             motion[1],
             motion[2],
             readings,
             np.arctan2(body[1], body[0]) if is_known else None,
         )
-    if found is None:
+    if result is None:
         if is_open and len(units) == 2:
             _guess(chosen, "heading", "rad", _RAD_OR_DEG)
         return
     # Write the reading into the channel: unit, frame of the quaternion, or sign and offset.
-    unit, frame = found
+    unit, frame = result
     counted = "clockwise from north" if frame == "NED" else "anticlockwise from east"
-    said = f"{f'in {unit} and ' if is_open else ''}{counted}, as the course says"
+    message = f"{f'in {unit} and ' if is_open else ''}{counted}, as the course says"
     update = {} if not is_open else {"unit": unit}
     if guess.channel.quaternion is not None:
         update = {"frame": frame}
-        said = f"the quaternion is of {frame}, as the course says"
+        message = f"the quaternion is of {frame}, as the course says"
     elif frame == "ENU":
         update |= {"sign": -1, "offset": 90.0 if unit == "deg" else np.pi / 2}
-    _told(chosen, "heading", said, **update)
+    _with_doubt(chosen, "heading", message, **update)
 
 
 def are_axes_open(chosen: Mapping[str, Guess]) -> bool:
@@ -223,14 +223,14 @@ def _settle_axes(chosen, log, form, motion):
     heading = _values(chosen, "heading", log, form)
     time, x, y = motion
     readings = {"NED": heading, "ENU": 90.0 - heading}
-    found = frame_of_angle(time, x, y, readings)
-    if found == "NED":
+    frame = frame_of_angle(time, x, y, readings)
+    if frame == "NED":
         for role in ("north", "east"):
-            _told(chosen, role, "x is north and y east, as the heading says")
-    elif found == "ENU":
+            _with_doubt(chosen, role, "x is north and y east, as the heading says")
+    elif frame == "ENU":
         exchange_axes(chosen)
         for role in ("north", "east"):
-            _told(chosen, role, "x is east and y north, as the heading says")
+            _with_doubt(chosen, role, "x is east and y north, as the heading says")
 
 
 def _settle_speed(chosen, role, log, motion):
@@ -245,16 +245,16 @@ def _settle_speed(chosen, role, log, motion):
             other = {"surge": "sway", "sway": "surge", "north_velocity": "east_velocity"}.get(
                 role, "north_velocity"
             )
-            beside = (
+            other_speed = (
                 log.values[chosen[other].column] if _is_open(chosen, other) else np.zeros_like(raw)
             )
-            speed = np.hypot(raw, beside) if beside.dtype.kind == "f" else np.abs(raw)
+            speed = np.hypot(raw, other_speed) if other_speed.dtype.kind == "f" else np.abs(raw)
         unit = unit_of_speed(motion[0], motion[1], motion[2], speed)
     if unit is not None:
         guess = chosen[role]
         # The role's own unit needs no entry in the channel.
         settings = {} if unit == "m/s" else {"unit": unit}
-        chosen[role] = guess.read_as(settings, said=(*guess.said, f"in {unit}, as positions say"))
+        chosen[role] = guess.read_as(settings, notes=(*guess.notes, f"in {unit}, as positions say"))
     elif role in _IN_KNOTS:
         _guess(chosen, role, "kn", "no unit is stated: kn or m/s")
 
@@ -282,5 +282,5 @@ def _settle_rate(chosen, log, form, motion):
         usual = "deg/min" if is_rot else "rad/s" if is_ros else ROLES["yaw_rate"].unit
         _guess(chosen, "yaw_rate", usual, "no unit is stated")
         return
-    said = (*guess.said, f"in {unit}, as the heading says")
-    chosen["yaw_rate"] = guess.read_as({"unit": unit}, said=said)
+    notes = (*guess.notes, f"in {unit}, as the heading says")
+    chosen["yaw_rate"] = guess.read_as({"unit": unit}, notes=notes)

@@ -54,10 +54,10 @@ def words_of(name: str) -> tuple[str, ...]:
     name = name.replace("StB", "Stb")  # German for starboard; the capital begins no word
     if not name.isascii():
         parts = vocabulary()["words"]["parts"]
-        name = word_parts().sub(lambda found: f" {parts[found[0]]} ", name)
+        name = word_parts().sub(lambda match: f" {parts[match[0]]} ", name)
     name = _PERCENT.sub(" percent ", name)
-    found = [word.lower() for part in _HUMP.split(name) for word in _WORDS.findall(part)]
-    return tuple(part for word in found for part in same.get(word, word).split())
+    words = [word.lower() for part in _HUMP.split(name) for word in _WORDS.findall(part)]
+    return tuple(part for word in words for part in same.get(word, word).split())
 
 
 @cache
@@ -79,25 +79,25 @@ def meaning_of(words: tuple[str, ...]) -> Meaning:
     >>> meaning_of(words_of("surge_dot")).reason
     'a rate of change'
     """
-    told = vocabulary()["words"]
-    fillers = set(told["filler"])
+    terms = vocabulary()["words"]
+    fillers = set(terms["filler"])
     whole = " ".join(words)
     # The whole name first, with or without filler words.
     for phrase in (whole, " ".join(w for w in words if w not in fillers)):
-        if found := _phrases().get(phrase):
-            return found
+        if meaning := _phrases().get(phrase):
+            return meaning
     for word in words:
-        if word in told["other"]:
-            return Meaning(None, reason=told["other"][word])
+        if word in terms["other"]:
+            return Meaning(None, reason=terms["other"][word])
     # Set points are no measurements, even where the rest of the name is a role.
-    if any(word in told["command"] for word in words):
-        rest = tuple(w for w in words if w not in told["command"])
+    if any(word in terms["command"] for word in words):
+        rest = tuple(w for w in words if w not in terms["command"])
         if rest and meaning_of(rest).role:
             return Meaning(None, reason="a set point, not a measurement")
         return Meaning(None)
-    plain = tuple(w for w in words if w not in fillers and w not in told["feedback"])
-    if found := _phrases().get(" ".join(plain)):
-        return found
+    plain = tuple(w for w in words if w not in fillers and w not in terms["feedback"])
+    if meaning := _phrases().get(" ".join(plain)):
+        return meaning
     return _within(plain)
 
 
@@ -107,27 +107,27 @@ def _within(words):
     for length in range(len(words) - 1, 0, -1):
         for start in range(len(words) - length + 1):
             phrase = " ".join(words[start : start + length])
-            found = _phrases().get(phrase)
-            if found and len(phrase) >= _SHORTEST and (found.role or found.reason):
-                if found.role is None:
-                    return Meaning(None, reason=found.reason)
-                if found.role == "time" or phrase in ("course", "position", "speed"):
+            meaning = _phrases().get(phrase)
+            if meaning and len(phrase) >= _SHORTEST and (meaning.role or meaning.reason):
+                if meaning.role is None:
+                    return Meaning(None, reason=meaning.reason)
+                if meaning.role == "time" or phrase in ("course", "position", "speed"):
                     continue
-                return Meaning(found.role, doubt=f"it says more than '{phrase}'")
+                return Meaning(meaning.role, doubt=f"it says more than '{phrase}'")
     return Meaning(None)
 
 
 @cache
 def _phrases() -> dict[str, Meaning]:
     """Every name of names.toml, in the words that `words_of` gives."""
-    found = {}
+    meanings = {}
     for role, entry in vocabulary().items():
         if isinstance(entry, dict) and "names" in entry:
-            found |= {" ".join(words_of(name)): Meaning(role) for name in entry["names"]}
+            meanings |= {" ".join(words_of(name)): Meaning(role) for name in entry["names"]}
     for role, entry in vocabulary().items():
         if isinstance(entry, dict) and "names" in entry:
             for name, doubt in entry.get("maybe", {}).items():
-                found.setdefault(" ".join(words_of(name)), Meaning(role, doubt))
+                meanings.setdefault(" ".join(words_of(name)), Meaning(role, doubt))
     for name, reason in vocabulary()["none"].items():
-        found.setdefault(" ".join(words_of(name)), Meaning(None, reason=reason))
-    return found
+        meanings.setdefault(" ".join(words_of(name)), Meaning(None, reason=reason))
+    return meanings

@@ -218,16 +218,18 @@ def changes(stated: dict[str, str]) -> list[LogMistake]:
 def _time(stated):
     # Factors are relative to the unit that is stated,
     # or to seconds. A stated unit is less often wrong.
-    own = TIME_COSTS.get(stated or "s", (1.0, 0.0))[0]
+    stated_factor = TIME_COSTS.get(stated or "s", (1.0, 0.0))[0]
     extra = STATED * bool(stated)
     for unit, (factor, cost) in TIME_COSTS.items():
-        if factor != own:
+        if factor != stated_factor:
             sentence = f"time is in {unit}, not {stated or 's'}"
-            yield LogMistake("time", cost + extra, _factor_of("time", factor / own), None, sentence)
+            yield LogMistake(
+                "time", cost + extra, _factor_of("time", factor / stated_factor), None, sentence
+            )
     # Clocks that run at a usual wrong rate, such as twice too fast.
     for factor, cost in FACTORS.items():
-        said = f"{factor:g} s pass in each logged second"
-        yield LogMistake("time", cost, _factor_of("time", factor), None, said)
+        message = f"{factor:g} s pass in each logged second"
+        yield LogMistake("time", cost, _factor_of("time", factor), None, message)
     # A clock of any rate: a narrow prior for small errors, and a wide one that costs more.
     for std, cost in ((0.05, 5.5), (1.5, 8.0)):
         yield LogMistake("time", cost, lambda reading: reading, None, CLOCK, Slab("time", std))
@@ -237,11 +239,11 @@ def _units(stated) -> Iterator[LogMistake]:
     for channels, units in CHANNEL_UNITS.items():
         # Without a stated unit the first one listed, the unit of the role, is assumed.
         given = stated.get(channels[0])
-        own = given if given in units else next(iter(units))
+        stated_unit = given if given in units else next(iter(units))
         extra = STATED * bool(given)
         for unit in units:
-            if unit != own:
-                label = mislabel_of_unit(channels, unit, own)
+            if unit != stated_unit:
+                label = mislabel_of_unit(channels, unit, stated_unit)
                 name = FACTOR_OF[channels]
                 yield _label(
                     f"unit of {name}",
@@ -276,19 +278,21 @@ def _freed(reading, what):
 
 def _odd(stated) -> Iterator[LogMistake]:
     """Readings without a name or correction, which a named reading must beat."""
-    for name, what, verb, alike in ODD_UNITS:
+    for name, what, verb, similar in ODD_UNITS:
         # Units that a header states are wrong less often, so these mistakes cost more then.
         slot = f"unit of {name}"
         extra = STATED * bool(stated.get(SLOT_CHANNELS[slot][0]))
         # Usual wrong factors that belong to no unit.
         for factor, cost in ODD_FACTORS.items():
             apply = _factor_of(name, factor)
-            said = f"{what} must be multiplied by {factor:.3g}"
-            yield LogMistake(slot, cost + extra, apply, None, said, None, (alike,))
+            message = f"{what} must be multiplied by {factor:.3g}"
+            yield LogMistake(slot, cost + extra, apply, None, message, None, (similar,))
         # Factors of any size, with a wide prior of their logarithm.
-        said = f"{what} {verb} in an unknown unit, or badly scaled"
+        message = f"{what} {verb} in an unknown unit, or badly scaled"
         slab = Slab(name, 1.5)
-        yield LogMistake(slot, 8.0 + extra, lambda reading: reading, None, said, slab, (alike,))
+        yield LogMistake(
+            slot, 8.0 + extra, lambda reading: reading, None, message, slab, (similar,)
+        )
     # An angle between the grid and the heading looks the same as an error of the heading.
     yield LogMistake(
         "turned",

@@ -102,15 +102,15 @@ def fitted(
     pairs = {
         key: pair
         for key, pair in pairs.items()
-        if all(np.ptp(np.abs(np.diff(one))) for one in pair)
+        if all(np.ptp(np.abs(np.diff(series))) for series in pair)
     }
     if not pairs:
         return {}
     # Thin the rows, and thin each array only once: pairs share them.
     rows = thinned(len(time), [seen for seen, _ in pairs.values()])
-    few = {id(one): one[rows] for pair in pairs.values() for one in pair}
+    few = {id(series): series[rows] for pair in pairs.values() for series in pair}
     time = time[rows]
-    pairs = {key: (few[id(seen)], few[id(told)]) for key, (seen, told) in pairs.items()}
+    pairs = {key: (few[id(seen)], few[id(reported)]) for key, (seen, reported) in pairs.items()}
     # Rows after a gap start the filter anew. With too few other rows nothing can be fitted.
     starts = after_gaps(time)
     if (~starts).sum() < FEWEST_FITTED:
@@ -120,11 +120,11 @@ def fitted(
     best = max(fits, key=lambda key: fits[key].likelihood - alone[key])
     # Correlated residuals carry less information: divide the evidence by their correlation.
     rough = whiteness(np.column_stack([fits[best].rest.real, fits[best].rest.imag][:axes]))
-    found = {
+    relations = {
         key: _relation(fit, (fit.likelihood - alone[key]) / rough, rough)
         for key, fit in fits.items()
     }
-    return found if found[best].evidence > HEARD else {}
+    return relations if relations[best].evidence > HEARD else {}
 
 
 def thinned(count: int, series: Sequence[np.ndarray]) -> slice:
@@ -134,7 +134,7 @@ def thinned(count: int, series: Sequence[np.ndarray]) -> slice:
     stride = max(1, math.ceil(count / MOST_FITTED))
     while (
         count / stride > 4 * FEWEST_FITTED
-        and min(np.mean(np.diff(one[::stride]) != 0.0) for one in series) < MOST_CHANGE
+        and min(np.mean(np.diff(each[::stride]) != 0.0) for each in series) < MOST_CHANGE
     ):
         stride *= 2
     return slice(None, None, stride)
@@ -148,63 +148,65 @@ def likeliest_fits(
     `drafts`: a filter for each noise that is tried; the others as of `fitted`.
     """
     # Whiten each array only once, as columns of one matrix.
-    columns = {id(one): one for pair in pairs.values() for one in pair}
+    columns = {id(series): series for pair in pairs.values() for series in pair}
     stacked = np.stack(list(columns.values()), axis=1)
     place = {name: number for number, name in enumerate(columns)}
     fits: dict = {}
     # Noise of the reported channel itself, from differences of neighbouring rows.
-    noises = {id(told): _noise_of_rows(told, axes) for _, told in pairs.values()}
+    noises = {id(reported): _noise_of_rows(reported, axes) for _, reported in pairs.values()}
     # Likelihood of each observed channel without any explanation, under its best noise ratio.
     alone = dict.fromkeys((id(seen) for seen, _ in pairs.values()), -np.inf)
     # Try each ratio of wander to noise, and keep for each pair the one with the largest likelihood.
     for draft in drafts:
-        known = draft.gains < 1.0
+        settled = draft.gains < 1.0
         # The Jacobian of the whitening enters the likelihood, so that ratios can be compared.
-        scale = draft.scale[known]
-        white = (draft(np.real(stacked)) + 1j * draft(np.imag(stacked)))[known]
+        scale = draft.scale[settled]
+        white = (draft(np.real(stacked)) + 1j * draft(np.imag(stacked)))[settled]
         offset = -axes * float(np.sum(np.log(scale)))
         # White noise of a rate adds up to a random walk. This is the variance
         # that it has after the whitening, by the median gain of the filter.
-        gain = float(np.median(draft.gains[known]))
+        gain = float(np.median(draft.gains[settled]))
         adds_up = 1.0 / (gain * (2.0 - gain) * np.median(scale) ** 2)
-        own = [white[:, place[id(one)]] for one in pairs.get(labelled, ())]
+        labelled_white = [white[:, place[id(series)]] for series in pairs.get(labelled, ())]
         for name in alone:
             alone[name] = max(alone[name], _likelihood(white[:, place[name]], axes)[0] + offset)
-        for key, (seen, told) in pairs.items():
-            fit = _fit(white[:, place[id(seen)]], white[:, place[id(told)]], axes, offset)
+        for key, (seen, logged) in pairs.items():
+            fit = _fit(white[:, place[id(seen)]], white[:, place[id(logged)]], axes, offset)
             if key not in fits or fit.likelihood > fits[key].likelihood:
-                rows_noise = axes * adds_up * abs(fit.factor) ** 2 * noises[id(told)]
+                rows_noise = axes * adds_up * abs(fit.factor) ** 2 * noises[id(logged)]
                 # What the labels leave can be held against it where both tell of the same rows.
-                is_same = bool(own) and seen is pairs[labelled][0]
+                is_same = bool(labelled_white) and seen is pairs[labelled][0]
                 fits[key] = replace(
                     fit,
-                    as_labelled=own[0] - own[1] if is_same else None,
+                    as_labelled=labelled_white[0] - labelled_white[1] if is_same else None,
                     wander=axes * adds_up * draft.ratio * fit.variance,
                     rows_noise=rows_noise,
                 )
     return fits, {key: alone[id(seen)] for key, (seen, _) in pairs.items()}
 
 
-def _fit(seen, told, axes, offset):
+def _fit(seen, reported, axes, offset):
     """The factor with the smallest residual of white rows; outliers count little.
 
     `offset`: of the logarithm of the likelihood, by the whitening.
     """
     # Iteratively reweighted least squares with Huber weights:
     # outliers count as little as their distance requires.
-    weights = np.ones(len(told))
+    weights = np.ones(len(reported))
     for _ in range(ROBUST_ROUNDS):
-        factor = np.vdot(weights * told, seen) / max(np.vdot(weights * told, told).real, 1e-300)
-        off = np.abs(seen - factor * told)
+        factor = np.vdot(weights * reported, seen) / max(
+            np.vdot(weights * reported, reported).real, 1e-300
+        )
+        off = np.abs(seen - factor * reported)
         weights = np.minimum(1.0, FIT_CLIP * _spread(off, axes) / np.maximum(off, 1e-300))
-    likelihood, variance = _likelihood(seen - factor * told, axes)
-    return RowsFit(seen, told, complex(factor), variance, likelihood + offset)
+    likelihood, variance = _likelihood(seen - factor * reported, axes)
+    return RowsFit(seen, reported, complex(factor), variance, likelihood + offset)
 
 
-def _noise_of_rows(told, axes):
+def _noise_of_rows(reported, axes):
     """Variance of an axis of the noise of the logged change from row to row; too large where waves are as short as rows."""
     # The fourth difference removes the motion and leaves the noise of neighbouring rows.
-    rows = np.abs(np.diff(told, n=4))
+    rows = np.abs(np.diff(reported, n=4))
     return _spread(rows, axes) ** 2 / ROUGHNESS
 
 
@@ -270,7 +272,7 @@ def _throughout(fit, windows):
     """Whether a relation holds in all of a log."""
     # Clip single rows, so that outliers do not count as a part in which the relation fails.
     clip = FIT_CLIP**2 * fit.variance
-    seen, rest = (np.minimum(np.abs(one) ** 2, clip) for one in (fit.seen, fit.rest))
+    seen, rest = (np.minimum(np.abs(residual) ** 2, clip) for residual in (fit.seen, fit.rest))
     # Noise level of the calmer windows. Residuals
     # beyond some multiple of it are unexplained motion.
     noise = float(np.quantile([rest[w].mean() for w in windows], CALM_SHARE))
@@ -283,11 +285,11 @@ def _throughout(fit, windows):
         apart = np.log(kept / np.maximum(left, usual))
         return bool(np.maximum(apart, 0.0).sum() > UNLABELLED * np.abs(apart).sum())
     # Units of what is seen: what is explained is held against what is left beyond noise; no window counts for many.
-    told = np.array([seen[w].sum() for w in windows]) - left
+    explained_by_window = np.array([seen[w].sum() for w in windows]) - left
     # Limit the weight of one window with much motion.
     most = max(
-        float(np.quantile(np.abs(told), ROBUST_SHARE)), 2.0 * FIT_CLIP**2 * noise
+        float(np.quantile(np.abs(explained_by_window), ROBUST_SHARE)), 2.0 * FIT_CLIP**2 * noise
     )  # noise itself says less
-    explained = np.clip(told, 0.0, most).sum()
+    explained = np.clip(explained_by_window, 0.0, most).sum()
     more = np.clip(left - usual, 0.0, most).sum()
     return bool(explained > THROUGHOUT * (explained + more))

@@ -97,11 +97,11 @@ def judged(
     # normalised. The largest is subtracted first to avoid overflow.
     shares = np.exp(likely - likely.max())
     shares = shares / shares.sum()
-    found = [
+    weighed = [
         Judged(c, float(p), rate)
         for c, p, (_, rate) in zip(tried, shares[:-1], scored, strict=True)
     ]
-    return sorted(found, key=lambda one: -one.probability), float(shares[-1])
+    return sorted(weighed, key=lambda each: -each.probability), float(shares[-1])
 
 
 def reading_of(combination: Sequence[LogMistake]) -> LogInterpretation:
@@ -116,9 +116,9 @@ def _combinations(changes) -> Iterator[tuple[LogMistake, ...]]:
     yield ()
     for change in changes:
         yield (change,)
-    for one, other in combinations(changes, 2):
-        if one.slot != other.slot:
-            yield one, other
+    for first, other in combinations(changes, 2):
+        if first.slot != other.slot:
+            yield first, other
 
 
 def _best_forms(evidence):
@@ -144,7 +144,7 @@ def _score(combination, evidence) -> tuple[float, tuple[float, float]]:
         return -np.inf, (1.0, 0.0)
     # Add the log-likelihoods of the relations: wind,
     # position with its angle and course, and yaw rate.
-    said = evidence.wind.likelihood(
+    score = evidence.wind.likelihood(
         reading, off_angle(relation, reading) if relation is not None else 0.0
     )
     # Deviations of the factors from what the combination
@@ -152,7 +152,7 @@ def _score(combination, evidence) -> tuple[float, tuple[float, float]]:
     slabs = {change.slab.of: change.slab.std for change in combination if change.slab}
     off = [_off_position(relation, reading, slabs), _off_rate(rate, reading, slabs)]
     if relation is not None:
-        said += (
+        score += (
             relation.evidence
             + _angle(relation, reading)
             + _ahead(relation, reading, evidence.courses)
@@ -160,14 +160,14 @@ def _score(combination, evidence) -> tuple[float, tuple[float, float]]:
     if rate is not None:
         # Whether heading and yaw rate go the same way, as evidence.
         agrees = (math.cos(rate.factor.imag) > 0.0) == (reading.rate_factor > 0.0)
-        said += rate.evidence if agrees else 0.0
+        score += rate.evidence if agrees else 0.0
     # Usual speeds and time steps tell units apart that no relation between channels does.
-    said += _usual(evidence.speed, abs(reading.velocity), USUAL_SPEED) + _usual(
+    score += _usual(evidence.speed, abs(reading.velocity), USUAL_SPEED) + _usual(
         evidence.step, reading.time, USUAL_STEP
     )
     # A free clock rate is integrated out, as it scales both relations.
-    factors, clock = _factors([one for one in off if one], slabs.get("time"))
-    return said + factors - cost, (reading.time * math.exp(clock[0]), reading.time * clock[1])
+    factors, clock = _factors([factor for factor in off if factor], slabs.get("time"))
+    return score + factors - cost, (reading.time * math.exp(clock[0]), reading.time * clock[1])
 
 
 def _usual(logged, factor, usual):

@@ -71,28 +71,32 @@ def mislabelled(log: dict, stated: dict[str, str]) -> tuple[list[Finding], dict]
     stated : dict of str to str
         Units that headers or a channel file state, by role.
     """
-    found = []
+    findings = []
     # One part at a time: the corrected log shows the next one.
     for _ in range(MOST_PARTS):
         for part in _suspected(log, stated)[:MOST_LABELS]:
             segment = refined(log, part.mislabel, part.segment)
             probability = _probability(log, part.mislabel, segment, stated)
             if probability:
-                found.append(finding_of(part.mislabel, probability, segment))
+                findings.append(finding_of(part.mislabel, probability, segment))
                 log = undone(log, part.mislabel, [segment])
                 break
         else:
             break
-    return found, log
+    return findings, log
 
 
 def _probability(log, mislabel, segment, stated):
     """Probability of a mislabel by the rows of a segment alone; 0 where they say anything else, or leave it open."""
     here = inside(log["time"], [segment])
     part = {role: values[here] for role, values in log.items()}
-    said = misread(part, stated, SEGMENT_COST).findings
-    is_it = len(said) == 1 and not said[0].alternatives and said[0].note == mislabel.sentence
-    return said[0].probability if is_it else 0.0
+    findings = misread(part, stated, SEGMENT_COST).findings
+    is_it = (
+        len(findings) == 1
+        and not findings[0].alternatives
+        and findings[0].note == mislabel.sentence
+    )
+    return findings[0].probability if is_it else 0.0
 
 
 def _suspected(log, stated) -> list[_Part]:
@@ -141,7 +145,7 @@ def _gains(
         sentence: relation.predicted(mistake.apply(LogInterpretation()))
         for sentence, mistake in mistakes.items()
     }
-    readings = {sentence: one for sentence, one in readings.items() if one != labelled}
+    readings = {sentence: reading for sentence, reading in readings.items() if reading != labelled}
     predicted = [labelled, *readings.values()]
     # Whitening is linear: whiten each form once, and take what each reading leaves of the white rows.
     names = list(relation.told)
@@ -176,8 +180,8 @@ def _noise(left, draft, axes) -> _Noise:
     axes : int
         2, or 1 where all is real.
     """
-    known = np.flatnonzero(draft.gains < 1.0)
-    windows = np.array_split(known, max(1, min(NOISE_WINDOWS, len(known) // 40)))
+    settled = np.flatnonzero(draft.gains < 1.0)
+    windows = np.array_split(settled, max(1, min(NOISE_WINDOWS, len(settled) // 40)))
     # Mean size in each window. Of the normal distribution it is sqrt(pi / 2) standard deviations
     # in a plane, sqrt(2 / pi) on a line.
     size = np.abs(left)
@@ -188,10 +192,10 @@ def _noise(left, draft, axes) -> _Noise:
     calm = np.mean(np.log(noise[: max(1, int(CALM_PARTS * len(noise)))]), axis=0)
     number = int(np.argmin(calm))
     std = float(np.quantile(noise[:, number], NOISE_SHARE))
-    score = -axes * float(calm[number] + np.mean(np.log(draft.scale[known])))
+    score = -axes * float(calm[number] + np.mean(np.log(draft.scale[settled])))
     chosen = [
-        left[w, 0 if one[0] < one[1 + number] else 1 + number]
-        for w, one in zip(windows, usual, strict=True)
+        left[w, 0 if scores[0] < scores[1 + number] else 1 + number]
+        for w, scores in zip(windows, usual, strict=True)
     ]
     rest = np.concatenate(chosen)
     return _Noise(

@@ -168,7 +168,9 @@ def evidence_of(log: dict) -> Evidence:
 def _courses(velocity, heading):
     """Mean direction of the velocity against the bow, as `Reading.course` takes it; fast rows count for more."""
     turn = np.exp(1j * np.radians(heading))
-    velocity, turn = (one[np.isfinite(velocity) & np.isfinite(turn)] for one in (velocity, turn))
+    velocity, turn = (
+        series[np.isfinite(velocity) & np.isfinite(turn)] for series in (velocity, turn)
+    )
     # Weights by speed: at low speed the direction is mostly
     # noise. The length is 1 for a constant direction.
     weights = np.abs(velocity)
@@ -230,83 +232,89 @@ def _findings(
     # Marginal probability of each mistake: the sum over all combinations that contain it.
     readings = _with_known_rates(readings)
     shares: dict[str, float] = {}
-    for one in readings:
-        for change in one.changes:
-            shares[change.sentence] = shares.get(change.sentence, 0.0) + one.probability
+    for reading in readings:
+        for change in reading.changes:
+            shares[change.sentence] = shares.get(change.sentence, 0.0) + reading.probability
     first = _likeliest(readings)
     # Sure mistakes are findings of their own, unless another cause looks the same.
     sure = [
-        said
-        for said, share in shares.items()
-        if share > READING_SURE and (not first[said].or_else or angle)
+        sentence
+        for sentence, share in shares.items()
+        if share > READING_SURE and (not first[sentence].or_else or angle)
     ]
-    found = [_named(first[said], shares[said], readings, angle) for said in sure]
-    rests, rates = _rests(readings, sure)
+    findings = [_named(first[sentence], shares[sentence], readings, angle) for sentence in sure]
+    remaining, rates = _rests(readings, sure)
     # The rest may well be nothing, and is not reported then.
-    if unexplained + rests.get((), 0.0) > LEFT_OPEN:
-        return found
-    return [*found, _left_open(rests, rates, [ANOTHER_WAY] * (unexplained > UNLIKELY_READING))]
+    if unexplained + remaining.get((), 0.0) > LEFT_OPEN:
+        return findings
+    return [
+        *findings,
+        _left_open(remaining, rates, [ANOTHER_WAY] * (unexplained > UNLIKELY_READING)),
+    ]
 
 
 def _likeliest(readings):
     """By sentence: the change of its likeliest combination."""
-    return {change.sentence: change for one in reversed(readings) for change in one.changes}
+    return {change.sentence: change for reading in reversed(readings) for change in reading.changes}
 
 
 def _rests(readings, sure):
     """What remains besides the sure mistakes, with its probability and its rate of the clock."""
     first = _likeliest(readings)
-    rests: dict[tuple[LogMistake, ...], float] = {}
+    remaining: dict[tuple[LogMistake, ...], float] = {}
     rates: dict[tuple[LogMistake, ...], float] = {}
-    for one in readings:
-        said = [change.sentence for change in one.changes]
-        if set(sure) <= set(said):
-            rest = tuple(first[sentence] for sentence in said if sentence not in sure)
-            rests[rest] = rests.get(rest, 0.0) + one.probability
-            rates.setdefault(rest, one.rate[0])
-    return rests, rates
+    for reading in readings:
+        sentences = [change.sentence for change in reading.changes]
+        if set(sure) <= set(sentences):
+            rest = tuple(first[sentence] for sentence in sentences if sentence not in sure)
+            remaining[rest] = remaining.get(rest, 0.0) + reading.probability
+            rates.setdefault(rest, reading.rate[0])
+    return remaining, rates
 
 
 def _contradiction(readings, unexplained, throughout):
     """What is left open where nothing is sure throughout a log; None where the log as labelled is not unlikely."""
-    if sum(one.probability for one in readings if not one.changes) > UNLIKELY_READING:
+    if sum(reading.probability for reading in readings if not reading.changes) > UNLIKELY_READING:
         return None
     if unexplained > 1.0 - UNLIKELY_READING:
         channels = (*POSITION, "heading", *VELOCITY, "yaw_rate")
         note = f"{CONTRADICTION}: more than two labels are wrong"
-        found = log_fault("frame", channels, note, probability=min(unexplained, MOST_SURE))
-        return replace(found, alternatives=("one of the sensors is wrong",))
+        fault = log_fault("frame", channels, note, probability=min(unexplained, MOST_SURE))
+        return replace(fault, alternatives=("one of the sensors is wrong",))
     readings = _with_known_rates(readings)
-    rests, rates = _rests(readings, [])
-    beside = [ANOTHER_WAY] * (unexplained > UNLIKELY_READING) + [IN_PART] * (not throughout)
-    return _left_open(rests, rates, beside)
+    remaining, rates = _rests(readings, [])
+    others = [ANOTHER_WAY] * (unexplained > UNLIKELY_READING) + [IN_PART] * (not throughout)
+    return _left_open(remaining, rates, others)
 
 
 def _with_known_rates(readings):
     """Readings in which a clock of any rate is one of a usual rate, where that explains as much."""
     # Likeliest combination for each set of other changes that has a clock of a usual wrong rate.
     usual = {
-        _beside_clock(one): one for one in reversed(readings) if _clock_of(one) not in (None, CLOCK)
+        _beside_clock(reading): reading
+        for reading in reversed(readings)
+        if _clock_of(reading) not in (None, CLOCK)
     }
-    found = []
+    with_rates = []
     # A free clock rate within 3 standard errors of a usual one is replaced by the usual one.
-    for one in readings:
-        other = usual.get(_beside_clock(one)) if _clock_of(one) == CLOCK else None
+    for judged_one in readings:
+        other = usual.get(_beside_clock(judged_one)) if _clock_of(judged_one) == CLOCK else None
         if (
             other is not None
-            and abs(np.log(one.rate[0] / other.rate[0])) < 3.0 * one.rate[1] / one.rate[0]
+            and abs(np.log(judged_one.rate[0] / other.rate[0]))
+            < 3.0 * judged_one.rate[1] / judged_one.rate[0]
         ):
-            one = replace(other, probability=one.probability)
-        found.append(one)
-    return sorted(found, key=lambda one: -one.probability)
+            judged_one = replace(other, probability=judged_one.probability)
+        with_rates.append(judged_one)
+    return sorted(with_rates, key=lambda entry: -entry.probability)
 
 
-def _clock_of(one):
-    return next((change.sentence for change in one.changes if change.slot == "time"), None)
+def _clock_of(reading):
+    return next((change.sentence for change in reading.changes if change.slot == "time"), None)
 
 
-def _beside_clock(one):
-    return frozenset(change.sentence for change in one.changes if change.slot != "time")
+def _beside_clock(reading):
+    return frozenset(change.sentence for change in reading.changes if change.slot != "time")
 
 
 def _named(change, probability, readings, angle):
@@ -316,11 +324,11 @@ def _named(change, probability, readings, angle):
     # An angle near half a turn is also two wrong signs.
     if change.or_else:
         both = "both have the other sign, or " if abs(angle.estimate) > 180.0 - COMPASS_OFF else ""
-        said = f"{change.sentence}; it looks the same if {both}{' or '.join(change.or_else)}"
+        message = f"{change.sentence}; it looks the same if {both}{' or '.join(change.or_else)}"
         return replace(
             finding_of(turned_grid(angle.estimate), probability),
             parameters={"angle": angle},
-            note=said,
+            note=message,
         )
     if change.slot == "time":
         return replace(_clock(change, readings), probability=probability)
@@ -334,26 +342,26 @@ def _named(change, probability, readings, angle):
 
 
 def _clock(change, readings):
-    rate, std = next(one.rate for one in readings if change in one.changes)
+    rate, std = next(reading.rate for reading in readings if change in reading.changes)
     rates = {"rate": ParameterEstimate(float(rate), float(std), "1")}
     return log_fault("clock", ("time",), change.sentence, parameters=rates)
 
 
-def _left_open(rests, rates, besides):
+def _left_open(remaining, rates, besides):
     """One finding of readings that explain a log equally well: the likeliest, and others and `besides` as alternatives."""
     # The likeliest non-empty set leads; the others are its alternatives.
-    (first, share), *others = sorted(rests.items(), key=lambda entry: (not entry[0], -entry[1]))
-    words = {rest: _words(rest, rates[rest]) for rest in rests}
+    (first, share), *others = sorted(remaining.items(), key=lambda entry: (not entry[0], -entry[1]))
+    words = {rest: _words(rest, rates[rest]) for rest in remaining}
     # Keep those that are not unlikely, and at least one.
     likely = [rest for rest, p in others if p > UNLIKELY_READING] or [
         rest for rest, _ in others[:1]
     ]
-    beside = [said for change in first for said in change.or_else]
-    beside += [words[rest] or NOTHING_ELSE for rest in likely if words[rest] != words[first]]
+    other_ways = [sentence for change in first for sentence in change.or_else]
+    other_ways += [words[rest] or NOTHING_ELSE for rest in likely if words[rest] != words[first]]
     channels = tuple(dict.fromkeys(role for change in first for role in change.channels))
     # What this log or no log can tell apart from it shares the probability.
     share = share / (1 + len(first[0].or_else) + len(besides))
-    alternatives = tuple(dict.fromkeys(beside))[: MOST_ALTERNATIVES - len(besides)]
+    alternatives = tuple(dict.fromkeys(other_ways))[: MOST_ALTERNATIVES - len(besides)]
     return Finding(
         first[0].cause,
         None,
@@ -369,8 +377,8 @@ def _left_open(rests, rates, besides):
 
 def _words(rest, rate):
     """A reading in words, with the rate of a clock that can have any."""
-    said = (
+    sentences = (
         f"{c.sentence}, {rate:.3g} s in each logged second" if c.sentence == CLOCK else c.sentence
         for c in rest
     )
-    return " and ".join(said)
+    return " and ".join(sentences)

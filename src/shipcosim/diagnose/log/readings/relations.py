@@ -72,17 +72,19 @@ def rows_of_relations(log: dict) -> list[RowsOfRelation]:
     log : dict of (n,) arrays
         `time` [s] and roles in their units, NaN where not to be used.
     """
-    found = []
+    relations = []
     rows = complete_rows(log, ("heading", "yaw_rate"))
     if len(rows) and _can_be_followed(change := wrap_series(np.diff(log["heading"][rows]))):
-        told = spline_integral(log["time"][rows], log["yaw_rate"][rows]).astype(complex)
-        found.append(RowsOfRelation(rows, running_sums(change).astype(complex), {RATE: told}, 1))
+        integral = spline_integral(log["time"][rows], log["yaw_rate"][rows]).astype(complex)
+        relations.append(
+            RowsOfRelation(rows, running_sums(change).astype(complex), {RATE: integral}, 1)
+        )
     logged = logged_position(log)
     rows = logged.rows
     if len(rows) and _can_be_followed(wrap_series(np.diff(log["heading"][rows]))):
         ways = _ways(logged.time, logged.velocity, logged.turn)
-        found.append(RowsOfRelation(rows, logged.seen[:, 0] + 1j * logged.seen[:, 1], ways, 2))
-    return found
+        relations.append(RowsOfRelation(rows, logged.seen[:, 0] + 1j * logged.seen[:, 1], ways, 2))
+    return relations
 
 
 def _ways(time, velocity, turn):
@@ -124,11 +126,11 @@ def position_relations(log: dict, headings: dict, positions: dict) -> dict:
             pairs |= {(heading, position, form): (seen, way) for form, way in ways.items()}
     # Fit all pairs at once, since they share thinning
     # and whitening, and sort the results by reading.
-    found: dict = {}
+    relations: dict = {}
     labelled = (1.0, False, ("as is", "body"))
     for (heading, position, form), relation in fitted(logged.time, pairs, labelled).items():
-        found.setdefault((heading, position), {})[form] = relation
-    return found
+        relations.setdefault((heading, position), {})[form] = relation
+    return relations
 
 
 def rate_relations(log: dict, headings: dict) -> dict:
@@ -150,20 +152,23 @@ def rate_relations(log: dict, headings: dict) -> dict:
         return {}
     # The change of heading that the yaw rate predicts.
     time = log["time"][rows]
-    told = spline_integral(time, log["yaw_rate"][rows])
+    integral = spline_integral(time, log["yaw_rate"][rows])
     pairs = {}
     # Unwrap the heading between rows, which needs turns of less than half a revolution.
     for name, heading in headings.items():
         change = wrap_series(np.diff(heading[rows]))
         if _can_be_followed(change):
-            beside = wrap_series(
-                np.diff(heading[rows] - told)
+            difference = wrap_series(
+                np.diff(heading[rows] - integral)
             )  # she can turn by more than half a turn between rows
             # If the predicted turns are too large for that, and the heading
             # follows them, unwrap the difference to the prediction instead.
-            if not _can_be_followed(np.diff(told)) and np.quantile(np.abs(beside), 0.9) < ALONGSIDE:
-                change = np.diff(told) + beside
-            pairs[name] = running_sums(change).astype(complex), told.astype(complex)
+            if (
+                not _can_be_followed(np.diff(integral))
+                and np.quantile(np.abs(difference), 0.9) < ALONGSIDE
+            ):
+                change = np.diff(integral) + difference
+            pairs[name] = running_sums(change).astype(complex), integral.astype(complex)
     return fitted(time, pairs, 1.0, axes=1)
 
 

@@ -58,11 +58,11 @@ class WindRelations:
         # + w E, before the turn of the wind's own frame.
         mirrored = "heading" in reading.mirrored
         flipped = "velocity" in reading.mirrored
-        told = complex(reading.velocity) * (
+        factor_of_velocity = complex(reading.velocity) * (
             cmath.exp(1j * angle) if "axes" in reading.free else 1.0
         )
         # Likelihood of each way in which the wind channels may be labelled, with its cost.
-        said = []
+        scores = []
         for seen, cost in SEEN.items():
             key = (reading.heading_unit, mirrored, seen, (flipped, reading.earth))
             if key not in self.fits:
@@ -70,25 +70,25 @@ class WindRelations:
             # Velocity over the earth, or wind from north,
             # moves the heading's factor to the other side.
             turned = reading.earth and seen != "north"
-            factor = told * (complex(reading.heading).conjugate() if turned else 1.0)
+            factor = factor_of_velocity * (complex(reading.heading).conjugate() if turned else 1.0)
             factor *= complex(reading.heading) if seen == "north" and not reading.earth else 1.0
-            said += [
+            scores += [
                 _at(self.fits[key], factor / unit) - cost - more for unit, more in UNITS.items()
             ]
             # Factor 0: the wind is logged over ground already.
-            said.append(_at(self.fits[key], 0.0) - cost - WIND_LABEL_COST)
+            scores.append(_at(self.fits[key], 0.0) - cost - WIND_LABEL_COST)
         # Sum the probabilities of all labels of the wind. The
         # floor limits what the wind can say against a reading.
-        top = max(said)
-        return max(top + math.log(sum(math.exp(one - top) for one in said)), -MOST_OF_WIND)
+        top = max(scores)
+        return max(top + math.log(sum(math.exp(score - top) for score in scores)), -MOST_OF_WIND)
 
 
 def _at(fit, factor):
     """Log-likelihood with the factor that a reading says, give or take what wind sensors are off."""
-    likelihood, found, variance = fit
+    likelihood, fitted, variance = fit
     # Wind sensors follow the velocity to about a fifth only, which widens the variance.
     wide = variance + (WIND_SCALE * abs(factor)) ** 2
-    return likelihood - 0.5 * abs(found - factor) ** 2 / wide - math.log(wide / variance)
+    return likelihood - 0.5 * abs(fitted - factor) ** 2 / wide - math.log(wide / variance)
 
 
 def wind_relations(log: dict, headings: dict[float, np.ndarray]) -> WindRelations:
@@ -126,25 +126,25 @@ def wind_relations(log: dict, headings: dict[float, np.ndarray]) -> WindRelation
         for mirrored in (False, True):
             turn = np.exp((-1j if mirrored else 1j) * np.radians(heading[rows]))
             seen = {"bow": apparent * turn, "mirrored": np.conj(apparent) * turn, "north": apparent}
-            told = _told(velocity, turn)
+            forms = _velocity_forms(velocity, turn)
             pairs = {
                 (name, form): (wind, way)
                 for name, wind in seen.items()
-                for form, way in told.items()
+                for form, way in forms.items()
             }
             for (name, form), fit in likeliest_fits(drafts, pairs)[0].items():
                 fits[unit, mirrored, name, form] = fit
     return WindRelations(_tamed(fits))
 
 
-def _told(velocity, turn):
+def _velocity_forms(velocity, turn):
     """Forms of the velocity, by whether it is mirrored and whether it is over the earth; as slow as wind sensors.
 
     Those turn with the ship and average what they feel: the velocity is averaged in her axes.
     """
     both = {mirrored: np.conj(velocity) if mirrored else velocity for mirrored in (False, True)}
-    body = {(mirrored, False): one for mirrored, one in both.items()}
-    earth = {(mirrored, True): one * np.conj(turn) for mirrored, one in both.items()}
+    body = {(mirrored, False): series for mirrored, series in both.items()}
+    earth = {(mirrored, True): series * np.conj(turn) for mirrored, series in both.items()}
     return {form: _slow(way) * turn for form, way in (body | earth).items()}
 
 
