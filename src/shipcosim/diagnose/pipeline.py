@@ -40,7 +40,7 @@ from shipcosim.diagnose.compared_log import compared
 from shipcosim.diagnose.explanation.course_search import with_course
 from shipcosim.diagnose.explanation.form import with_learnt_form, with_settled_form
 from shipcosim.diagnose.explanation.identification import Identification, identified
-from shipcosim.diagnose.explanation.search import with_causes
+from shipcosim.diagnose.explanation.search import ExplainedLog, with_causes
 from shipcosim.diagnose.explanation.verdict import JudgedLog, judged, with_craft
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem, with_findings
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
@@ -256,6 +256,19 @@ def verdict_on(problem: Identification, progress: Progress) -> JudgedLog:
     identification = with_learnt_form(plain)
     progress("which causes explain it?")
     explained = with_settled_form(with_causes(identification))
-    explained = with_course(with_right_inputs(explained, plain), plain)
+    explained = _with_labels_or_course(explained, plain)
     progress("what do healthy ships look like?")
     return with_craft(judged(explained))
+
+
+def _with_labels_or_course(explained: ExplainedLog, plain: Identification) -> ExplainedLog:
+    """The log with mislabelled inputs corrected, then with a cause that has a course; or with that cause alone."""
+    relabelled = with_right_inputs(explained, plain)
+    before = len(explained.identification.faults)
+    if any(fault.segments for fault in relabelled.identification.faults[before:]):
+        # A cause that begins within the log looks like a label that is wrong in a part of it. The likelier one counts.
+        as_labelled = with_course(explained, plain)
+        gain_of_labels = relabelled.fits[0].score - explained.fits[0].score
+        if as_labelled.course is not None and as_labelled.course.gain > gain_of_labels:
+            return as_labelled
+    return with_course(relabelled, plain)
