@@ -1,6 +1,7 @@
-"""At night: a cause that is there for one spell, by name, course and size over time."""
+"""At night: a cause that is there for one spell, and one that looks like exchanged labels until it begins."""
 
 import pytest
+from diagnose import twin
 from diagnose.test_courses import (
     answer_of,
     test_page_and_words_say_when_it_is_there,
@@ -9,8 +10,19 @@ from diagnose.test_courses import (
 )
 
 from shipcosim.diagnose.explanation.course import SPELL
+from shipcosim.diagnose.pipeline import find_causes
+from truth import draw
 
 
 @pytest.fixture(scope="module")
 def answered(tmp_path_factory):
     return answer_of(SPELL, "spell", tmp_path_factory)
+
+
+def test_a_cause_that_begins_is_not_taken_for_exchanged_labels_before_it(tmp_path):
+    """The swap of port and starboard in the first half gains 57 nats over steady causes, the course 112."""
+    log = tmp_path / "log.csv"
+    draw("hold", 9602, onset=True).save(log)
+    (finding,) = find_causes(str(log), twin.system()).findings
+    assert finding.label == "thruster_interaction"
+    assert finding.segments[0][0] == pytest.approx(1086.0, abs=60.0)

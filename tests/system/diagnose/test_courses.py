@@ -10,7 +10,7 @@ from shipcosim.diagnose.explanation.course import RAMP, SPELL, STEP, SWITCHING, 
 from shipcosim.diagnose.explanation.summary import evidence_of
 from shipcosim.diagnose.pipeline import find_causes
 from shipcosim.report.diagnosis.cause_section import cause_section
-from shipcosim.report.diagnosis.words import told
+from shipcosim.report.diagnosis.words import finding_text
 from truth import draw
 
 SEED = 702
@@ -69,7 +69,7 @@ def test_the_size_over_time_has_the_truth_within_its_band(answered):
 
 def test_page_and_words_say_when_it_is_there(answered):
     kind, _, found = answered
-    said = told(found.findings[0])
+    said = finding_text(found.findings[0])
     words = {
         STEP: " s on",
         RAMP: "growing from ",

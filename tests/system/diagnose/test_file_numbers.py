@@ -6,7 +6,7 @@ import pytest
 from diagnose import twin
 
 from shipcosim.diagnose.pipeline import find_causes
-from shipcosim.report.diagnosis.words import told
+from shipcosim.report.diagnosis.words import finding_text
 from shipcosim.ssp.flatten.with_values import with_values
 from truth import draw
 
@@ -49,7 +49,7 @@ def check_place(found, cause, component, name):
     estimate = finding.parameters[name]
     true = TRUE[f"{component or 'port'}.{name}"]
     assert estimate.estimate == pytest.approx(true, abs=0.4)
-    assert f"(the file says {estimate.given:.4g} m)" in told(finding)
+    assert f"(the file says {estimate.given:.4g} m)" in finding_text(finding)
     assert finding.as_json()["parameters"][name]["given"] == estimate.given
 
 
@@ -61,4 +61,4 @@ def test_a_thruster_that_delivers_more_than_the_file_says_is_named(tmp_path_fact
     (finding,) = found.findings
     assert finding.label == "thrust_loss of tunnel"
     assert finding.parameters["loss"].estimate == pytest.approx(-0.25, abs=0.06)
-    assert "% more thrust than its speed should give" in told(finding)
+    assert "% more thrust than its speed should give" in finding_text(finding)

@@ -1,12 +1,14 @@
 """From a file to a diagnosis: planted causes are named at their place with their size, healthy logs left alone."""
 
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from diagnose import twin
 
 import shipcosim
+from shipcosim.diagnose import pipeline
 from shipcosim.diagnose.pipeline import find_causes
 from shipcosim.errors import ShipcosimError
 from shipcosim.series import write_table
@@ -145,3 +147,25 @@ def test_from_python_one_value_has_findings_extended_system_and_all_that_the_pag
     assert diagnosis.evidence.sets[0].is_chosen and diagnosis.evidence.gains[0].gain > 100.0
     assert "extending the system" in said and diagnosis.log.measured.sizes["time"] == 361
     assert "diagnose" in dir(shipcosim) and diagnosis.as_json()["verdict"] == "named"
+
+
+@pytest.mark.parametrize("gain, wins", [(112.0, "course"), (40.0, "labels")])
+def test_the_likelier_of_wrong_labels_in_a_part_and_of_a_course_counts(monkeypatch, gain, wins):
+    """Labels gain 57 nats here, as in a log of the trial (hold, 9602) in which they were named though a course gains 112."""
+
+    def log(name, score, faults=()):
+        return SimpleNamespace(
+            name=name,
+            identification=SimpleNamespace(faults=faults),
+            fits=[SimpleNamespace(score=score)],
+        )
+
+    given = log("given", 100.0)
+    corrected = log("labels", 157.0, (SimpleNamespace(segments=((0.0, 1320.0),)),))
+    with_course = log("course", 100.0)
+    with_course.course = SimpleNamespace(gain=gain)
+    monkeypatch.setattr(pipeline, "with_right_inputs", lambda *_: corrected)
+    monkeypatch.setattr(
+        pipeline, "with_course", lambda log, plain: with_course if log is given else log
+    )
+    assert pipeline._with_labels_or_course(given, None).name == wins

@@ -9,7 +9,7 @@ from diagnose.reference import ships
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.reference.change_since_reference import with_sizes_at_reference
-from shipcosim.report.diagnosis.words import size_rows, told
+from shipcosim.report.diagnosis.words import finding_text, size_rows
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +36,7 @@ def test_a_loss_has_what_it_was_at_the_reference_and_what_it_is_now(since):
     )
     ((name, size),) = size_rows(found)
     assert name == "loss" and size.endswith(" → 0.120 ± 0.010")
-    assert "at the reference: loss" in told(found)
+    assert "at the reference: loss" in finding_text(found)
 
 
 def test_an_angle_is_in_the_units_of_the_catalogue(since):

@@ -10,7 +10,14 @@ from shipcosim.diagnose.finding import Candidate, Discrepancy, Finding, Paramete
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.estimates import plus_minus, vector
-from shipcosim.report.diagnosis.words import estimate_rows, next_steps, outcome, title, told, where
+from shipcosim.report.diagnosis.words import (
+    estimate_rows,
+    finding_text,
+    next_steps,
+    outcome,
+    title,
+    where,
+)
 from shipcosim.report.theme.numbers import plain
 
 LOSS = Finding("thrust_loss", "port", parameters={"loss": ParameterEstimate(0.337, 0.0121, "1")})
@@ -114,12 +121,12 @@ def test_what_is_not_known_is_a_dash():
     ids=lambda value: value.cause if isinstance(value, Finding) else "",
 )
 def test_sense_and_size_of_a_cause_are_told(finding, said):
-    assert said in told(finding)
+    assert said in finding_text(finding)
 
 
 def test_onset_is_told():
     finding = Finding("mass", parameters={"scale": ParameterEstimate(1.1, 0.02, "1")}, onset=612.0)
-    assert told(finding).endswith(", from 612 s on")
+    assert finding_text(finding).endswith(", from 612 s on")
 
 
 def test_cause_of_ones_own_speaks_by_its_own_sentence():
@@ -127,7 +134,7 @@ def test_cause_of_ones_own_speaks_by_its_own_sentence():
         update={"cause": "ice", "sentence": "Ice is on the hull", "statement": ""}
     )
     ice = Finding("ice", parameters={"thickness": ParameterEstimate(0.2, 0.05, "m")})
-    assert told(ice, {"ice": effect}) == "ice is on the hull: thickness 0.20 ± 0.05 m"
+    assert finding_text(ice, {"ice": effect}) == "ice is on the hull: thickness 0.20 ± 0.05 m"
 
 
 def test_every_cause_of_the_catalogue_has_advice():
