@@ -151,7 +151,7 @@ def test_from_python_one_value_has_findings_extended_system_and_all_that_the_pag
 
 @pytest.mark.parametrize("gain, wins", [(112.0, "course"), (40.0, "labels")])
 def test_the_likelier_of_wrong_labels_in_a_part_and_of_a_course_counts(monkeypatch, gain, wins):
-    """Labels gain 57 nats here, as in a log of the trial (hold, 9602) in which they were named though a course gains 112."""
+    """Labels gain 57 nats, as in a log of the trial (hold, 9602) that named them where a course gains 112."""
 
     def log(name, score, faults=()):
         return SimpleNamespace(
