@@ -347,7 +347,7 @@ def choose(condition: Any, then: Callable[[], Any], otherwise: Callable[[], Any]
 
     Notes
     -----
-    In compiled code what follows an ``if`` is written once for either answer. After `choose` it is written once.
+    In compiled code what follows an ``if`` stands twice, once for each answer; what follows `choose` stands once.
 
     Examples
     --------
