@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from shipcosim.capability.conditions import Condition
 from shipcosim.capability.particulars import Hull
+from shipcosim.models.core.constants import GRAVITY
 
-AIR_DENSITY = 1.226  # kg/m3, kg/m3, m/s2; the standard does not say its g
+AIR_DENSITY = 1.226  # kg/m3, kg/m3; the standard does not say its g, 9.81 m/s2 is taken
 WATER_DENSITY = 1026.0
-GRAVITY = 9.81
 
 
 def level_1_parts(hull: Hull, condition: Condition, weather_from: NDArray) -> dict[str, NDArray]:

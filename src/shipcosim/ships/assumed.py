@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import pi, sqrt
 
 from shipcosim.errors import error_at
-from shipcosim.ships.estimates.hull import GRAVITY
+from shipcosim.models.core.constants import GRAVITY
 
 FROUDE = 0.3
 """Froude number of the speed that all thrusters together hold. Assumed."""

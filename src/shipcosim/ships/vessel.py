@@ -4,6 +4,7 @@ from math import sqrt
 from pathlib import Path
 
 from shipcosim.errors import Problem
+from shipcosim.models.core.constants import GRAVITY
 from shipcosim.models.ship.hull import CONTRIBUTIONS
 from shipcosim.ships.entries import Quantity
 from shipcosim.ships.estimates.estimate import EstimatedNumber
@@ -29,7 +30,6 @@ from shipcosim.ships.numbers import Numbers
 
 SEA_WATER = 1025.0
 USUAL_FROUDE = 0.2
-GRAVITY = 9.81
 ALONG = ("X_u", "X_uu")
 """Coefficients of which one is enough for the resistance ahead."""
 ACROSS = {name for _, names in CONTRIBUTIONS.values() for name in names} - {

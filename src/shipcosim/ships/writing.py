@@ -4,6 +4,7 @@ from dataclasses import dataclass, field, replace
 from math import sqrt
 
 from shipcosim.errors import error_at, suggestion
+from shipcosim.models.core.constants import GRAVITY
 from shipcosim.ships.estimates.hull import HullDimensions, cross_flow_drag, inertia_yaw
 from shipcosim.ships.estimates.resistance import resistance
 from shipcosim.ships.estimates.weather import USUAL_KIND, front_area, side_area
@@ -20,7 +21,6 @@ LENGTH = 30.0
 """Of a ship of which nothing is known. [m]"""
 EFFICIENCY = 0.5
 USUAL_BLOCK = 0.62
-GRAVITY = 9.81
 
 
 class Usual(str):

@@ -4,6 +4,7 @@ import numpy as np
 
 from shipcosim.diagnose.numerics import moving_average, running_sums
 from shipcosim.diagnose.sea_trials import thresholds
+from shipcosim.models.core.constants import GRAVITY
 
 
 def own_clock(time: np.ndarray, measured: np.ndarray, length: float) -> tuple[np.ndarray, float]:
@@ -50,7 +51,7 @@ def own_clock(time: np.ndarray, measured: np.ndarray, length: float) -> tuple[np
     rows = max(round(thresholds.CLOCK_WINDOW * np.sqrt(length) / np.median(step)), 1)
     way = moving_average(way, rows)
     sailed = moving_average(sailed, rows)
-    moving = sailed > thresholds.UNDER_WAY * np.sqrt(9.81 * length) * np.median(step)
+    moving = sailed > thresholds.UNDER_WAY * np.sqrt(GRAVITY * length) * np.median(step)
     if not moving.any():
         return time, 1.0
     # True over logged seconds where the ship makes way. Its median is the scale of the speed log,

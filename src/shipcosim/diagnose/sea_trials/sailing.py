@@ -10,6 +10,7 @@ from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.diagnose.ship.inputs import Inputs, ThrusterSeries
 from shipcosim.diagnose.ship.measured_motion import readings, true_motion
 from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.models.core.constants import GRAVITY
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.propulsion.azimuth import AzimuthParameters, turned
 
@@ -92,7 +93,7 @@ def settled(
     length = model.length
     ships = _side_by_side(model, [changes])
     zero = np.zeros((1, len(orders)))
-    speed = thresholds.FROUDE * np.sqrt(9.81 * length)
+    speed = thresholds.FROUDE * np.sqrt(GRAVITY * length)
     rows = int(thresholds.RUN * length / speed / h) + 2
     units = {
         name: tuple(np.tile([order[name][i] for order in orders], (rows, 1)) for i in (0, 1))

@@ -15,6 +15,7 @@ from shipcosim.diagnose.sea_trials.clock import own_clock
 from shipcosim.diagnose.ship.inputs import Record, ThrusterSeries
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
+from shipcosim.models.core.constants import GRAVITY
 
 
 @dataclass(frozen=True)
@@ -95,7 +96,7 @@ def sea_trials_of(
     manoeuvres += _straight_runs(helm, record, measured, length, busy)
     # Only whole manoeuvres in which the ship makes way.
     kept = [(kind, rows) for kind, rows in manoeuvres if whole[rows].all()]
-    fast = thresholds.UNDER_WAY * np.sqrt(9.81 * length)
+    fast = thresholds.UNDER_WAY * np.sqrt(GRAVITY * length)
     kept = [(kind, rows) for kind, rows in kept if np.mean(speed[rows]) > fast]
     # Correct the clock and the scale of the speed log by the motion itself.
     clock, scale = own_clock(record.time, measured, length)

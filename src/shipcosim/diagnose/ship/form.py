@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from shipcosim.models.core.constants import GRAVITY
 from shipcosim.models.core.maths import Arithmetic, cos, sin
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import quantity
@@ -122,7 +123,6 @@ DEDUCTION = 0.03  # of the thrust of any thruster but a tunnel's, whatever its d
 UNDER_WAY = 0.1  # of the thrust, at FROUDE_UNDER_WAY: wake and thrust deduction; assumed
 SPEED_LOSS = 0.1  # s2/m2 on a ship of 33.9 m, of a tunnel's thrust; half of (1/2.2)^2
 _OF_LENGTH = 33.9
-_GRAVITY = 9.81
 
 
 def form_sizes(
@@ -228,7 +228,7 @@ def _hull_sizes(hull: HullParameters) -> dict[str, float]:
     stds["cross_flow_drag"] = CROSS_FLOW_LEVEL * abs(hull.cross_flow_drag)
     # Linear damping is compared with the quadratic one at usual speeds, which follow Froude's law.
     speed, side = (
-        froude * np.sqrt(_GRAVITY * hull.length) for froude in (FROUDE_AHEAD, FROUDE_ACROSS)
+        froude * np.sqrt(GRAVITY * hull.length) for froude in (FROUDE_AHEAD, FROUDE_ACROSS)
     )
     half = 0.5 * hull.length
     strength = _strength(hull)
@@ -335,5 +335,5 @@ def thrust_kept(
         + 0.5 * form.astern * (1.0 - ahead)
     )
     # Loss under way in proportion to the speed, relative to a fixed Froude number.
-    fast = FROUDE_UNDER_WAY * np.sqrt(_GRAVITY * length)
+    fast = FROUDE_UNDER_WAY * np.sqrt(GRAVITY * length)
     return 1.0 - lost - form.under_way * abs(u_r) / fast

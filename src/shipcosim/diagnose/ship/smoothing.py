@@ -6,6 +6,7 @@ import numpy as np
 
 from shipcosim.diagnose.numerics import gaussian_filter, runs
 from shipcosim.diagnose.ship.inputs import Record
+from shipcosim.models.core.constants import GRAVITY
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.motion import Motion
 
@@ -15,7 +16,7 @@ _ENOUGH = 0.2  # share of the rows that a channel must be measured in
 
 def froude_time(length: float) -> float:
     """Root of the length over gravity: the time in which ships of all sizes do alike. [s]"""
-    return float(np.sqrt(length / 9.81))
+    return float(np.sqrt(length / GRAVITY))
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.diagnose.ship.inputs import Record, ThrusterSeries
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
+from shipcosim.models.core.constants import GRAVITY
 from shipcosim.models.core.integrate import euler
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.maths import Arithmetic
@@ -151,7 +152,7 @@ class DpController:
         self.model = model
         self.fixed = fixed
         # Bandwidth scales with the ship by Froude's law, and so does the delay of the thrusters.
-        self.frequency = _FREQUENCY * np.sqrt(9.81 / hull.length) / 3.0
+        self.frequency = _FREQUENCY * np.sqrt(GRAVITY / hull.length) / 3.0
         self.delay = _ANSWER * np.sqrt(hull.length / 33.9)
         # Diagonal mass with added mass, and the limit of the load: an acceleration of 0.05 m/s2.
         self.mass = np.array(
@@ -161,7 +162,7 @@ class DpController:
 
     def bounded(self, ship: Motion) -> Motion:
         """The ships no faster than any ship is: one that cannot be steered so gets lost, not infinite."""
-        most = np.sqrt(9.81 * self.model.length)
+        most = np.sqrt(GRAVITY * self.model.length)
         u, v, r = (
             np.clip(value, -most, most) for value in (ship.u, ship.v, ship.r * self.model.length)
         )

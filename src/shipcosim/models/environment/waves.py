@@ -19,12 +19,12 @@ from typing import Any
 
 import numpy as np
 
+from shipcosim.models.core.constants import GRAVITY
 from shipcosim.models.core.maths import Arithmetic, cos, is_single, library_of, pi, sincos
 from shipcosim.models.core.memoize import kept
 from shipcosim.models.core.sampling import generator
 from shipcosim.models.environment.sinusoids import column, tensors_if_any, total
 
-GRAVITY = 9.81  # m/s2
 COMPONENTS = 40
 
 _RATIO = np.linspace(

@@ -7,13 +7,14 @@ for which it has coefficients; a new effect is one more function here, with coef
 from dataclasses import dataclass
 from functools import cached_property
 
+from shipcosim.models.core.constants import GRAVITY
 from shipcosim.models.core.maths import Arithmetic, exp, hypot, maximum, minimum, where
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import acts, quantity, required
 
 _UNUSED = "not used by this ship"
 _TINY = 1e-30
-_SPEED_SQUARED = 0.25**2 * 9.81  # m/s2: of Froude number 0.25 over the length; 1
+_SPEED_SQUARED = 0.25**2 * GRAVITY  # m/s2: of Froude number 0.25 over the length; 1
 _SLOW = 0.02**2
 
 

@@ -12,6 +12,7 @@ from math import hypot, pi, sqrt
 
 import numpy as np
 
+from shipcosim.models.core.constants import GRAVITY
 from shipcosim.ships.estimates.estimate import EstimatedNumber, within
 
 SODING = "Söding 1982: 2.7 rho V^(5/3)/L^2"
@@ -23,7 +24,6 @@ _HOERNER = (
 """Half breadth over draught, drag coefficient."""
 FLATTEST = 8.0
 """Breadth over draught at which that curve ends. [1]"""
-GRAVITY = 9.81  # m/s2
 TIME_CONSTANTS = {"X_u": 30.0, "Y_v": 18.0, "N_r": 9.4}
 """Time constants of linear damping, over the root of length and gravity; fitted to the models in
 docs/generated/ship-estimates.md. [1]"""

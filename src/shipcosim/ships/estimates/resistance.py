@@ -8,11 +8,11 @@ model-ship correlation line. Midship section and waterplane: Papanikolaou, Ship 
 
 from math import cos, exp, log10, sqrt
 
+from shipcosim.models.core.constants import GRAVITY
 from shipcosim.ships.estimates.estimate import EstimatedNumber, within
 from shipcosim.ships.estimates.hull import HullDimensions
 
-GRAVITY = 9.81  # m/s2; m2/s, sea water at 15 deg C
-VISCOSITY = 1.19e-6
+VISCOSITY = 1.19e-6  # m2/s, sea water at 15 deg C
 APPENDAGES = 1.1
 """Resistance with rudder, thrusters and openings over that of the bare hull; assumed. [1]"""
 MOST_FROUDE = 0.4

@@ -9,10 +9,10 @@ Faltinsen, Sea Loads on Ships and Offshore Structures, Cambridge, 1990, ch. 5: a
 
 from math import cos, exp, pi, radians, sin
 
+from shipcosim.models.core.constants import GRAVITY
 from shipcosim.ships.estimates.estimate import EstimatedNumber, within
 
-AIR = 1.225  # kg/m3, m/s2
-GRAVITY = 9.81
+AIR = 1.225  # kg/m3
 _TABLE = """
 car carrier                    | 0.95 0.55 0.60 0.80
 cargo ship, loaded             | 0.85 0.65 0.55 0.40

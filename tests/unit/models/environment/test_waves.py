@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from shipcosim.models.core.constants import GRAVITY
 from shipcosim.models.environment.wave_loads import drift, drift_table, mean_drift
 from shipcosim.models.environment.wave_motion import wave_response
 from shipcosim.models.environment.waves import (
     COMPONENTS,
-    GRAVITY,
     Waves,
     components,
     elevation,
