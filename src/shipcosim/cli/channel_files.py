@@ -124,7 +124,7 @@ def print_isolability(log: Path, system: str | None, channels: Path | None) -> N
 
     words = {True: Text("yes", style="green"), False: Text("no", style="yellow")}
     rows = [
-        (cause.label, words[cause.is_seen], ", ".join(cause.alike) or "-")
+        (cause.label, words[cause.is_seen], ", ".join(cause.similar) or "-")
         for cause in isolability(log, system, channels)
     ]
     console = make_console(soft_wrap=True)

@@ -83,7 +83,7 @@ class LogComparison:
     missing: tuple[MissingLoad, ...] = ()
     is_assumed: bool = False
 
-    def told(self, verdict: str) -> tuple[Discrepancy, ...]:
+    def for_verdict(self, verdict: str) -> tuple[Discrepancy, ...]:
         """Discrepancies for a verdict.
 
         Where nobody knows what is wrong the largest error is said in any case; where nothing is beyond noise and

@@ -78,7 +78,7 @@ def stated(log: JudgedLog) -> Diagnosis:
         tuple(cause for cause in untestable if cause not in seen),
         design_experiment(log.problem, log.fit, rivals) if rivals else None,
         comparison.errors,
-        discrepancies=comparison.told(judgement.verdict),
+        discrepancies=comparison.for_verdict(judgement.verdict),
         form=form_of,
         obstacles=comparison.obstacles,
         craft=comparison.craft,

@@ -53,7 +53,7 @@ def testability(
     motion, units = kept_on_track(model, len(manoeuvres), track, record, dp, held=held)
     measured = np.moveaxis(rows_first(readings(motion, model)), 0, -2)
     record = replace(record, units=units, measured=measured)
-    known = IdentificationProblem(record, model, tuple(hypotheses), noise, motion).known(())
+    known = IdentificationProblem(record, model, tuple(hypotheses), noise, motion).ship_columns(())
     groups = [
         (hypothesis, group)
         for hypothesis in hypotheses

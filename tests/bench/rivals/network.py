@@ -100,7 +100,7 @@ def trained(problem, plain, train):
     )
     kernel = np.ones(SMOOTH) / SMOOTH
     missed = np.stack([np.convolve(-axis, kernel, "same") for axis in step.T], axis=1)
-    rows = np.flatnonzero(train[:-1] & problem.record.known[:-1])
+    rows = np.flatnonzero(train[:-1] & problem.record.usable[:-1])
     here = Motion(*(value[:-1] for value in problem.motion))
     inputs, scale = features(here, plain.record.inputs(plain.model))[rows], missed[rows].std(axis=0)
     centre, width = inputs.mean(axis=0), inputs.std(axis=0) + 1e-9

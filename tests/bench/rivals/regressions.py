@@ -80,7 +80,7 @@ def missing_acceleration(problem, values):
     )
     here = Motion(*(value[:-1] for value in motion))
     modelled = motion_rates(here, problem.record.inputs(model), model)
-    known = problem.record.known[:-1]
+    known = problem.record.usable[:-1]
     rows = [
         (
             np.gradient(getattr(motion, name), h)[:-1]

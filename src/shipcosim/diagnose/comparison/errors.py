@@ -150,7 +150,7 @@ def starts_of(record: Record, measured: MeasuredForce, horizon: float) -> np.nda
     # Starts whose horizon reaches no row with unknown inputs, by cumulative counts.
     reach = round(horizon / record.step)
     rows = np.arange(0, record.time.size - reach)
-    lost = running_sums(~record.known)
+    lost = running_sums(~record.usable)
     good = rows[
         (lost[rows + reach] == lost[rows]) & measured.usable[rows] & measured.usable[rows + reach]
     ]

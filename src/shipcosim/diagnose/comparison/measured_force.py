@@ -77,4 +77,4 @@ def measured_force_of(record: Record, length: float) -> MeasuredForce:
     # Without yaw rate: second derivative of the heading.
     if not is_measured(record, 5):
         rates[2] = kernel.rate(motion.psi, 2)
-    return MeasuredForce(motion, rates, kernel.clear_of(bad | ~record.known), kernel)
+    return MeasuredForce(motion, rates, kernel.clear_of(bad | ~record.usable), kernel)

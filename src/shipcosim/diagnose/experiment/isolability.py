@@ -27,14 +27,14 @@ class Isolability:
         Log-evidence that it would gain at its typical size. [nats]
     is_seen : bool
         Whether that is enough to be named.
-    alike : tuple of str
+    similar : tuple of str
         Of one that is seen: causes that explain it so well that the two could not be told apart, the likest first.
     """
 
     label: str
     gain: float
     is_seen: bool
-    alike: tuple[str, ...]
+    similar: tuple[str, ...]
 
 
 def isolability(excitation: Excitation) -> tuple[Isolability, ...]:

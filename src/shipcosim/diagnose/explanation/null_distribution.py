@@ -101,7 +101,7 @@ def healthy_products(
         here = prepared(replace(problem, record=record, motion=first_motion(record)), rounds=1)
         return inner_products(here.linear, problem.noise, record).products
 
-    return problem.known(()), np.concatenate(each(products_of, range(0, count, _AT_ONCE)))
+    return problem.ship_columns(()), np.concatenate(each(products_of, range(0, count, _AT_ONCE)))
 
 
 def on_track(products: np.ndarray) -> np.ndarray:
@@ -188,7 +188,7 @@ def _logged(motion, units, problem, rng):
     # The same gaps as in the log.
     measured = np.where(np.isfinite(record.measured)[:, None, :], measured, np.nan)
     return Record(
-        record.time, np.moveaxis(measured, 1, 0), units, record.wind, record.known, rate=record.rate
+        record.time, np.moveaxis(measured, 1, 0), units, record.wind, record.usable, rate=record.rate
     )
 
 

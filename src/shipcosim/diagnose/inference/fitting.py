@@ -60,7 +60,7 @@ class IdentificationProblem:
     @property
     def basis(self) -> list[Regressor]:
         """Regressors of all known numbers, and of every hypothesis for the first search."""
-        return self.known(()) + regressors_of(self.hypotheses)
+        return self.ship_columns(()) + regressors_of(self.hypotheses)
 
     @property
     def linear(self) -> InParts:
@@ -78,7 +78,7 @@ class IdentificationProblem:
         """Inner products of a linear problem of this log, filtered by its noise, as `inner_products`."""
         return inner_products(linear, self.noise, self.record, parts)
 
-    def known(self, hypotheses: Sequence[Hypothesis]) -> list[Regressor]:
+    def ship_columns(self, hypotheses: Sequence[Hypothesis]) -> list[Regressor]:
         """Columns of the numbers that are known within a tolerance, except those that these hypotheses change."""
         # Numbers that these causes estimate themselves, or that stand for something they replace.
         taken = paths_of(hypotheses)
@@ -237,7 +237,7 @@ def _fitted(problem, hypotheses, values, rounds):
     about = {}
     motion = problem.motion
     last = None
-    columns = problem.known(hypotheses) + own_columns(problem, hypotheses)
+    columns = problem.ship_columns(hypotheses) + own_columns(problem, hypotheses)
     # Gauss-Newton: linearise about the last estimate, solve for the posterior, and go on from its
     # mean.
     for _ in range(rounds):

@@ -215,7 +215,7 @@ class _Filter:
         white = np.asarray(noise.white).reshape(1, -1, 6)
         R = np.where(_by_log(linear.whole, self.lead, 1), white**2, np.inf)
         R = np.require(np.broadcast_to(R, (len(R), len(C), 6)), requirements=["C", "W"])
-        with_value = np.asarray(record.known)[rows]
+        with_value = np.asarray(record.usable)[rows]
         is_last = record.is_last[rows]
         # Gains and covariances do not depend on the columns: computed once, they filter the log and
         # all regressors.
@@ -272,7 +272,7 @@ def log_likelihoods(linear: Linear, noises: Noise, record: Record) -> np.ndarray
     W, Q, P = (np.ascontiguousarray(np.moveaxis(values, 0, -1)) for values in of_noise)
     R = np.ascontiguousarray(noises.white.T) ** 2
     b, z = (np.ascontiguousarray(values[..., 0]) for values in (linear.driven, linear.seen))
-    rows = np.asarray(record.known), _lost(), record.is_last
+    rows = np.asarray(record.usable), _lost(), record.is_last
     return kalman.log_likelihoods(
         linear.transition, W, b, linear.output, z, linear.whole, R, Q, P, *rows
     )

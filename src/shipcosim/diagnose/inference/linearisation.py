@@ -241,7 +241,7 @@ def linearise(
         transition[..., :6, 6:9] @ np.moveaxis(slopes, (-1, 1, 0), (0, -2, -1)) / (2.0 * shares)
     )
     # Where inputs are unknown the equations say nothing of the step.
-    driven[~record.known[steps]] = 0.0
+    driven[~record.usable[steps]] = 0.0
     out *= whole[..., None]
     return Linear(
         transition, driven, _output(at_rows(motion, (..., rows)), seen, model), out, whole

@@ -116,7 +116,7 @@ def restarted(linear: Linear, motion: Motion, record: Record, model: ShipModel) 
     driven = np.zeros((*linear.driven.shape[:-1], 1))
     driven[:, :6, 0] = rows_first(ahead) - rows_first(at_rows(motion, slice(1, None)))
     # Steps with unknown inputs drive nothing.
-    driven *= record.known[:-1, None, None]
+    driven *= record.usable[:-1, None, None]
     seen = np.where(linear.whole, record.measured - rows_first(readings(motion, model)), 0.0)
     return linear._replace(driven=driven, seen=seen[..., None])
 

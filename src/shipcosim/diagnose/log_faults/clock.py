@@ -65,7 +65,7 @@ def clock_by_response(problem: IdentificationProblem) -> Finding | None:
     Finding or None
     """
     # Evidence for a wrong clock, with the uncertain parameters of the model integrated out.
-    of_ship = problem.known(())
+    of_ship = problem.ship_columns(())
     edges = _edges(problem)
     gain, finding = _most_likely(_blocks(problem, edges, of_ship))
     if finding is None:
@@ -124,7 +124,7 @@ def with_rate(problem: IdentificationProblem, finding: Finding, log: xarray.Data
     time = problem.record.time
     # The repaired log runs in true time, so the segments are converted to it.
     inner = np.interp(np.ravel(finding.segments), log["logged_time"].values, log["time"].values)
-    blocks = _blocks(problem, np.r_[time[0], inner, time[-1]], problem.known(()))
+    blocks = _blocks(problem, np.r_[time[0], inner, time[-1]], problem.ship_columns(()))
     # The blocks inside the segments, every second one, give
     # the remaining rate error by regularised least squares.
     odd_places = np.arange(1, len(inner), 2)
@@ -140,7 +140,7 @@ def is_testable(problem: IdentificationProblem) -> bool:
     """Whether a typical wrong clock, at any time of the log with even odds, would have gained enough to be seen."""
     # Expected gain of a typical wrong clock, if its rate
     # error stood in the data: match = rate times energy.
-    blocks = _blocks(problem, _edges(problem), problem.known(()))
+    blocks = _blocks(problem, _edges(problem), problem.ship_columns(()))
     count = len(blocks.edges) - 1
     span = max(int(TYPICAL_SEGMENT / (blocks.edges[1] - blocks.edges[0])), 1)
     energies = np.diagonal(sums_of_runs(blocks.match, blocks.gram)[1], offset=span)
@@ -235,7 +235,7 @@ def _moved(problem):
     moved = record.step * rows_first(
         motion_rates(middle, record.inputs(problem.model, 0.5), problem.model)
     )
-    return np.where(record.known[:-1, None], moved, 0.0)
+    return np.where(record.usable[:-1, None], moved, 0.0)
 
 
 def _left(problem, columns, count, driven):

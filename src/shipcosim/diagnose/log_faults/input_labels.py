@@ -222,7 +222,7 @@ def with_label(
 def _by_row(problem, record):
     """Log-likelihood of each row, known numbers fitted within their tolerances; what that costs is shared by all."""
     # Fit the uncertain parameters within their priors, so that they do not count as a mislabel.
-    columns = problem.known(())
+    columns = problem.ship_columns(())
     linear = linearised_by_parts(problem.motion, record, problem.model, columns)
     theta = evidence(inner_products(linear, problem.noise, record).products, np.ones(len(columns)))[
         1

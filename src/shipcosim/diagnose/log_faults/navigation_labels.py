@@ -113,7 +113,7 @@ def relabelled(
 
 def _judged(problem):
     """Rows that the row before predicts, as all that drives the ship is known over the step."""
-    return np.r_[True, problem.record.known[:-1]]
+    return np.r_[True, problem.record.usable[:-1]]
 
 
 def _likely(gains, record, least):

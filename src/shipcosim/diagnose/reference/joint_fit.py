@@ -88,7 +88,7 @@ def fitted_jointly(
     }
     # Columns of each log: its known numbers, the ship's with scaled tolerances, and its causes.
     columns = {
-        name: [_scaled(column, scale) for column in problem.known(by_log[name])]
+        name: [_scaled(column, scale) for column in problem.ship_columns(by_log[name])]
         + own_columns(problem, by_log[name])
         for name, problem in logs.problems.items()
     }

@@ -77,7 +77,7 @@ class TrialEvidence:
         Those of the ship as modelled.
     slopes : (p, f) array
         By parameter of the hypotheses, over a typical size.
-    known : (q, f) array
+    ship_slopes : (q, f) array
         By what is known within a tolerance or allowed for, over its standard deviation.
     noise : (f, f) array
         How well the features repeat, at the scale of most evidence.
@@ -91,14 +91,14 @@ class TrialEvidence:
     measured: np.ndarray
     predicted: np.ndarray
     slopes: np.ndarray
-    known: np.ndarray
+    ship_slopes: np.ndarray
     noise: np.ndarray
     scale: float = 1.0
 
     @property
     def covariance(self) -> np.ndarray:
         """Covariance of the features about those of a ship with the right causes."""
-        return self.noise + self.known.T @ self.known
+        return self.noise + self.ship_slopes.T @ self.ship_slopes
 
 
 def trial_evidence(
@@ -246,7 +246,7 @@ def allowed_for(evidence: TrialEvidence, fitted_set: SetOfCauses) -> dict[str, f
     """What compass and antenna are most likely off, beside a fitted set: numbers of the ship and what is added."""
     here = predicted(evidence.trials, evidence.model, [changes_of(fitted_set)])[0]
     # Posterior mean of known numbers given the residual: their share of the total covariance.
-    shares = evidence.known @ np.linalg.solve(evidence.covariance, evidence.measured - here)
+    shares = evidence.ship_slopes @ np.linalg.solve(evidence.covariance, evidence.measured - here)
     return {
         path: float(share) * size
         for share, (path, size) in zip(shares, known_numbers(evidence.model), strict=True)

@@ -74,7 +74,7 @@ def separations(evidence: TrialEvidence, sets: Sequence[SetOfCauses]) -> list[Se
     # What the trials said constrains sets and numbers: predict the new features from that
     # posterior.
     with_untold = replace(
-        evidence, known=np.vstack((evidence.known, *(evidence.slopes[i] for i, _ in untold)))
+        evidence, ship_slopes=np.vstack((evidence.ship_slopes, *(evidence.slopes[i] for i, _ in untold)))
     )
     spread = evidence.scale**2 * blocks([covariance_of(trial, model.length) for trial in trials])
     of_day = np.array([ShipModel.is_of_day(path) for size in sizes for path in list(size)[:1]])
@@ -137,7 +137,7 @@ def _prediction(evidence, at_trials, here, ship_slopes, of_day, spread):
     """Features of new trials by a set, and their covariance: by the posterior of the trials that were sailed."""
     features, slopes = at_trials
     # Posterior covariance of parameters and numbers with unit prior: (I + A R^-1 A')^-1.
-    columns = np.vstack((slopes, evidence.known))
+    columns = np.vstack((slopes, evidence.ship_slopes))
     weighted = columns @ np.linalg.inv(evidence.noise)
     P = np.linalg.inv(np.eye(len(columns)) + weighted @ columns.T)
     mean = (P @ weighted @ (evidence.measured - features))[len(slopes) :]

@@ -87,7 +87,7 @@ def sea_trials_of(
     length = model.length
     helm = steering(record, model)
     speed = np.hypot(measured[:, 3], measured[:, 4])
-    whole &= record.known | (np.arange(whole.size) == whole.size - 1)
+    whole &= record.usable | (np.arange(whole.size) == whole.size - 1)
     for first, last in lost:
         whole &= (record.time < first - record.step) | (record.time > last + record.step)
     # Circles and zig-zags first, straight runs between them.

@@ -84,7 +84,7 @@ class Record:
         Speed of each thruster, or thrust where that drives it, and direction, unwrapped. [rev/s or N, rad]
     wind : tuple of two (..., n) arrays, or None
         Speed, and direction unwrapped. [m/s, rad]
-    known : (n,) bool array
+    usable : (n,) bool array
         Whether everything that drives the ship is known over the step that follows.
     rate : float
         Of the fastest answer that the ship gives in the log. [1/s]
@@ -94,7 +94,7 @@ class Record:
     measured: np.ndarray
     units: ThrusterSeries
     wind: tuple[np.ndarray, np.ndarray] | None
-    known: np.ndarray
+    usable: np.ndarray
     remarks: tuple[str, ...] = field(default=())
     rate: float = 0.0
 
@@ -124,7 +124,7 @@ class Record:
             measured=self.measured[rows],
             units=part_of(self.units, rows),
             wind=wind,
-            known=self.known[rows],
+            usable=self.usable[rows],
         )
 
     def substeps(self, model: ShipModel) -> int:
@@ -250,7 +250,7 @@ def with_inputs_of(record: Record, log: xarray.Dataset, model: ShipModel) -> Rec
     # Inputs alone, thinned like the record, so that the rows agree.
     driven = _driven(log, model, np.zeros((log.sizes["time"], 0)))
     driven = _thinned(driven, rows_averaged(model.length, driven.step), model)
-    return replace(record, units=driven.units, wind=driven.wind, known=driven.known)
+    return replace(record, units=driven.units, wind=driven.wind, usable=driven.usable)
 
 
 def _driven(log: xarray.Dataset, model: ShipModel, measured: np.ndarray) -> Record:
@@ -360,7 +360,7 @@ def _thinned(record: Record, rows: int, model: ShipModel) -> Record:
     }
     wind = None if record.wind is None else (of_squares(record.wind[0]), mean(record.wind[1]))
     # An averaged row is known only if all of its rows are.
-    usable = mean(record.known.astype(float)) == 1.0
+    usable = mean(record.usable.astype(float)) == 1.0
     return Record(mean(record.time), mean(record.measured), units, wind, usable, record.remarks)
 
 

@@ -208,7 +208,7 @@ class _Model:
     record: Any
     model: Any
     choices: tuple
-    known: Any
+    observers: Any
 
     def predictor(self, number, original):
         """The model with the estimates of one of its observers."""
@@ -216,7 +216,7 @@ class _Model:
             self.record,
             self.model,
             original,
-            at_rows(self.known.motion, number),
+            at_rows(self.observers.motion, number),
         )
 
     def missed(self, rows, seen, holds):
@@ -227,8 +227,8 @@ class _Model:
         # Without the observed force, then with it at each rate of fading, all in one simulation.
         shares = np.array([0.0] + [1.0] * len(FADES) if holds else [0.0])[:, None, None]
         fades = np.array([0.0, *FADES])[: len(shares), None, None]
-        motion = Motion(*(value[:, rows] + 0.0 * shares for value in self.known.motion))
-        force = shares[..., None] * self.known.force[:, rows] if holds else None
+        motion = Motion(*(value[:, rows] + 0.0 * shares for value in self.observers.motion))
+        force = shares[..., None] * self.observers.force[:, rows] if holds else None
         earth = np.array([frame == "earth" for frame, _ in self.choices])[:, None]
         horizons = in_rows(self.record)
         predictions = predicted(

@@ -113,7 +113,7 @@ def missing_force(
     noise = replace(problem.noise, walk=problem.noise.jolt / FORCE_TIME)
     motion, slow = smoothed(linearised_by_parts(motion, record, model, []), noise, record, motion)
     # Acceleration times mass and added mass; not where the inputs are unknown.
-    force = np.where(record.known[:, None], slow[:, :3] @ model.mass_matrix.T, np.nan)
+    force = np.where(record.usable[:, None], slow[:, :3] @ model.mass_matrix.T, np.nan)
     return _in_frames(force.T, motion, record, model)
 
 

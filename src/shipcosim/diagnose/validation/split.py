@@ -80,7 +80,7 @@ def starts(record: Record) -> np.ndarray:
         round(SETTLED / h), record.time.size - horizons[-1], max(1, round(START_STEP / h))
     )
     # Cumulative count of rows with unknown inputs: equal at both ends where there is none between.
-    lost = running_sums(~record.known)
+    lost = running_sums(~record.usable)
     # Position and heading must be measured near the start and near each horizon.
     measured = np.isfinite(record.measured[:, :3]).all(-1)
     near = np.convolve(measured, np.ones(2 * round(MEASURED_WITHIN / h) + 1), "same") > 0.0
@@ -136,7 +136,7 @@ def trained(problem: IdentificationProblem, train: np.ndarray) -> Identification
     cut = replace(
         cut,
         measured=np.where(train[:, None], cut.measured, np.nan),
-        known=cut.known & np.append(steps, True),
+        usable=cut.usable & np.append(steps, True),
     )
 
     def part(rows):

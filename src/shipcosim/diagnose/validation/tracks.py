@@ -207,7 +207,7 @@ def _segments(record: Record, horizon: float) -> tuple[np.ndarray, int]:
     rows = []
     row = 0
     while row + count + 1 < record.time.size:
-        if whole[row] and record.known[row : row + count].all():
+        if whole[row] and record.usable[row : row + count].all():
             rows.append(row)
             row += count
         else:

@@ -46,7 +46,7 @@ class CauseSection:
     estimates, gains : Table
         Of the named causes: their parameters; what they gain, beside what healthy ships show.
     figures, unmodelled, whiteness : tuple of Figure
-    alike, others : Table
+    rivals, others : Table
         Causes that this log cannot tell apart, and other candidates.
     is_unknown : bool
         Whether something acts that no cause explains.
@@ -61,7 +61,7 @@ class CauseSection:
 
     found: str
     estimates: Table
-    alike: Table
+    rivals: Table
     others: Table
     is_unknown: bool
     sail: Sail | None
@@ -91,7 +91,7 @@ def cause_section(diagnosis: Diagnosis, evidence: Evidence | None) -> CauseSecti
     section = CauseSection(
         found=_found_text(diagnosis),
         estimates=_estimates(diagnosis),
-        alike=_chances(rivals),
+        rivals=_chances(rivals),
         others=_chances(others),
         is_unknown=diagnosis.verdict == "unknown",
         sail=_sail(diagnosis),

@@ -190,8 +190,8 @@ def test_a_large_error_is_said_with_axis_size_and_sense_whatever_its_cause():
 
 def test_where_nobody_knows_what_is_wrong_the_largest_error_is_said_in_any_case():
     comparison = healthy(11).comparison
-    (largest,) = comparison.told("unknown")
-    assert comparison.told("consistent") == () and largest.axis == comparison.missing[0].axis
+    (largest,) = comparison.for_verdict("unknown")
+    assert comparison.for_verdict("consistent") == () and largest.axis == comparison.missing[0].axis
     assert largest.unit in ("N", "N.m") and largest.estimate > largest.std > 0.0
     large = replace(comparison, discrepancies=(largest,))
-    assert large.told("consistent") == () and large.told("named") == (largest,)
+    assert large.for_verdict("consistent") == () and large.for_verdict("named") == (largest,)

@@ -39,12 +39,12 @@ def test_effects_of_one_shape_look_alike_and_others_do_not(seed):
     rng = np.random.default_rng(seed)
     a, b = rng.normal(size=(2, 400))
     found = told({"a": a, "twice a": 2.0 * a, "b": b, "nearly b": b + 0.05 * a, "small": 1e-3 * b})
-    assert found["a"].alike == ("twice a",) and found["twice a"].alike == ("a",)
+    assert found["a"].similar == ("twice a",) and found["twice a"].similar == ("a",)
     # They differ by half of 0.05^2 times 400, less than 3 nats.
-    assert "nearly b" in found["b"].alike and "b" in found["nearly b"].alike
-    assert "a" not in found["b"].alike
+    assert "nearly b" in found["b"].similar and "b" in found["nearly b"].similar
+    assert "a" not in found["b"].similar
     assert found["a"].gain == pytest.approx(0.5 * a @ a)
-    assert not found["small"].is_seen and found["small"].alike == ()
+    assert not found["small"].is_seen and found["small"].similar == ()
 
 
 def test_a_known_number_hides_what_has_its_shape_as_far_as_it_may_be_off():

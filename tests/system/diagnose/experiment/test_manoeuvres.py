@@ -67,7 +67,7 @@ def believed(values, spread=0.1, of=None):
     """Causes by label with the values of their numbers, known to a share of their typical size."""
     of = of or problem()
     present = [hypothesis for hypothesis in of.hypotheses if hypothesis.label in values]
-    known = of.known(present)
+    known = of.ship_columns(present)
     own = [
         Regressor({path: of.model.tolerances[path]})
         for hypothesis in present

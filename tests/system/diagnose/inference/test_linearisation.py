@@ -260,7 +260,7 @@ def test_waves_are_an_oscillator_moved_by_white_noise():
 
 def test_steps_over_which_nothing_is_known_teach_nothing():
     record, model, motion, _ = about()
-    known = record.known.copy()
+    known = record.usable.copy()
     known[50:60] = False
     linear = linearise(motion, _with(record, known), model, REGRESSORS)
     assert (linear.driven[50:60] == 0.0).all() and (linear.driven[49] != 0.0).any()
@@ -299,7 +299,7 @@ def dense():
     mean = [np.zeros((STATES, Z.shape[-1]))]
     for k in range(n - 1):
         mean.append(A[k] @ mean[k] + B[k])
-        Q = _process(noise, record.step) + (0.0 if record.known[k] else 1.0) * _lost()
+        Q = _process(noise, record.step) + (0.0 if record.usable[k] else 1.0) * _lost()
         for j in range(k + 1):
             covariance[k + 1, j] = A[k] @ covariance[k, j]
             covariance[j, k + 1] = covariance[k + 1, j].T

@@ -28,7 +28,7 @@ REGRESSORS = [Regressor(changes) for changes in CHANGES]
 def log():
     """Record and motion of 361 rows, one step of which is not known."""
     record = record_of(twin.logs()["healthy"], twin.model())
-    record.known[90] = False
+    record.usable[90] = False
     return record, first_motion(record)
 
 

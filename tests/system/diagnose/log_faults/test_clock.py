@@ -65,11 +65,11 @@ def test_a_compass_that_deviates_with_the_heading_is_no_clock():
     deviated = np.mod(heading + 15.0 * np.sin(np.radians(heading) + 4.5), 360.0)
     problem = twin.ready(log.assign(heading=("time", deviated, log["heading"].attrs)))
     gain, finding = timing._most_likely(
-        timing._blocks(problem, timing._edges(problem), problem.known(()))
+        timing._blocks(problem, timing._edges(problem), problem.ship_columns(()))
     )
     assert gain > 30.0 and finding.cause == "clock"
     assert (
-        not timing._all_aspects_agree(problem, finding, problem.known(()))
+        not timing._all_aspects_agree(problem, finding, problem.ship_columns(()))
         and clock_by_response(problem) is None
     )
 
@@ -93,6 +93,6 @@ def test_thrusters_that_push_less_for_a_while_are_no_clock():
         ("time",),
     )
     problem = twin.ready(log.assign(told))
-    assert not timing._all_aspects_agree(problem, clock, problem.known(()))
+    assert not timing._all_aspects_agree(problem, clock, problem.ship_columns(()))
     slow, told = twin.ready(hurried(log)), {"rate": ParameterEstimate(RATE, 0.02, "1")}
-    assert timing._all_aspects_agree(slow, replace(clock, parameters=told), slow.known(()))
+    assert timing._all_aspects_agree(slow, replace(clock, parameters=told), slow.ship_columns(()))

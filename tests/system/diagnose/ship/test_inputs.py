@@ -52,14 +52,14 @@ def test_channels_are_in_si_and_angles_do_not_jump():
     np.testing.assert_allclose(n[1:-1], 1.0 + 0.005 * TIME[1:-1], rtol=1e-12)
     np.testing.assert_allclose(np.diff(azimuth[1:-1]), np.radians(0.5), rtol=1e-9)
     np.testing.assert_allclose(np.diff(record.wind[1][1:-1]), np.radians(0.2), rtol=1e-9)
-    assert record.step == 1.0 and record.known.all() and record.remarks == ()
+    assert record.step == 1.0 and record.usable.all() and record.remarks == ()
 
 
 @pytest.mark.parametrize("role", ["port_rpm", "starboard_azimuth", "tunnel_rpm", "wind_from"])
 def test_steps_next_to_a_gap_in_what_drives_the_ship_are_not_known(role):
     """Over rows 100 to 110 nothing is known: not what happens from row 99 on, but from row 111 on."""
     record = record_of(log(**holed(role, 100, 110)), twin.model())
-    assert np.flatnonzero(~record.known).tolist() == list(range(99, 111))
+    assert np.flatnonzero(~record.usable).tolist() == list(range(99, 111))
     for series in (*record.units["port"], *record.units["starboard"], *record.wind):
         assert np.isfinite(series).all()
 
@@ -67,7 +67,7 @@ def test_steps_next_to_a_gap_in_what_drives_the_ship_are_not_known(role):
 def test_a_gap_in_a_measurement_stays_one_and_the_ship_is_driven_on():
     record = record_of(log(**holed("north", 100, 110)), twin.model())
     assert np.flatnonzero(np.isnan(record.measured[:, 0])).tolist() == list(range(100, 111))
-    assert record.known.all()
+    assert record.usable.all()
 
 
 def test_heading_does_not_jump_across_a_gap_through_north():
@@ -121,7 +121,7 @@ def test_what_is_not_in_the_log_is_said():
     )
     assert "No wind" in record.remarks[2] and record.wind is None and len(record.remarks) == 3
     assert record.inputs(twin.model()).wind_speed is None
-    assert (record.units["tunnel"][0] == 0.0).all() and record.known.all()
+    assert (record.units["tunnel"][0] == 0.0).all() and record.usable.all()
 
 
 def test_wind_over_ground_serves_where_there_is_no_apparent_wind():

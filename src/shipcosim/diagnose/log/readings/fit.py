@@ -64,12 +64,12 @@ class RowsFit:
     """A relation with what is needed to weigh it against others: white rows, and how likely what is left is.
 
     `as_labelled` is what the labels leave of the same rows. `wander` and `rows_noise` are the variance that noise of
-    what is told adds from row to row, whitened and over both axes: by what is left, and by how much neighbouring rows
-    of what is told differ.
+    the reported change adds from row to row, whitened and over both axes: by what is left, and by how much its
+    neighbouring rows differ.
     """
 
     seen: np.ndarray
-    told: np.ndarray
+    reported: np.ndarray
     factor: complex
     variance: float
     likelihood: float
@@ -79,7 +79,7 @@ class RowsFit:
 
     @property
     def rest(self) -> np.ndarray:
-        return self.seen - self.factor * self.told
+        return self.seen - self.factor * self.reported
 
 
 def fitted(
@@ -228,13 +228,13 @@ def _relation(fit, evidence, rough):
     """The relation of a fit."""
     # Standard error: the larger of the jackknife over windows and
     # of that of least squares with the residuals' correlation.
-    windows = np.array_split(np.arange(len(fit.told)), RELATION_WINDOWS)
-    energy = np.vdot(fit.told, fit.told).real
+    windows = np.array_split(np.arange(len(fit.reported)), RELATION_WINDOWS)
+    energy = np.vdot(fit.reported, fit.reported).real
     size = max(abs(fit.factor), 1e-300)
     std = max(_jackknife(fit, windows), math.sqrt(rough * fit.variance / energy) / size)
     # Noise in the regressor attenuates the factor; correct its
     # logarithm, and add the uncertainty of the correction.
-    low, unsure = _too_small(len(fit.told) / (size**2 * energy), fit)
+    low, unsure = _too_small(len(fit.reported) / (size**2 * energy), fit)
     factor = complex(math.log(size) + low, np.angle(fit.factor))
     return Relation(factor, (math.hypot(std, unsure), std), evidence, _throughout(fit, windows))
 
@@ -257,7 +257,7 @@ def _jackknife(fit, windows):
     # Per window the energy of the regressor and its product with the residual.
     sums = np.array(
         [
-            [np.vdot(fit.told[w], fit.told[w]).real, np.vdot(fit.told[w], fit.rest[w])]
+            [np.vdot(fit.reported[w], fit.reported[w]).real, np.vdot(fit.reported[w], fit.rest[w])]
             for w in windows
         ]
     )

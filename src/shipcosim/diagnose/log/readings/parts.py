@@ -148,8 +148,8 @@ def _gains(
     readings = {sentence: reading for sentence, reading in readings.items() if reading != labelled}
     predicted = [labelled, *readings.values()]
     # Whitening is linear: whiten each form once, and take what each reading leaves of the white rows.
-    names = list(relation.told)
-    series = np.column_stack([relation.seen, *relation.told.values()])[few]
+    names = list(relation.reported)
+    series = np.column_stack([relation.seen, *relation.reported.values()])[few]
     column = [1 + names.index(form) for form, _ in predicted]
     factors = np.array([factor for _, factor in predicted])
     best = _Noise(-np.inf)

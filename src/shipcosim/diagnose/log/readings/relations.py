@@ -46,7 +46,7 @@ class RowsOfRelation:
         Rows of the log in which all its channels have values.
     seen : (n,) complex array
         Position [m] or heading [deg].
-    told : dict of (n,) complex arrays
+    reported : dict of (n,) complex arrays
         What each form of the rate adds up to.
     axes : int
         2 of positions, 1 of headings.
@@ -54,7 +54,7 @@ class RowsOfRelation:
 
     rows: np.ndarray
     seen: np.ndarray
-    told: dict[tuple[str, str], np.ndarray]
+    reported: dict[tuple[str, str], np.ndarray]
     axes: int
 
     def predicted(self, reading: LogInterpretation) -> tuple[tuple[str, str], complex]:

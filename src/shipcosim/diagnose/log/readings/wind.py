@@ -166,7 +166,7 @@ def _tamed(fits):
         key: (
             (fit.likelihood - best.likelihood) / rough,
             fit.factor,
-            rough * 2.0 * fit.variance / max(np.vdot(fit.told, fit.told).real, 1e-300),
+            rough * 2.0 * fit.variance / max(np.vdot(fit.reported, fit.reported).real, 1e-300),
         )
         for key, fit in fits.items()
     }
