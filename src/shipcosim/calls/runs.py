@@ -35,7 +35,7 @@ from shipcosim.cosim.simulate import clock_start, with_open_snapshot
 from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.options import RunKeywords, RunOptions
 from shipcosim.results.run import Run
-from shipcosim.results.signals import chosen
+from shipcosim.scenario.signals import chosen
 from shipcosim.scenario import (
     Record,
     Scenario,
@@ -47,7 +47,6 @@ from shipcosim.scenario import (
     within_run,
 )
 from shipcosim.ssp import System, read_log_config, settings_for, step_remarks, with_values
-from shipcosim.ssp.read.structure import label
 from shipcosim.staging import check_targets, set_file_aside
 from shipcosim.units import as_python
 
@@ -192,25 +191,18 @@ class PreparedRun:
 
 
 def with_record(
-    scenario: Scenario, system: System, record: AnyPath | Sequence[AnyPath], has_interval: bool
+    scenario: Scenario, record: AnyPath | Sequence[AnyPath], has_interval: bool
 ) -> Scenario:
     """The scenario with what is recorded of it.
 
     Parameters
     ----------
     scenario : Scenario
-    system : System
-        Whose signals these are.
     record : path or sequence of path
         Signals, components, connectors or patterns, in place of the scenario's; or a LogConfig.xml of libcosim, which
         gives the interval of rows, too.
     has_interval : bool
         Whether the interval is asked for otherwise.
-
-    Raises
-    ------
-    ShipcosimError
-        If the system has no such signal.
     """
     signals: list[str] = []
     for one in [os.fspath(one) for one in listed(record, "record")]:
@@ -224,22 +216,6 @@ def with_record(
             scenario = scenario.model_copy(update={"output_interval": interval})
     if signals:
         scenario = scenario.model_copy(update={"record": Record(signals=signals)})
-
-    # A run records outputs, and inputs that nothing feeds or an event changes: ask for others before it begins.
-    fed = set(map(label, system.feeding))
-    changed = {
-        name for event in scenario.events for name in (*event.override, *event.bias, *event.reset)
-    }
-    variables = {
-        f"{component.name}.{variable.name}": variable.causality
-        for component, variable in system.all_variables()
-    }
-    recorded = [
-        name
-        for name, causality in variables.items()
-        if causality == "output" or (causality == "input" and (name not in fed or name in changed))
-    ]
-    chosen([*recorded, *system.inputs, *system.outputs], scenario.record.signals)
     return scenario
 
 
@@ -361,7 +337,7 @@ def prepare_run(
     happening = scenario_of(
         given, system, times | {"set": fitting | start_values, "events": list(events)}
     )
-    happening = with_record(happening, system, record, output_interval is not None)
+    happening = with_record(happening, record, output_interval is not None)
     how = options_of(options)
     texts = [
         *changed,
@@ -516,7 +492,7 @@ def prepare_simulation(
     since = _clock_start(how, is_given=start_time is not None)
     happening = scenario_of(scenario, ship, keys, since)
     happening, remarks = with_osp_events(happening, osp_events, how.start_time)
-    happening = with_record(happening, ship, record, output_interval is not None)
+    happening = with_record(happening, record, output_interval is not None)
     texts += [f"records {Path(one).name}" for one in listed(record)]
     if scenario is None and step_size is None:
         remarks += step_remarks(ship, since, happening.stop_time)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
+from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -196,7 +198,12 @@ def print_report(checked: CheckedFiles) -> None:
     console = make_console(soft_wrap=True)
     for file, problems in checked.files.items():
         # What must be mended stands first, what is only to be known takes a line.
-        for problem in sorted(worth_showing(problems), key=lambda one: not one.is_error):
+        shown = sorted(worth_showing(problems), key=lambda one: not one.is_error)
+        for _, alike in groupby(shown, key=lambda one: (one.severity, one.found, one.remedy)):
+            # What several places have in common stands once, below all of them.
+            *others, problem = alike
+            for other in others:
+                console.print(_block(replace(other, found="", remedy="")), end="")
             block = _block(problem)
             console.print(block if problem.is_error else Text(" ").join(block.split("\n")))
         errors = sum(problem.is_error for problem in problems)

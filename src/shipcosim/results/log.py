@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from shipcosim.errors import error_at
 from shipcosim.results.shown import LikeTable, Picture
-from shipcosim.results.signals import chosen
+from shipcosim.scenario.signals import chosen
 
 if TYPE_CHECKING:
     import pandas

@@ -18,7 +18,7 @@ from shipcosim.results.shown import (
     Result,
     passed_or_failed,
 )
-from shipcosim.results.signals import chosen
+from shipcosim.scenario.signals import chosen
 from shipcosim.series import write_json
 from shipcosim.staging import staged
 

@@ -121,6 +121,23 @@ def test_two_intervals_in_one_scenario_are_refused(call, project):
     assert failed.code == 2 and "two intervals of rows" in failed.err
 
 
+@pytest.mark.parametrize(
+    ("signal", "said"),
+    [
+        ("lagg", "lagg: There is no such signal or component."),
+        ("lag.u", "it is what level_set puts out. Take level_set instead."),
+    ],
+)
+def test_check_finds_what_a_scenario_cannot_keep_at_its_line(call, full, project, signal, said):
+    scenario = project / "scenarios" / "fill.toml"
+    scenario.write_text(f'{scenario.read_text()}\n[record]\nsignals = ["{signal}"]\n')
+    line = len(scenario.read_text().splitlines())
+    for command in ("check", "run"):
+        failed = call(command, "scenarios/fill.toml")
+        assert failed.code in (1, 2) and said in failed.out + failed.err
+        assert f"scenarios/fill.toml, line {line}:" in failed.out + failed.err
+
+
 def test_command_and_call_keep_the_same(call, project):
     call("run", "fill", "--record", "lag.*", "--every", "500 ms", "--out", "a")
     sc.run("fill", record="lag.*", output_interval=0.5, out="b")
