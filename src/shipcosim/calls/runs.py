@@ -35,7 +35,6 @@ from shipcosim.cosim.simulate import clock_start, with_open_snapshot
 from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.options import RunKeywords, RunOptions
 from shipcosim.results.run import Run
-from shipcosim.scenario.signals import chosen
 from shipcosim.scenario import (
     Record,
     Scenario,
@@ -46,6 +45,7 @@ from shipcosim.scenario import (
     with_numbers,
     within_run,
 )
+from shipcosim.scenario.signals import chosen
 from shipcosim.ssp import System, read_log_config, settings_for, step_remarks, with_values
 from shipcosim.staging import check_targets, set_file_aside
 from shipcosim.units import as_python
