@@ -33,6 +33,7 @@ THE_LINE = (
     "from the reference",
 )  # where a panel shows more than the run
 MOST_MOMENTS = 5  # differences to go to
+MOST_CHOSEN = 3  # signals that are drawn first where there is no ship, of both runs
 MOST_CHANGES = 8  # start values that differ, at the top of the page
 MOST_DIFFERENCES = 25  # signals in the table of differences
 SAME = 1e-9  # of a signal's range: a difference below it is rounding
@@ -238,6 +239,7 @@ def _page(pair: Pair, found: Sequence[Difference]) -> RunPage:
     data = drawn_data(drawn, choice, runs, sections, ())
     if moments:
         data["opens_at"] = moments[0].time
+        data["chosen"] = [f"{name}: {d.signal}" for d in found[:MOST_CHOSEN] for name in pair.names]
     return RunPage(
         title=f"{pair.names[0]} and {pair.names[1]}",
         facts=tuple(facts),

@@ -73,9 +73,11 @@ def parameters_of(system: System) -> list[ParameterValue]:
     Returns
     -------
     list of ParameterValue
-        By component, in the order of its FMU; arrays and parameters without a start value are left out.
+        By component, in the order of its FMU; arrays and parameters without a start value are left out. Those of one
+        FMU have its own names, so that the set can be bound to any component of it.
     """
     found = []
+    is_one = system.file.lower().endswith(".fmu")
     for component, variable in system.all_variables():
         value = component.start_value(variable.name)
         if variable.causality not in ("parameter", "structuralParameter"):
@@ -86,7 +88,7 @@ def parameters_of(system: System) -> list[ParameterValue]:
         names = {number: item for item, number in variable.items.items()}
         found.append(
             ParameterValue(
-                f"{component.name}.{variable.name}",
+                variable.name if is_one else f"{component.name}.{variable.name}",
                 variable.kind,
                 names.get(value, value) if variable.kind == "Enumeration" else value,
                 find_unit(variable.unit, component.fmu.units),

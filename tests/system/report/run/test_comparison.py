@@ -117,6 +117,17 @@ def test_ships_of_other_names_are_compared_too(browse, tmp_path):
     assert page.ask("return document.getElementById('scene-vessel').hidden")
 
 
+def test_of_systems_without_a_ship_what_differs_is_drawn_of_both_runs(browse, tmp_path):
+    time = np.arange(0.0, 10.0)
+    names = [f"part.{letter}" for letter in "abcdefgh"]
+    tank = xr.Dataset({name: ("time", time, {"units": "m"}) for name in names}, {"time": time})
+    other = tank.assign({"part.h": tank["part.h"] * 2.0})
+    write_comparison((tank, other), ("dry", "wet"), tmp_path / "report.html")
+    page = browse(tmp_path / "report.html")
+    drawn = "return [...document.querySelectorAll('#choices input:checked')].map(box => box.value)"
+    assert page.ask(drawn) == ["dry: part.h", "wet: part.h"]
+
+
 def test_runs_with_nothing_in_common_are_refused(tmp_path):
     other = boat().rename({name: f"other.{name}" for name in boat().data_vars})
     with pytest.raises(ShipcosimError, match="no signal in common"):
