@@ -174,7 +174,10 @@ def _unit(
 
 
 def _screw(
-    one: FixedPropeller | Azimuth | Tunnel, own: Numbers, form: HullDimensions, kind: str
+    one: FixedPropeller | Azimuth | Tunnel | PropellerWithRudder,
+    own: Numbers,
+    form: HullDimensions,
+    kind: str,
 ) -> Screw | None:
     """Propeller of a thruster, missing data estimated; None and a problem if that fails."""
     # Diameter, and power or thrust, are the least that an estimate needs.
@@ -381,5 +384,6 @@ def _rudder(
             form, single=alone, span=span, area=float(area.value), covered=D / span
         )
     )
-    # The DP does not use it: there is no thrust command.
-    return _unit(one, own, 0.0, 0.0, 0.0, 0.0)
+    # The DP does not use it: there is no thrust command. Its power says at which speeds the shaft can turn.
+    screw = _screw(one, own, form, "open") if one.power or one.thrust else None
+    return _unit(one, own, 0.0, 0.0, 0.0, 0.0, screw)

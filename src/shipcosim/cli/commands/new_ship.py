@@ -37,7 +37,9 @@ def ship(
     thrusters: Annotated[
         list[str] | None,
         typer.Option(
-            "--thruster", metavar="KEYS", help='"name=bow, kind=tunnel, x=25 m, ..."; repeatable.'
+            "--thruster",
+            metavar="KEYS",
+            help='"name=bow, kind=tunnel, x=25 m, ..."; repeatable. With --propulsion in addition to it.',
         ),
     ] = None,
     yes: Annotated[
