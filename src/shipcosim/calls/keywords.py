@@ -18,6 +18,7 @@ KINDS: dict[str, tuple[Any, str]] = {
     "AnyPath": ((str, os.PathLike), "a path or name"),
     "str": (str, "a text"),
     "PathLike": (os.PathLike, "a path"),
+    "Path": (os.PathLike, "a path"),
     "bool": (bool, "True or False"),
     "float": (Real, "a number"),
     "int": (Integral, "a whole number from 0 on"),
@@ -27,6 +28,7 @@ KINDS: dict[str, tuple[Any, str]] = {
     "CountProgress": (Callable, "a function"),
     "Progress": (Callable, "a function"),
     "Scenario": ((), "a Scenario"),
+    "Run": ((), "a Run"),
     "Dataset": ((), "a Dataset, as of shipcosim.read_table(FILE)"),
     "DataFrame": ((), "a DataFrame"),
     "Snapshot": ((), "a Snapshot"),
@@ -60,13 +62,13 @@ def with_known_keywords(function: Function) -> Function:
     shipcosim.errors.ShipcosimError: sail(): speed = 'fast'. Give a number.
     """
     signature = inspect.signature(function)
-    parameters = signature.parameters.values()
+    parameters = signature.parameters
     known = {
         one.name: one.annotation
-        for one in parameters
+        for one in parameters.values()
         if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)
     }
-    if any(one.kind is one.VAR_KEYWORD for one in parameters):
+    if any(one.kind is one.VAR_KEYWORD for one in parameters.values()):
         known |= {name: kind.__forward_arg__ for name, kind in RunKeywords.__annotations__.items()}
 
     @wraps(function)
@@ -86,7 +88,15 @@ def with_known_keywords(function: Function) -> Function:
             raise error_at(where, f"{capitalised(str(error))}.", remedy) from None
         wrong = []
         for name, value in {**given, **keywords}.items():
-            if wanted := _other_kind(str(known.get(name)), value):
+            # Modules without postponed annotations have classes in place of their names.
+            annotation = getattr(known.get(name), "__name__", str(known.get(name)))
+            if (
+                value is None
+                and name in parameters
+                and parameters[name].default is not inspect.Parameter.empty
+            ):
+                continue
+            if wanted := _other_kind(annotation, value):
                 wrong.append(Problem(where, f"{name} = {value!r:.60}.", f"Give {wanted}."))
         raise_errors(wrong)
         return function(*arguments, **keywords)
@@ -99,10 +109,11 @@ def _other_kind(annotation: str, value: Any) -> str:
     for alias, meant in MEANT.items():
         annotation = annotation.replace(alias, meant)
     kinds = [part.partition("[")[0].rpartition(".")[2] for part in annotation.split(" | ")]
-    if value is None or not set(kinds) <= set(KINDS) or set(kinds) >= TIME:
+    # Classes are known by their names: importing xarray takes longer than most calls. A Run or Log is like its table.
+    names = {one.__name__.replace("LikeTable", "Dataset") for one in type(value).__mro__}
+    is_none = "NoneType" in names and "None" in kinds
+    if not set(kinds) <= set(KINDS) or set(kinds) >= TIME or is_none:
         return ""
-    # Classes are known by their names: importing xarray takes longer than most calls.
-    names = {one.__name__ for one in type(value).__mro__}
     for kind in kinds:
         fits = kind in names or isinstance(value, KINDS[kind][0])
         # True is a number to Python; counts are not negative.

@@ -32,12 +32,12 @@ def chosen(names: Iterable[str], wanted: Sequence[str]) -> list[str]:
     known = list(names)
     found = {}
     problems = []
-    for one in wanted:
+    for one in map(str, wanted):
         matching = _matching(known, one)
         found |= dict.fromkeys(matching)
         if not matching:
             problems.append(
-                Problem(str(one), "There is no such signal or component.", _remedy(known, str(one)))
+                Problem(one, "There is no such signal or component.", _remedy(known, one))
             )
     raise_errors(problems)
     return list(found)

@@ -82,7 +82,7 @@ def test_a_run_can_be_copied(gust):
 def test_pandas_has_the_signals_over_time(gust):
     frame = gust.to_pandas()
     assert frame.index.name == "time"
-    assert frame["vessel.psi"].to_numpy() == pytest.approx(gust["vessel.psi"].values)
+    assert frame["vessel.psi [rad]"].to_numpy() == pytest.approx(gust["vessel.psi"].values)
 
 
 def test_expectations_are_judged_as_the_scenario_says(tmp_path):

@@ -74,7 +74,6 @@ class Pair:
     shift: float
 
 
-@np.errstate(over="ignore", invalid="ignore")
 def write_comparison(
     tables: tuple[Dataset, Dataset], names: tuple[str, str], path: AnyPath
 ) -> tuple[Outcome, list[Difference]]:
@@ -101,12 +100,27 @@ def write_comparison(
     ShipcosimError
         If a run has no rows, the two have no signal in common, or the file cannot be written.
     """
-    # Put both runs on common times, then compare and write.
+    found = compared(tables, names)
+    write_file(path, render("run/templates/run.html.jinja", found.page).encode())
+    return found.page.outcome, found.differences
+
+
+class Comparison(NamedTuple):
+    """Two runs on common times, both with their names in one table, their differences, and what the page shows."""
+
+    pair: Pair
+    both: Dataset
+    differences: list[Difference]
+    page: RunPage
+
+
+@np.errstate(over="ignore", invalid="ignore")
+def compared(tables: tuple[Dataset, Dataset], names: tuple[str, str]) -> Comparison:
+    """Put two runs on common times and compare them; arguments and errors as of `write_comparison`."""
     pair = lay_over(tables, names)
     found = _ordered(pair, differences(pair))
-    page = _page(pair, found)
-    write_file(path, render("run/templates/run.html.jinja", page).encode())
-    return page.outcome, found
+    both = _merged(pair)
+    return Comparison(pair, both, found, _page(pair, both, found))
 
 
 def lay_over(tables: tuple[Dataset, Dataset], names: tuple[str, str]) -> Pair:
@@ -215,8 +229,7 @@ def _like(shown: Dataset, other: Dataset) -> Dataset:
 # What the page shows.
 
 
-def _page(pair: Pair, found: Sequence[Difference]) -> RunPage:
-    merged = _merged(pair)
+def _page(pair: Pair, merged: Dataset, found: Sequence[Difference]) -> RunPage:
     drawn, thinned = drawn_rows(merged)
     runs = [
         run

@@ -17,7 +17,7 @@ from shipcosim.ssp.xml.archive import replaced, write_archive
 from shipcosim.ssp.xml.document import AnyPath, Findings, qualified
 from shipcosim.ssp.xml.markup import add, ensure, to_bytes
 from shipcosim.ssp.xml.values import Value
-from shipcosim.units import find_unit
+from shipcosim.units import as_python, find_unit
 
 KIND_OF = {bool: "Boolean", int: "Integer", float: "Real", str: "String", bytes: "Binary"}
 
@@ -52,13 +52,16 @@ def parameter(
     Raises
     ------
     ShipcosimError
-        If the unit's spelling makes no sense.
+        If the unit's spelling makes no sense, or the value is of another type.
     """
     # A unit must be convertible, or the value has no meaning.
     defined = find_unit(unit)
     if defined is not None and defined.exponents is None:
         raise error_at(name, f"The unit '{unit}' is not known.", "Spell it as in FMI: 'kg.m2/s'.")
-    kind = "Real" if unit is not None and type(value) is int else KIND_OF[type(value)]
+    value = as_python(value)
+    kind = "Real" if unit is not None and type(value) is int else KIND_OF.get(type(value))
+    if kind is None:
+        raise error_at(name, f"found {value!r:.60}.", "Give a number, True or False, or a text.")
     return ParameterValue(name, kind, value, defined, description, tolerance=tolerance)
 
 
