@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import shipcosim
 from shipcosim.errors import ShipcosimError
 from shipcosim.report import write_comparison
 from shipcosim.report.run.comparison import differences, lay_over
@@ -157,3 +158,14 @@ def test_a_ship_that_is_nowhere_at_times_has_a_page(tmp_path, largest, rows):
     table["boat.y"].values[rows] = largest
     outcome, _ = write_comparison((table, table), ("A", "B"), tmp_path / "page.html")
     assert outcome.word == "SAME"
+
+
+def test_the_page_of_two_ships_is_not_wider_than_the_window(browse, tmp_path):
+    calm = shipcosim.run("gust", stop_time=2.0)
+    rough = shipcosim.run("gust", stop_time=2.0, set={"environment.wind_speed": 12.0})
+    page = browse(shipcosim.report(calm, rough).page().save(tmp_path / "report.html"))
+    assert page.ask("return document.documentElement.scrollWidth <= innerWidth")
+    # Below the compasses nothing reaches out of its instrument.
+    inside = """return [...document.querySelectorAll('#scene-compasses .instrument')].every((one) =>
+        one.querySelector('table').getBoundingClientRect().right <= one.getBoundingClientRect().right)"""
+    assert page.ask(inside)
