@@ -47,6 +47,7 @@ from shipcosim.scenario import (
 )
 from shipcosim.scenario.signals import chosen
 from shipcosim.ssp import System, read_log_config, settings_for, step_remarks, with_values
+from shipcosim.ssp.read.structure import label
 from shipcosim.staging import check_targets, set_file_aside
 from shipcosim.units import as_python
 
@@ -191,16 +192,18 @@ class PreparedRun:
 
 
 def with_record(
-    scenario: Scenario, record: AnyPath | Sequence[AnyPath], has_interval: bool
+    scenario: Scenario, system: System, record: AnyPath | Sequence[AnyPath], has_interval: bool
 ) -> Scenario:
     """The scenario with what is recorded of it.
 
     Parameters
     ----------
     scenario : Scenario
+    system : System
+        Whose signals these are.
     record : path or sequence of path
         Signals, components, connectors or patterns, in place of the scenario's; or a LogConfig.xml of libcosim, which
-        gives the interval of rows, too.
+        gives the interval of rows, too. A connected input in it stands for its source.
     has_interval : bool
         Whether the interval is asked for otherwise.
     """
@@ -210,7 +213,8 @@ def with_record(
             signals.append(one)
             continue
         config = read_log_config(one)
-        signals += config.signals
+        sources = {label(end): label(source) for end, source in system.feeding.items()}
+        signals += [sources.get(signal, signal) for signal in config.signals]
         if not has_interval:
             interval = config.steps * scenario.step_size
             scenario = scenario.model_copy(update={"output_interval": interval})
@@ -337,7 +341,7 @@ def prepare_run(
     happening = scenario_of(
         given, system, times | {"set": fitting | start_values, "events": list(events)}
     )
-    happening = with_record(happening, record, output_interval is not None)
+    happening = with_record(happening, system, record, output_interval is not None)
     how = options_of(options)
     texts = [
         *changed,
@@ -492,7 +496,7 @@ def prepare_simulation(
     since = _clock_start(how, is_given=start_time is not None)
     happening = scenario_of(scenario, ship, keys, since)
     happening, remarks = with_osp_events(happening, osp_events, how.start_time)
-    happening = with_record(happening, record, output_interval is not None)
+    happening = with_record(happening, ship, record, output_interval is not None)
     texts += [f"records {Path(one).name}" for one in listed(record)]
     if scenario is None and step_size is None:
         remarks += step_remarks(ship, since, happening.stop_time)

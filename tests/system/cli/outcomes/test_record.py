@@ -74,6 +74,13 @@ def test_log_config_of_libcosim_chooses_signals_and_rows(call, full, project):
     assert "records LogConfig.xml" in json.loads(table.attrs["changed"])
 
 
+def test_an_input_in_a_log_config_stands_for_its_source(call, full, project):
+    """libcosim logs inputs too, and its files name them; here the source has the same values."""
+    Path("LogConfig.xml").write_text(CONFIG.format(1).replace('"y"', '"u"'))
+    assert call("run", "fill", "--record", "LogConfig.xml", "--out", "out").code == 0
+    assert "level_set" in kept("out")[0]
+
+
 def test_log_config_without_variables_takes_all_of_a_simulator(tmp_path):
     (tmp_path / "c.xml").write_text(
         '<simulators><simulator name="a"/><simulator name="b" '
