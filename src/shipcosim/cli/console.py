@@ -107,7 +107,7 @@ def print_summary(result: Run, page: Path, *, to_stderr: bool = False) -> None:
         rows = [(words[passed], *cells) for passed, *cells in judged]
         print_table(console, rows, ("", "expected", "during", "worst", "at"))
     if predicted := texts(summarise(result.predictions)):
-        print_table(console, predicted, ("predicted", "position", "heading", ""))
+        print_table(console, predicted, ("error of the forecast", "position", "heading", ""))
     if "profile" in result.table.attrs:
         spent = rows_of(str(result.table.attrs["profile"]))
         rows = [(name, *(f"{one:.3f}" for one in seconds)) for name, seconds in spent]

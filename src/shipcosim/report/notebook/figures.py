@@ -126,8 +126,10 @@ def figure_svg(name: str, width: float, height: float, draw: Callable[[Figure], 
         import matplotlib
         from matplotlib.figure import Figure
     # A figure without pyplot, which would keep it and choose a window for it.
-    larger = width / CARD_WIDTH if IN_CARD.get() else 1.0
-    with matplotlib.rc_context(STYLE | {"font.size": larger * STYLE["font.size"]}):
+    style = dict(STYLE)
+    if IN_CARD.get():
+        style["font.size"] *= width / CARD_WIDTH
+    with matplotlib.rc_context(style):
         figure = Figure((width / DPI, height / DPI), layout="constrained")
         draw(figure)
         text = StringIO()

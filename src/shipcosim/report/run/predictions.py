@@ -287,7 +287,7 @@ def texts(summaries: Iterable[PredictionSummary]) -> list[tuple[str, str, str, s
                 f"{one.component}, {one.horizon:g} s ahead",
                 f"{one.position:.2f} m rms",
                 f"{np.degrees(one.heading):.1f} deg rms",
-                f"{' and '.join(within)} within the regions" if within else "no regions",
+                f"{' and '.join(within)} within the regions" if within else "no uncertainty given",
             )
         )
     return rows
