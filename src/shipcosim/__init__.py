@@ -7,12 +7,13 @@
 Names are imported when they are first asked for, so that the command line starts quickly.
 """
 
-from types import ModuleType
+from types import FunctionType, ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from shipcosim.calls.arguments import read_scenario
     from shipcosim.calls.logs import calibrate, diagnose, read_log, replay, sea_trials
+    from shipcosim.calls.reports import report
     from shipcosim.calls.runs import run, simulate
     from shipcosim.calls.studies import sweep
     from shipcosim.calls.systems import capability, check, compare, read
@@ -50,6 +51,7 @@ __all__ = [
     "read_scenario",
     "read_table",
     "replay",
+    "report",
     "run",
     "sea_trials",
     "simulate",
@@ -83,6 +85,8 @@ def _place_of(name: str) -> ModuleType:
         from shipcosim.calls import systems as place
     elif name == "sweep":
         from shipcosim.calls import studies as place
+    elif name == "report":
+        from shipcosim.calls import reports as place
     elif name == "simulate_many":
         from shipcosim.calls import variations as place
     elif name == "read_scenario":
@@ -113,13 +117,19 @@ def __getattr__(name):
         import shipcosim.capability as attribute
     elif name == "diagnose":
         import shipcosim.diagnose as attribute
+    elif name == "report":
+        import shipcosim.report as attribute
     elif name == "sweep":
         import shipcosim.sweep as attribute
     else:
         attribute = getattr(_place_of(name), name)
+    if isinstance(attribute, FunctionType) and not hasattr(attribute, "__wrapped__"):
+        from shipcosim.calls.keywords import with_known_keywords
+
+        attribute = with_known_keywords(attribute)
     globals()[name] = attribute
     return attribute
 
 
 def __dir__():
-    return sorted({*globals(), *__all__})
+    return sorted([*__all__, "__version__"])

@@ -12,6 +12,7 @@ AnyPath = str | os.PathLike[str]
 """A path as users give it."""
 LONGEST_TEXT = 4000  # characters of each part of a problem: a name can be as long as a file
 MOST_SHOWN = 100  # problems that anybody reads at once
+MOST_NAMES = 20  # that a remedy lists in full
 MOST_COMPARED = 1000  # names that a misspelt one is compared with, characters of one that is
 LONGEST_NAME = 200
 
@@ -238,7 +239,10 @@ def suggestion(name: object, choices: Iterable[str]) -> str:
     name, names = str(name), sorted(filter(None, choices))
     if not names:
         return "There is none."
-    shown = ", ".join(names[:12]) + (f", ... ({len(names)} in all)" if len(names) > 12 else "")
+    # A name that has a comma in it is quoted; a few names more than are usually shown are better than some left out.
+    count = len(names) if len(names) <= MOST_NAMES else 12
+    shown = ", ".join(f"'{choice}'" if "," in choice else choice for choice in names[:count])
+    shown += f", ... ({len(names)} in all)" if len(names) > count else ""
     same = [choice for choice in names[:MOST_COMPARED] if choice.lower() == name.lower()]
     close = (
         same or get_close_matches(name, names[:MOST_COMPARED], n=1)

@@ -1,5 +1,6 @@
 """The package as a library: cheap to import, and a system runs in a line."""
 
+import re
 import subprocess
 import sys
 
@@ -194,6 +195,29 @@ def test_folders_of_fmus_that_are_none_are_refused(folders):
 def test_failures_that_are_no_names_are_refused(failures):
     with pytest.raises(sc.ShipcosimError, match="neither a path nor a name"):
         sc.capability(failures=failures)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: sc.judge(None, "gust"), "judge(): table = None. Give a Dataset"),
+        (lambda: sc.new(3), "new(): name = 3. Give a text."),
+        (lambda: sc.write_table(3, "x.csv"), "write_table(): table = 3. Give a Dataset"),
+        (lambda: sc.write_report("x.html", "x.html"), "write_report(): table = 'x.html'."),
+        (lambda: sc.build_fmu(3, "out"), "build_fmu(): source = 3. Give a path"),
+        (lambda: sc.parameter("a.b", object), "a.b: found <class 'object'>. Give a number"),
+        (lambda: sc.report(1, 2), "report(): first = 1. Give a path"),
+        (lambda: sc.run(None), "run(): scenario = None. Give a path"),
+    ],
+)
+def test_every_public_call_refuses_a_wrong_type_in_a_sentence(call, message):
+    with pytest.raises(sc.ShipcosimError, match=re.escape(message)):
+        call()
+
+
+def test_only_what_is_public_is_offered():
+    assert not [name for name in dir(sc) if name.startswith("_") and name != "__version__"]
+    assert not {"Any", "ModuleType", "CallableRoom", "TYPE_CHECKING"} & set(dir(sc))
 
 
 def test_an_argument_that_is_none_is_as_good_as_left_out():

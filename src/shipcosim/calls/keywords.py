@@ -18,6 +18,7 @@ KINDS: dict[str, tuple[Any, str]] = {
     "AnyPath": ((str, os.PathLike), "a path or name"),
     "str": (str, "a text"),
     "PathLike": (os.PathLike, "a path"),
+    "Path": (os.PathLike, "a path"),
     "bool": (bool, "True or False"),
     "float": (Real, "a number"),
     "int": (Integral, "a whole number from 0 on"),
@@ -27,6 +28,7 @@ KINDS: dict[str, tuple[Any, str]] = {
     "CountProgress": (Callable, "a function"),
     "Progress": (Callable, "a function"),
     "Scenario": ((), "a Scenario"),
+    "Run": ((), "a Run"),
     "Dataset": ((), "a Dataset, as of shipcosim.read_table(FILE)"),
     "DataFrame": ((), "a DataFrame"),
     "Snapshot": ((), "a Snapshot"),
@@ -60,13 +62,13 @@ def with_known_keywords(function: Function) -> Function:
     shipcosim.errors.ShipcosimError: sail(): speed = 'fast'. Give a number.
     """
     signature = inspect.signature(function)
-    parameters = signature.parameters.values()
+    parameters = signature.parameters
     accepted = {
         parameter.name: parameter.annotation
-        for parameter in parameters
+        for parameter in parameters.values()
         if parameter.kind in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY)
     }
-    if any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters):
+    if any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters.values()):
         accepted |= {
             name: kind.__forward_arg__ for name, kind in RunKeywords.__annotations__.items()
         }
@@ -88,7 +90,15 @@ def with_known_keywords(function: Function) -> Function:
             raise error_at(where, f"{capitalised(str(error))}.", remedy) from None
         wrong = []
         for name, value in {**given, **keywords}.items():
-            if wanted := _other_kind(str(accepted.get(name)), value):
+            # Modules without postponed annotations have classes in place of their names.
+            annotation = getattr(accepted.get(name), "__name__", str(accepted.get(name)))
+            if (
+                value is None
+                and name in parameters
+                and parameters[name].default is not inspect.Parameter.empty
+            ):
+                continue
+            if wanted := _other_kind(annotation, value):
                 wrong.append(Problem(where, f"{name} = {value!r:.60}.", f"Give {wanted}."))
         raise_errors(wrong)
         return function(*arguments, **keywords)
@@ -101,10 +111,11 @@ def _other_kind(annotation: str, value: Any) -> str:
     for alias, meant in MEANT.items():
         annotation = annotation.replace(alias, meant)
     kinds = [part.partition("[")[0].rpartition(".")[2] for part in annotation.split(" | ")]
-    if value is None or not set(kinds) <= set(KINDS) or set(kinds) >= TIME:
+    # Classes are known by their names: importing xarray takes longer than most calls. A Run or Log is like its table.
+    names = {base.__name__.replace("LikeTable", "Dataset") for base in type(value).__mro__}
+    is_none = "NoneType" in names and "None" in kinds
+    if not set(kinds) <= set(KINDS) or set(kinds) >= TIME or is_none:
         return ""
-    # Classes are known by their names: importing xarray takes longer than most calls.
-    names = {base.__name__ for base in type(value).__mro__}
     for kind in kinds:
         fits = kind in names or isinstance(value, KINDS[kind][0])
         # True is a number to Python; counts are not negative.

@@ -35,7 +35,6 @@ from shipcosim.cosim.simulate import clock_start, with_open_snapshot
 from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.options import RunKeywords, RunOptions
 from shipcosim.results.run import Run
-from shipcosim.results.signals import chosen
 from shipcosim.scenario import (
     Record,
     Scenario,
@@ -46,6 +45,7 @@ from shipcosim.scenario import (
     with_numbers,
     within_run,
 )
+from shipcosim.scenario.signals import chosen
 from shipcosim.ssp import System, read_log_config, settings_for, step_remarks, with_values
 from shipcosim.ssp.read.structure import label
 from shipcosim.staging import check_targets, set_file_aside
@@ -203,14 +203,9 @@ def with_record(
         Whose signals these are.
     record : path or sequence of path
         Signals, components, connectors or patterns, in place of the scenario's; or a LogConfig.xml of libcosim, which
-        gives the interval of rows, too.
+        gives the interval of rows, too. A connected input in it stands for its source.
     has_interval : bool
         Whether the interval is asked for otherwise.
-
-    Raises
-    ------
-    ShipcosimError
-        If the system has no such signal.
     """
     signals: list[str] = []
     for entry in [os.fspath(path) for path in listed(record, "record")]:
@@ -218,28 +213,13 @@ def with_record(
             signals.append(entry)
             continue
         config = read_log_config(entry)
-        signals += config.signals
+        sources = {label(end): label(source) for end, source in system.feeding.items()}
+        signals += [sources.get(signal, signal) for signal in config.signals]
         if not has_interval:
             interval = config.steps * scenario.step_size
             scenario = scenario.model_copy(update={"output_interval": interval})
     if signals:
         scenario = scenario.model_copy(update={"record": Record(signals=signals)})
-
-    # A run records outputs, and inputs that nothing feeds or an event changes: ask for others before it begins.
-    fed = set(map(label, system.feeding))
-    changed = {
-        name for event in scenario.events for name in (*event.override, *event.bias, *event.reset)
-    }
-    variables = {
-        f"{component.name}.{variable.name}": variable.causality
-        for component, variable in system.all_variables()
-    }
-    recorded = [
-        name
-        for name, causality in variables.items()
-        if causality == "output" or (causality == "input" and (name not in fed or name in changed))
-    ]
-    chosen([*recorded, *system.inputs, *system.outputs], scenario.record.signals)
     return scenario
 
 

@@ -89,7 +89,8 @@ def check(
     Parameters
     ----------
     files : path or name, or a list of them
-        Systems, scenarios, studies, causes, parameter sets, FMUs, ship files, channel files, measured data.
+        Systems, scenarios, studies, causes, parameter sets, FMUs, ship files, channel files, measured data; of any
+        other folder all that is in it.
     channels : path, optional
         Channel file of measured data.
     hosts : sequence of str
@@ -121,8 +122,8 @@ def check(
     table = None if channels is None else Path(channels)
     paths = {}
     by_file: dict[str, list[Problem]] = {}
-    for file in listed(files, "files"):
-        name = os.fspath(file)
+    given = [os.fspath(file) for file in listed(files, "files")]
+    for name in [name for each in given for name in library.files_of(each)]:
         try:
             paths[name] = library.find_any(name)
         except ShipcosimError as error:

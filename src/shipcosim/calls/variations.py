@@ -25,8 +25,8 @@ from shipcosim.cosim import Variation
 from shipcosim.cosim import simulate_many as run_variations
 from shipcosim.errors import error_at
 from shipcosim.options import RunOptions
-from shipcosim.results.signals import chosen
 from shipcosim.scenario import Scenario
+from shipcosim.scenario.signals import chosen
 from shipcosim.ssp import System, with_values
 from shipcosim.units import as_python
 

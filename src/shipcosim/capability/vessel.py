@@ -178,6 +178,11 @@ def _thrusters_of(system: System, vessel: str) -> dict[str, Component]:
         for name, part in parts.items()
         if part.variables.keys() >= _THRUSTER or part.variables.keys() >= _PLAIN
     }
+    steered = [name for name, part in parts.items() if "rudder_area" in part.variables]
+    if steered:
+        remedy = 'With kind = "fixed" in the ship file its thrust counts, without the rudder.'
+        missing = f"{', '.join(steered)}: a propeller with a rudder is not in this balance."
+        raise error_at(system.file, missing, remedy)
     if not thrusters:
         remedy = "It needs components with the parameters of azimuth_thruster, tunnel_thruster or fixed_thruster."
         raise error_at(system.file, f"no thruster is connected to {vessel}.", remedy)

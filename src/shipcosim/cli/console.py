@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
+from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -105,7 +107,7 @@ def print_summary(result: Run, page: Path, *, to_stderr: bool = False) -> None:
         rows = [(words[passed], *cells) for passed, *cells in judged]
         print_table(console, rows, ("", "expected", "during", "worst", "at"))
     if predicted := texts(summarise(result.predictions)):
-        print_table(console, predicted, ("predicted", "position", "heading", ""))
+        print_table(console, predicted, ("error of the forecast", "position", "heading", ""))
     if "profile" in result.table.attrs:
         spent = rows_of(str(result.table.attrs["profile"]))
         rows = [(name, *(f"{duration:.3f}" for duration in seconds)) for name, seconds in spent]
@@ -196,7 +198,12 @@ def print_report(checked: CheckedFiles) -> None:
     console = make_console(soft_wrap=True)
     for file, problems in checked.files.items():
         # What must be mended stands first, what is only to be known takes a line.
-        for problem in sorted(worth_showing(problems), key=lambda each: not each.is_error):
+        shown = sorted(worth_showing(problems), key=lambda each: not each.is_error)
+        for _, equal in groupby(shown, key=lambda each: (each.severity, each.found, each.remedy)):
+            # What several places have in common stands once, below all of them.
+            *others, problem = equal
+            for other in others:
+                console.print(_block(replace(other, found="", remedy="")), end="")
             block = _block(problem)
             console.print(block if problem.is_error else Text(" ").join(block.split("\n")))
         errors = sum(problem.is_error for problem in problems)

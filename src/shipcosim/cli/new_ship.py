@@ -14,9 +14,9 @@ import typer
 
 from shipcosim import library
 from shipcosim.cli.console import print_problems, shown_path
-from shipcosim.cli.terminal import say
+from shipcosim.cli.terminal import say, say_next
 from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors, reading
-from shipcosim.ships.writing import LAYOUTS, Answers, ship_text, thruster_from, usual
+from shipcosim.ships.writing import LAYOUTS, USUAL_LAYOUT, Answers, ship_text, thruster_from, usual
 from shipcosim.temporary import temporary_folder
 
 if TYPE_CHECKING:
@@ -68,9 +68,8 @@ def answers_from(
     if ask and given["layout"] is None and not answers.thrusters:
         for layout, description in LAYOUTS.items():
             say(f"  {layout}: {description}")
-        answers.layout = _asked("Propulsion", answers.layout)
         while answers.layout not in LAYOUTS:
-            answers.layout = _asked("Propulsion", "azimuths")
+            answers.layout = _asked("Propulsion", USUAL_LAYOUT)
     for key, question in QUESTIONS.items():
         _answer(answers, key, question, ask)
     return answers
@@ -232,20 +231,18 @@ def _say(written: list[Path], remarks: list[Problem], name: str, has_dp: bool) -
     for path in written:
         say(shown_path(path))
     print_problems(remarks)
-    steps = [
-        f"shipcosim run {name}                      {'she holds her place in wind' if has_dp else 'she goes ahead'}",
-        f"shipcosim check ships/{name}/ship.toml    what is estimated, what cannot be",
-        *(
-            (
-                f"shipcosim capability {name}_dp            the weather that her thrusters balance",
-                f"shipcosim sweep studies/{name}_failures.toml    each thruster lost, wind from all sides",
-            )
-            if has_dp
-            else ()
-        ),
-        f"shipcosim new ship {name} --from ships/{name}/ship.toml    the systems again, after a change",
-    ]
-    say("\nGo on with:\n" + "\n".join(f"  {step}" for step in steps))
+    dp = {
+        f"shipcosim capability {name}_dp": "the weather that her thrusters balance",
+        f"shipcosim sweep studies/{name}_failures.toml": "each thruster lost, wind from all sides",
+    }
+    say_next(
+        {
+            f"shipcosim run {name}": "she holds her place in wind" if has_dp else "she goes ahead",
+            f"shipcosim check ships/{name}/ship.toml": "what is estimated, what cannot be",
+            **(dp if has_dp else {}),
+            f"shipcosim new ship {name} --from ships/{name}/ship.toml --force": "makes the systems again",
+        }
+    )
 
 
 HOLDS = """\

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -43,6 +44,13 @@ def make_console(*, stderr: bool = False, **options: Any) -> Console:
 def say(text: object, *, err: bool = False) -> None:
     """Print a line of text on stdout or stderr."""
     typer.echo(printable(str(text)), err=err)
+
+
+def say_next(steps: Mapping[str, str]) -> None:
+    """Print how to go on: commands, and in a column behind them what each does."""
+    widest = max(len(command) for command, does in steps.items() if does)
+    lines = [f"  {command:<{widest}}   {does}".rstrip() for command, does in steps.items()]
+    say("\n".join(["\nGo on with:", *lines]))
 
 
 def say_json(content: object) -> None:

@@ -8,6 +8,7 @@ from shipcosim.library.building import build_stale, built_fmus, fmus
 from shipcosim.library.finding import (
     SYSTEMS,
     check_is_system,
+    files_of,
     find,
     find_any,
     find_parameters,
@@ -25,6 +26,7 @@ __all__ = [
     "cache",
     "check_is_system",
     "entries",
+    "files_of",
     "find",
     "find_any",
     "find_parameters",

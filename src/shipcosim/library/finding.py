@@ -6,7 +6,7 @@ from pathlib import Path
 
 from shipcosim.errors import AnyPath, error_at, suggestion
 from shipcosim.library.building import build_if_stale, built_fmu
-from shipcosim.library.names import KINDS, SYSTEM_STRUCTURE, names
+from shipcosim.library.names import KINDS, SYSTEM_STRUCTURE, in_root, names
 from shipcosim.library.places import roots
 
 SYSTEMS = (".ssp", ".ssd", ".xml")
@@ -112,6 +112,16 @@ def scenarios(given: str) -> dict[str, Path]:
         raise error_at(given, "There is no scenario file in this folder.", "Name a .toml file.")
     inside = in_project if in_project.is_dir() else folder
     return {file.relative_to(inside).with_suffix("").as_posix(): file for file in files}
+
+
+def files_of(given: str) -> list[str]:
+    """What there is to check at a path: a file, a system, a ship; or of any other folder all of these in it."""
+    folder = Path(given)
+    if not folder.is_dir() or any(_is_one(kind, folder) for kind in ("system", "ship")):
+        return [given]
+    kinds = ("scenario", "study", "system", "ship")
+    found = [path for kind in kinds for _, path in in_root(kind, folder)]
+    return [str(path) for path in found or sorted(folder.glob("*.toml"))] or [given]
 
 
 def find_parameters(given: Path, system: AnyPath) -> Path:

@@ -44,7 +44,7 @@ def names(kind: str, near: AnyPath | None = None) -> dict[str, Path]:
     """
     paths: dict[str, Path] = {}
     for root in roots(near):
-        for name, path in _in_root(kind, root):
+        for name, path in in_root(kind, root):
             paths.setdefault(name, path)
     return paths
 
@@ -86,7 +86,7 @@ def fmu_sources(project: Path) -> dict[str, Path]:
     }
 
 
-def _in_root(kind: str, root: Path) -> Iterator[tuple[str, Path]]:
+def in_root(kind: str, root: Path) -> Iterator[tuple[str, Path]]:
     """Names of a kind in a project or in what is shipped, in their order."""
     if kind in FOLDERS_OF:
         folder = root / FOLDERS_OF[kind]

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING
 
 from shipcosim.errors import error_at
 from shipcosim.results.shown import LikeTable, Picture
-from shipcosim.results.signals import chosen
+from shipcosim.scenario.signals import chosen
 
 if TYPE_CHECKING:
-    import pandas
     import xarray
 
     from shipcosim.diagnose.finding import Finding
@@ -94,10 +93,6 @@ class Log(LikeTable):
         heading = self.table["heading"].values if "heading" in self.table else None
         path = Path("measured", self.table["north"].values, self.table["east"].values, heading)
         return Picture(f"track of {self.name}", track_svg([path], f"track of {self.name}"))
-
-    def to_pandas(self) -> pandas.DataFrame:
-        """The table as a DataFrame over time; units are in ``.table[name].attrs["units"]``."""
-        return self.table.to_dataframe()
 
     def __repr__(self) -> str:
         time = self.table["time"].values

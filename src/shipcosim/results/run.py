@@ -18,7 +18,7 @@ from shipcosim.results.shown import (
     Result,
     passed_or_failed,
 )
-from shipcosim.results.signals import chosen
+from shipcosim.scenario.signals import chosen
 from shipcosim.series import write_json
 from shipcosim.staging import staged
 
@@ -304,10 +304,6 @@ class Run(LikeTable, Result):
 
         late = self.scenario.model_copy(update={"expect": list(self.not_judged)})
         return claims(with_numbers(late, units_of(self.system)).expect, self.table)
-
-    def to_pandas(self) -> pandas.DataFrame:
-        """The table as a DataFrame over time; units are in ``.table[name].attrs["units"]``."""
-        return self.table.to_dataframe()
 
     def __repr__(self) -> str:
         components = {n.rpartition(".")[0] for n in map(str, self.table)}

@@ -17,6 +17,7 @@ from shipcosim.series import write_file, write_json
 from shipcosim.staging import staged
 
 if TYPE_CHECKING:
+    import pandas
     import xarray
 
     from shipcosim.errors import Problem
@@ -236,6 +237,12 @@ class LikeTable:
 
     def __len__(self) -> int:
         return len(self.table)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The table as a DataFrame over time; columns have their units, as in result.csv: ``"vessel.x [m]"``."""
+        units = {name: v.attrs.get("units") for name, v in self.table.data_vars.items()}
+        named = {name: f"{name} [{unit}]" for name, unit in units.items() if unit}
+        return self.table.to_dataframe().rename(columns=named)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name == "table":  # a copy asks before there is a table

@@ -15,6 +15,7 @@ from shipcosim.scenario.amounts import amount_complaints, units_of
 from shipcosim.scenario.locations import Keys, problem_at
 from shipcosim.scenario.model import Event, Expectation, Scenario, Value
 from shipcosim.scenario.plausible import odd_values
+from shipcosim.scenario.signals import chosen
 from shipcosim.units import UnitError, is_amount, number_in, steps_in, whole_steps
 
 if TYPE_CHECKING:
@@ -238,6 +239,7 @@ def check_scenario(scenario: Scenario, system: System, start_time: float = 0.0) 
     # Odd values are only checked once the events themselves are right.
     problems += wrong_changes or [*odd_values(scenario, system), *_replaced_changes(scenario)]
     changed = {signal for event in scenario.events for _, signal, _ in event.changes}
+    problems += _record_problems(scenario, system, changed)
     for number, expect in enumerate(scenario.expect):
         complaints = expectation_complaints(expect, system, changed)
         problems += [
@@ -245,6 +247,27 @@ def check_scenario(scenario: Scenario, system: System, start_time: float = 0.0) 
             for key, *complaint in complaints
         ]
     return problems
+
+
+def _record_problems(
+    scenario: Scenario, system: System, changed: Collection[str]
+) -> Iterator[Problem]:
+    """Find signals that a run is to keep and does not record."""
+    if not scenario.record.signals:
+        return
+    reasons = {
+        name: _expect_complaint(system, name, changed)
+        for component, variable in system.all_variables()
+        for name in [f"{component.name}.{variable.name}"]
+    }
+    recorded = [name for name, reason in reasons.items() if reason is None]
+    for wanted in scenario.record.signals:
+        try:
+            chosen([*recorded, *system.inputs, *system.outputs], [wanted])
+        except ShipcosimError as error:
+            [missing] = error.problems
+            reason = reasons.get(wanted) or (f"{wanted}: {missing.found}", missing.remedy)
+            yield problem_at(scenario, ("record", "signals"), *reason)
 
 
 def expectation_complaints(
@@ -379,7 +402,7 @@ def _expect_complaint(
         source = ".".join(filter(None, feeding))
         return (
             f"'{signal}' is not recorded: it is what {source} puts out.",
-            f"Expect something of {source}.",
+            f"Take {source} instead.",
         )
     # Only inputs and outputs that are numbers are recorded.
     if variable.causality not in ("input", "output") or variable.kind == "String":

@@ -31,7 +31,7 @@ def capability_entries(ship: Described) -> dict[str, dict[str, Quantity]]:
             area = Quantity(given.value, "m2", given.tolerance or 0.0, origin)
             entries["capability"][f"wind_area_{name}"] = area
     for unit, thruster in zip(ship.units, ship.file.thrusters, strict=True):
-        if unit.screw is None:
+        if unit.screw is None or unit.kind == "rudder":
             continue
         screw = unit.screw
         of_unit = thruster_particulars(unit.kind, screw.diameter, screw.kind == "ducted")

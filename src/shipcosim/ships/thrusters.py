@@ -184,7 +184,10 @@ def _unit(
 
 
 def _screw(
-    thruster: FixedPropeller | Azimuth | Tunnel, numbers: Numbers, form: HullDimensions, kind: str
+    thruster: FixedPropeller | Azimuth | Tunnel | PropellerWithRudder,
+    numbers: Numbers,
+    form: HullDimensions,
+    kind: str,
 ) -> Screw | None:
     """Propeller of a thruster, missing data estimated; None and a problem if that fails."""
     # Diameter, and power or thrust, are the least that an estimate needs.
@@ -411,5 +414,6 @@ def _rudder(
             form, single=alone, span=span, area=float(area.value), covered=D / span
         )
     )
-    # The DP does not use it: there is no thrust command.
-    return _unit(thruster, numbers, 0.0, 0.0, 0.0, 0.0)
+    # The DP does not use it: there is no thrust command. Its power says at which speeds the shaft can turn.
+    screw = _screw(thruster, numbers, form, "open") if thruster.power or thruster.thrust else None
+    return _unit(thruster, numbers, 0.0, 0.0, 0.0, 0.0, screw)

@@ -16,6 +16,7 @@ LAYOUTS = {
     "rudder": "one propeller with a rudder",
 }
 """Usual thrusters."""
+USUAL_LAYOUT = "azimuths"
 ASSUMED = "assumed: usual of a ship of this size"
 LENGTH = 30.0
 """Of a ship of which nothing is known. [m]"""
@@ -39,9 +40,9 @@ class Answers:
     kind : str
         Of Blendermann's table, for the wind.
     layout : str
-        One of `LAYOUTS`; of no account where there are thrusters.
+        One of `LAYOUTS`; empty where nothing is known.
     thrusters : list of dict of str to str
-        Keys of each thruster.
+        Keys of each thruster; beside those of a layout that is given, one of the same name in its place.
     """
 
     description: str = ""
@@ -52,7 +53,7 @@ class Answers:
     speed: str = ""
     power: str = ""
     kind: str = USUAL_KIND
-    layout: str = "azimuths"
+    layout: str = ""
     thrusters: list[dict[str, str]] = field(default_factory=list)
 
 
@@ -140,7 +141,9 @@ def ship_text(answers: Answers) -> str:
         weight = answers.displacement or usual(answers, "displacement")
         speed = answers.speed or usual(answers, "speed")
         form = _form(replace(answers, displacement=weight, speed=speed))
-        thrusters = answers.thrusters or _thrusters(answers)
+        given = {one.get("name"): one for one in answers.thrusters}
+        usual_ones = [] if given and not answers.layout else _thrusters(answers)
+        thrusters = [*({one["name"]: one for one in usual_ones} | given).values()]
     except ValueError as error:
         raise error_at("new ship", f"{error}") from None
     shown = "\n\n".join(
@@ -193,25 +196,26 @@ def thruster_from(text: str) -> dict[str, str]:
 
 def _thrusters(answers: Answers) -> list[dict[str, str]]:
     """Usual thrusters for a ship of this size."""
-    if answers.layout not in LAYOUTS:
-        raise ValueError(f"propulsion is {answers.layout!r}. {suggestion(answers.layout, LAYOUTS)}")
+    layout = answers.layout or USUAL_LAYOUT
+    if layout not in LAYOUTS:
+        raise ValueError(f"propulsion is {layout!r}. {suggestion(layout, LAYOUTS)}")
     # Places and diameters in proportion to the dimensions.
     L, B, T = (number_in(getattr(answers, key), "m") for key in ("length", "breadth", "draught"))
     power = _given(answers, "power", "W") or number_in(usual(answers, "power"), "W")
     power /= 1000.0  # kW
+    known = Usual if isinstance(answers.power or Usual(), Usual) else str
     aft = _m(-0.45 * L)
     side = 0.25 * B
     wheel = _m(0.55 * T)
     # Bow thruster with a third of the propulsion power.
     bow = {"kind": "tunnel", "x": _m(0.4 * L), "diameter": _m(0.35 * T), "power": _kW(0.35 * power)}
-    if answers.layout == "rudder":
-        return [
-            {"name": "propeller", "kind": "rudder", "x": aft, "y": "0 m", "diameter": _m(0.65 * T)}
-        ]
+    if layout == "rudder":
+        place = {"name": "propeller", "kind": "rudder", "x": aft, "y": "0 m"}
+        return [place | {"diameter": _m(0.65 * T), "power": known(_kW(power))}]
     # Two equal propellers share the power.
-    half = {"x": aft, "diameter": wheel, "power": _kW(0.5 * power)}
+    half = {"x": aft, "diameter": wheel, "power": known(_kW(0.5 * power))}
     pair = {"port": _m(-side), "starboard": _m(side)}
-    if answers.layout == "screws":
+    if layout == "screws":
         stern = bow | {"x": _m(-0.4 * L)}
         screws = [{"name": n, "kind": "fixed", "y": y} | half for n, y in pair.items()]
         return [*screws, {"name": "bow"} | bow, {"name": "stern"} | stern]

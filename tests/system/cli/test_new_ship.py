@@ -94,6 +94,43 @@ def test_thrusters_are_told_one_by_one(project):
     assert (project / "ssp/gull_open").is_dir() and not (project / "ssp/gull_dp").exists()
 
 
+def test_a_thruster_comes_in_addition_to_the_propulsion_that_is_given(project):
+    bow = "name=bow, kind=tunnel, x=24 m, diameter=1.5 m, power=300 kW"
+    asked = [*ASKED, "--power", "2400 kW", "--thruster", bow, "--yes"]
+    assert told("new", "ship", "tern", *asked, "--propulsion", "rudder").exit_code == 0
+    text = (project / "ships/tern/ship.toml").read_text()
+    assert 'kind = "rudder"' in text and 'kind = "tunnel"' in text
+    # What was given is neither lost nor marked as assumed.
+    assert 'power = "2400 kW"' in text and 'power = "300 kW"' in text
+    half = (project / "scenarios/tern.toml").read_text().partition('"propeller_rpm" = ')[2]
+    assert float(half.partition("\n")[0]) != 50.0  # of the propeller's own power
+    made = told("new", "ship", "gull", *asked, "--propulsion", "azimuths")
+    text = (project / "ships/gull/ship.toml").read_text()
+    assert made.exit_code == 0 and text.count('name = "bow"') == 1 and 'x = "24 m"' in text
+    assert text.count('power = "1200 kW"') == 2
+
+
+def test_a_propeller_with_a_rudder_is_not_left_out_of_a_capability_silently(project):
+    bow = "name=bow, kind=tunnel, x=24 m, diameter=1.5 m, power=300 kW"
+    asked = [*ASKED, "--propulsion", "rudder", "--thruster", bow, "--yes"]
+    assert told("new", "ship", "tern", *asked).exit_code == 0
+    refused = told("capability", "tern_open")
+    assert refused.exit_code == 2 and "propeller: a propeller with a rudder" in refused.output
+
+
+def test_kinds_of_ship_are_all_listed_and_those_with_a_comma_are_quoted(project):
+    made = told("new", "ship", "tern", *ASKED, "--kind", "tug", "--yes")
+    assert made.exit_code == 2
+    listed = made.output.partition("There is: ")[2]
+    assert "'cargo ship, loaded'" in listed and "tender" in listed and "in all" not in listed
+
+
+def test_what_comes_next_stands_in_one_column(project):
+    made = told("new", "ship", "tern", *ASKED, "--yes").stdout
+    lines = made.partition("Go on with:\n")[2].splitlines()
+    assert len(lines) == 5 and len({line.rindex("   ") for line in lines}) == 1
+
+
 @pytest.mark.parametrize("propulsion", ["azimuths", "screws"])
 def test_a_new_ship_has_a_capability_and_a_study_of_failures(project, propulsion):
     assert told("new", "ship", "tern", *ASKED, "--propulsion", propulsion, "--yes").exit_code == 0

@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 from typer.testing import CliRunner
 
+import shipcosim
 from shipcosim.cli.app import app
 from shipcosim.series import write_table
 
@@ -44,3 +45,19 @@ def test_folder_without_results_is_said(results):
     )
     assert told.exit_code == 2 and "no result.nc in this folder" in told.output
     assert not (results / "o").exists()
+
+
+def test_two_runs_in_a_notebook_are_what_the_command_says(results, monkeypatch):
+    pytest.importorskip("matplotlib")
+    both = shipcosim.report(results / "calm", results / "windy", out=results / "called")
+    assert both.outcome.sentence.startswith("The ships lie up to 2.00 m apart")
+    told = CliRunner().invoke(
+        app, ["report", *(str(results / n) for n in ("calm", "windy")), "--out", str(results / "o")]
+    )
+    assert told.exit_code == 0 and both.outcome.sentence in told.output
+    assert (results / "called/report.html").read_bytes() == (results / "o/report.html").read_bytes()
+    assert both.to_pandas().loc["boat.y", "largest"] == pytest.approx(2.0)
+    # Both runs are in one plot.
+    svg = both.plot("boat.y").svg
+    assert "calm: boat.y" in svg and "windy: boat.y" in svg
+    assert "2.00" in both._repr_html_()

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -191,6 +192,9 @@ def check_fmus(call, empty, fmus):
         before = read_system(path)
         ssv = empty / f"{path.stem}.ssv"
         assert values_of(read_system(path, parameters=ssv)) == values_of(before)
+        # Plain names: the set can be bound to a component of any name.
+        names = set(re.findall(r'<ssv:Parameter name="([^"]+)"', ssv.read_text()))
+        assert names <= set(next(iter(before.components.values())).variables)
         # The FMU's own names, without the component's before them, do as well.
         ((name, component),) = before.components.items()
         free = [

@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+import re
 import sys
 from pathlib import Path
 from xml.etree import ElementTree
@@ -79,10 +80,22 @@ def test_a_run_can_be_copied(gust):
     assert pickle.loads(pickle.dumps(gust.table)).equals(gust.table)
 
 
+def test_text_of_a_picture_in_a_card_is_as_large_as_that_of_the_card(gust):
+    """The picture is shown 400 px wide: its letters were 6 px high."""
+    pytest.importorskip("matplotlib")
+    sizes = {
+        where: max(float(size) for size in re.findall(r"font-size: ([\d.]+)px", svg))
+        for where, svg in (("card", gust._card().picture), ("alone", gust.track().svg))
+    }
+    width = float(re.search(r'<svg [^>]*width="([\d.]+)pt', gust._card().picture)[1])
+    assert sizes["card"] * 400 / width == pytest.approx(11.0, rel=0.05)
+    assert sizes["alone"] == pytest.approx(8.25)
+
+
 def test_pandas_has_the_signals_over_time(gust):
     frame = gust.to_pandas()
     assert frame.index.name == "time"
-    assert frame["vessel.psi"].to_numpy() == pytest.approx(gust["vessel.psi"].values)
+    assert frame["vessel.psi [rad]"].to_numpy() == pytest.approx(gust["vessel.psi"].values)
 
 
 def test_expectations_are_judged_as_the_scenario_says(tmp_path):

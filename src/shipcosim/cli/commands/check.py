@@ -37,7 +37,7 @@ def check(
     quiet: Quiet = False,
 ) -> Conclusion:
     """Validate files: schema, then meaning. Loads no binary and runs nothing. Of an FMU it lists the variables,
-    of a ship file what is estimated.
+    of a ship file what is estimated; of a project, all that is in it.
 
     A table whose columns are named by roles, or one with a channel file, is measured data: it is examined for faults.
 

@@ -1,12 +1,13 @@
 """The command `shipcosim new`: `new fmu`, `new parameters`, `new scenario`, `new system`."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from shipcosim.cli.start.completion import names_of
-from shipcosim.cli.terminal import say
+from shipcosim.cli.terminal import say, say_next
 
 if TYPE_CHECKING:
     from shipcosim.cli.start.files import Files
@@ -23,9 +24,11 @@ def fmu(name: Name) -> None:
 
     _write(
         fmu_files(name),
-        f"shipcosim simulate {name} --stop-time 10 --step-size 0.1 --set {name}.u=1",
-        f"shipcosim check {name}      lists its variables",
-        f'Its equations are in `step`. A system takes it as a component with source="resources/{name}.fmu".',
+        {
+            f"shipcosim simulate {name} --stop-time 10 --step-size 0.1 --set {name}.u=1": "runs it",
+            f"shipcosim check {name}": "lists its variables",
+            f'Its equations are in `step`. A system takes it as a component with source="resources/{name}.fmu".': "",
+        },
     )
 
 
@@ -51,8 +54,10 @@ def parameters(
 
     _write(
         parameter_files(name, origin),
-        f"shipcosim check {name}.ssv                            checks it after each change",
-        f"shipcosim simulate {origin} --parameters {name}.ssv   runs the system with it",
+        {
+            f"shipcosim check {name}.ssv": "checks it after each change",
+            f"shipcosim simulate {origin} --parameters {name}.ssv": "runs it with these values",
+        },
     )
 
 
@@ -76,8 +81,10 @@ def scenario(
 
     _write(
         scenario_files(name, system),
-        f"shipcosim run {name}     runs it and makes its page",
-        f"shipcosim check {name}   checks it after each change",
+        {
+            f"shipcosim run {name}": "runs it and makes its page",
+            f"shipcosim check {name}": "checks it after each change",
+        },
     )
 
 
@@ -98,13 +105,15 @@ def system(
 
     _write(
         system_files(name, origin),
-        f"shipcosim simulate {name}                        runs it",
-        f"shipcosim check {name}                           checks it after each change",
-        f"shipcosim new scenario NAME --system {name}      has something happen to it",
+        {
+            f"shipcosim simulate {name}": "runs it",
+            f"shipcosim check {name}": "checks it after each change",
+            f"shipcosim new scenario NAME --system {name}": "has something happen to it",
+        },
     )
 
 
-def _write(files: "Files", *steps: str) -> None:
+def _write(files: "Files", steps: Mapping[str, str]) -> None:
     """Write files into the project around the working folder, else into that, and say how to go on."""
     from shipcosim import library
     from shipcosim.cli.console import shown_path
@@ -112,4 +121,4 @@ def _write(files: "Files", *steps: str) -> None:
 
     for path in write_new(library.project_of() or Path.cwd(), files):
         say(shown_path(path))
-    say("\nGo on with:\n" + "\n".join(f"  {step}" for step in steps))
+    say_next(steps)

@@ -5,6 +5,15 @@ from typing import Annotated
 
 import typer
 
+Thrusters = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--thruster",
+        metavar="KEYS",
+        help='"name=bow, kind=tunnel, x=25 m, ..."; repeatable. With --propulsion in addition.',
+    ),
+]
+
 
 def ship(
     name: Annotated[
@@ -34,12 +43,7 @@ def ship(
     propulsion: Annotated[
         str | None, typer.Option("--propulsion", help="azimuths, screws or rudder.")
     ] = None,
-    thrusters: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--thruster", metavar="KEYS", help='"name=bow, kind=tunnel, x=25 m, ..."; repeatable.'
-        ),
-    ] = None,
+    thrusters: Thrusters = None,
     yes: Annotated[
         bool, typer.Option("--yes", help="Ask nothing; take usual values for what is left out.")
     ] = False,

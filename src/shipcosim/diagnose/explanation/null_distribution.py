@@ -188,7 +188,12 @@ def _logged(motion, units, problem, rng):
     # The same gaps as in the log.
     measured = np.where(np.isfinite(record.measured)[:, None, :], measured, np.nan)
     return Record(
-        record.time, np.moveaxis(measured, 1, 0), units, record.wind, record.usable, rate=record.rate
+        record.time,
+        np.moveaxis(measured, 1, 0),
+        units,
+        record.wind,
+        record.usable,
+        rate=record.rate,
     )
 
 

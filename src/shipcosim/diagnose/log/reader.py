@@ -402,9 +402,11 @@ def _proposal_text(proposal):
     ]
     if other:
         yield f"Columns used: {'; '.join(other)}."
-    for guess in proposal.used:
-        if guess.rank == 2:
-            yield f"Column '{guess.column}' is not used: it may be {guess.role}, but {guess.why}."
+    guesses = [guess for guess in proposal.used if guess.rank == 2]
+    for guess in guesses:
+        yield f"Column '{guess.column}' is not used: it may be {guess.role}, but {guess.why}."
+    if guesses:
+        yield "To use it: `shipcosim channels LOG --out channels.toml`, and --channels channels.toml here."
     reasons = {}
     for guess in proposal.unused:
         if not _is_unnamed(guess.column):

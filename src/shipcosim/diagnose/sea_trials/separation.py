@@ -74,7 +74,8 @@ def separations(evidence: TrialEvidence, sets: Sequence[SetOfCauses]) -> list[Se
     # What the trials said constrains sets and numbers: predict the new features from that
     # posterior.
     with_untold = replace(
-        evidence, ship_slopes=np.vstack((evidence.ship_slopes, *(evidence.slopes[i] for i, _ in untold)))
+        evidence,
+        ship_slopes=np.vstack((evidence.ship_slopes, *(evidence.slopes[i] for i, _ in untold))),
     )
     spread = evidence.scale**2 * blocks([covariance_of(trial, model.length) for trial in trials])
     of_day = np.array([ShipModel.is_of_day(path) for size in sizes for path in list(size)[:1]])

@@ -349,7 +349,7 @@ def next_steps(diagnosis: Diagnosis, extended: str | None = None) -> list[str]:
         )
     elif diagnosis.obstacles:
         steps.append(
-            "Log as the remarks ask and diagnose again: from this log no cause can be named."
+            "Confirm columns or log more, as the remarks ask, and diagnose again: without it no cause can be named."
         )
     elif diagnosis.verdict == "unknown":
         where = "Diagnose a log by itself and look on its page" if several else "Look on the page"

@@ -151,13 +151,16 @@ def _header(written: Scenario) -> JsonObject:
 def _signals(plan: Plan) -> Iterator[tuple[str, JsonObject]]:
     """Every exchanged signal: place of its value, and description."""
     fed = plan.system.feeding
+    # Of numbered switches of which some are fed, such as available_1 to 6, the others belong to no unit of this ship.
+    numbered = {(component, name.rstrip("0123456789")) for component, name in fed}
     for number, kind in enumerate(kinds_of(plan)):
         layout = plan.layouts[kind]
         for side, ends in enumerate((layout.outputs, layout.inputs)):
             for row, end in enumerate(ends):
                 about = _about(plan.variable(end), kind)
                 # An input that a connection feeds follows it; the others are the user's.
-                free = side == 1 and end not in fed
+                stem = end[0], end[1].rstrip("0123456789")
+                free = side == 1 and end not in fed and (kind != "Boolean" or stem not in numbered)
                 start = plan.system.components[end[0] or ""].start_value(end[1])
                 place = {"x": number, "side": side, "row": row, "free": free, "start": start}
                 yield label(end), about | place

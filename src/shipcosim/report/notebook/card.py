@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
-from shipcosim.report.notebook.figures import can_draw
+from shipcosim.report.notebook.figures import IN_CARD, can_draw
 from shipcosim.report.theme.pages import render
 from shipcosim.report.theme.views import Block, Page
 
@@ -41,7 +41,13 @@ class Card(Page):
     @cached_property
     def picture(self) -> str:
         """The picture as SVG; empty without one, and where matplotlib is missing."""
-        return self.draw() if self.draw is not None and can_draw() else ""
+        if self.draw is None or not can_draw():
+            return ""
+        within = IN_CARD.set(True)
+        try:
+            return self.draw()
+        finally:
+            IN_CARD.reset(within)
 
     @property
     def hint(self) -> str:

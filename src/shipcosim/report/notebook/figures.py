@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
+from contextvars import ContextVar
 from dataclasses import dataclass
 from importlib.util import find_spec
 from io import StringIO
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
 
 
 WIDTH = 760  # px
+CARD_WIDTH = 400  # px of a picture in a card
+IN_CARD: ContextVar[bool] = ContextVar("in_card", default=False)
+"""Whether what is drawn is shrunk to the width of a card, where its text must be as large as the card's."""
 DPI = 96  # px per inch, as browsers have it
 MOST_CURVES = 8  # of a panel
 MOST_PANELS = 12
@@ -122,7 +126,10 @@ def figure_svg(name: str, width: float, height: float, draw: Callable[[Figure], 
         import matplotlib
         from matplotlib.figure import Figure
     # A figure without pyplot, which would keep it and choose a window for it.
-    with matplotlib.rc_context(STYLE):
+    style = dict(STYLE)
+    if IN_CARD.get():
+        style["font.size"] *= width / CARD_WIDTH
+    with matplotlib.rc_context(style):
         figure = Figure((width / DPI, height / DPI), layout="constrained")
         draw(figure)
         text = StringIO()
@@ -181,7 +188,7 @@ def track_svg(
         shape = np.ptp(axes.get_ylim()) / np.ptp(axes.get_xlim())
         figure.set_figheight(float(np.clip(WIDTH * shape, *TRACK_HEIGHT)) / DPI)
         axes.set_aspect("equal", adjustable="datalim")
-        figure.legend(loc="outside upper left", ncols=3)
+        figure.legend(loc="outside upper left", ncols=1 if IN_CARD.get() else 3)
 
     return figure_svg(name, WIDTH, TRACK_HEIGHT[1], draw)
 

@@ -33,6 +33,7 @@ THE_LINE = (
     "from the reference",
 )  # where a panel shows more than the run
 MOST_MOMENTS = 5  # differences to go to
+MOST_CHOSEN = 3  # signals that are drawn first where there is no ship, of both runs
 MOST_CHANGES = 8  # start values that differ, at the top of the page
 MOST_DIFFERENCES = 25  # signals in the table of differences
 SAME = 1e-9  # of a signal's range: a difference below it is rounding
@@ -73,7 +74,6 @@ class Pair:
     shift: float
 
 
-@np.errstate(over="ignore", invalid="ignore")
 def write_comparison(
     tables: tuple[Dataset, Dataset], names: tuple[str, str], path: AnyPath
 ) -> tuple[Outcome, list[Difference]]:
@@ -100,12 +100,27 @@ def write_comparison(
     ShipcosimError
         If a run has no rows, the two have no signal in common, or the file cannot be written.
     """
-    # Put both runs on common times, then compare and write.
+    found = compared(tables, names)
+    write_file(path, render("run/templates/run.html.jinja", found.page).encode())
+    return found.page.outcome, found.differences
+
+
+class Comparison(NamedTuple):
+    """Two runs on common times, both with their names in one table, their differences, and what the page shows."""
+
+    pair: Pair
+    both: Dataset
+    differences: list[Difference]
+    page: RunPage
+
+
+@np.errstate(over="ignore", invalid="ignore")
+def compared(tables: tuple[Dataset, Dataset], names: tuple[str, str]) -> Comparison:
+    """Put two runs on common times and compare them; arguments and errors as of `write_comparison`."""
     pair = lay_over(tables, names)
-    ordered = _ordered(pair, differences(pair))
-    page = _page(pair, ordered)
-    write_file(path, render("run/templates/run.html.jinja", page).encode())
-    return page.outcome, ordered
+    differing = _ordered(pair, differences(pair))
+    both = _merged(pair)
+    return Comparison(pair, both, differing, _page(pair, both, differing))
 
 
 def lay_over(tables: tuple[Dataset, Dataset], names: tuple[str, str]) -> Pair:
@@ -214,8 +229,7 @@ def _like(shown: Dataset, other: Dataset) -> Dataset:
 # What the page shows.
 
 
-def _page(pair: Pair, differing: Sequence[Difference]) -> RunPage:
-    merged = _merged(pair)
+def _page(pair: Pair, merged: Dataset, differing: Sequence[Difference]) -> RunPage:
     drawn, thinned = drawn_rows(merged)
     runs = [
         run
@@ -238,6 +252,9 @@ def _page(pair: Pair, differing: Sequence[Difference]) -> RunPage:
     data = drawn_data(drawn, choice, runs, sections, ())
     if moments:
         data["opens_at"] = moments[0].time
+        data["chosen"] = [
+            f"{name}: {d.signal}" for d in differing[:MOST_CHOSEN] for name in pair.names
+        ]
     return RunPage(
         title=f"{pair.names[0]} and {pair.names[1]}",
         facts=tuple(facts),

@@ -289,7 +289,7 @@ def texts(summaries: Iterable[PredictionSummary]) -> list[tuple[str, str, str, s
                 f"{summary.component}, {summary.horizon:g} s ahead",
                 f"{summary.position:.2f} m rms",
                 f"{np.degrees(summary.heading):.1f} deg rms",
-                f"{' and '.join(within)} within the regions" if within else "no regions",
+                f"{' and '.join(within)} within the regions" if within else "no uncertainty given",
             )
         )
     return rows

@@ -1,5 +1,6 @@
 """Contents of a system structure: elements, connections, default experiment; check and write."""
 
+import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -73,6 +74,19 @@ class SystemContents:
     def connections(self) -> list[tuple[str, str]]:
         """Names of the connectors that are joined, (source, target), in the order of the file."""
         return [ends for ends, _ in connections(self._draft.system)]
+
+    def to_dot(self) -> str:
+        """The system as a graph for Graphviz: an arrow from each element to what it feeds, with the inputs there."""
+        fed: dict[tuple[str, str], list[str]] = {}
+        for source, target in self.connections:
+            ends = (source.rpartition(".")[0] or self.name, target.rpartition(".")[0] or self.name)
+            fed.setdefault(ends, []).append(target.rpartition(".")[2])
+        nodes = [f"  {json.dumps(name)};" for name in self.components]
+        arrows = [
+            f"  {json.dumps(start)} -> {json.dumps(end)} [label={json.dumps(', '.join(inputs))}];"
+            for (start, end), inputs in fed.items()
+        ]
+        return "\n".join(["digraph {", "  node [shape=box];", *nodes, *arrows, "}"])
 
     def connectors(self, element: str = "") -> dict[str, str]:
         """Kinds of an element's connectors by their names; of the outermost system's, if none is named.

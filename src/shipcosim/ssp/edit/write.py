@@ -17,7 +17,7 @@ from shipcosim.ssp.xml.archive import replaced, write_archive
 from shipcosim.ssp.xml.document import AnyPath, Findings, qualified
 from shipcosim.ssp.xml.markup import add, ensure, to_bytes
 from shipcosim.ssp.xml.values import Value
-from shipcosim.units import find_unit
+from shipcosim.units import as_python, find_unit
 
 KIND_OF = {bool: "Boolean", int: "Integer", float: "Real", str: "String", bytes: "Binary"}
 
@@ -52,13 +52,16 @@ def parameter(
     Raises
     ------
     ShipcosimError
-        If the unit's spelling makes no sense.
+        If the unit's spelling makes no sense, or the value is of another type.
     """
     # A unit must be convertible, or the value has no meaning.
     defined = find_unit(unit)
     if defined is not None and defined.exponents is None:
         raise error_at(name, f"The unit '{unit}' is not known.", "Spell it as in FMI: 'kg.m2/s'.")
-    kind = "Real" if unit is not None and type(value) is int else KIND_OF[type(value)]
+    value = as_python(value)
+    kind = "Real" if unit is not None and type(value) is int else KIND_OF.get(type(value))
+    if kind is None:
+        raise error_at(name, f"found {value!r:.60}.", "Give a number, True or False, or a text.")
     return ParameterValue(name, kind, value, defined, description, tolerance=tolerance)
 
 
@@ -73,9 +76,11 @@ def parameters_of(system: System) -> list[ParameterValue]:
     Returns
     -------
     list of ParameterValue
-        By component, in the order of its FMU; arrays and parameters without a start value are left out.
+        By component, in the order of its FMU; arrays and parameters without a start value are left out. Those of one
+        FMU have its own names, so that the set can be bound to any component of it.
     """
     values = []
+    is_one = system.file.lower().endswith(".fmu")
     for component, variable in system.all_variables():
         value = component.start_value(variable.name)
         if variable.causality not in ("parameter", "structuralParameter"):
@@ -86,7 +91,7 @@ def parameters_of(system: System) -> list[ParameterValue]:
         names = {number: item for item, number in variable.items.items()}
         values.append(
             ParameterValue(
-                f"{component.name}.{variable.name}",
+                variable.name if is_one else f"{component.name}.{variable.name}",
                 variable.kind,
                 names.get(value, value) if variable.kind == "Enumeration" else value,
                 find_unit(variable.unit, component.fmu.units),

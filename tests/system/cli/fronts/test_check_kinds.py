@@ -55,6 +55,16 @@ def test_a_channel_file_is_right_or_its_mistakes_are_said(root, tmp_path, call):
     assert done.code == 1 and "Did you mean 'heading'?" in done.out and "time" in done.out
 
 
+@pytest.mark.parametrize(
+    ("folder", "files"),
+    [(".", ["scenarios/fill.toml", "ssp/tank"]), ("scenarios", ["scenarios/fill.toml"])],
+)
+def test_a_folder_is_checked_with_all_that_is_in_it(project, folder, files):
+    (project / "scenarios" / "fill.toml").write_text("stop_tim = 1\n")
+    checked = check(folder)
+    assert [*checked.files] == files and not checked.passed
+
+
 def test_a_folder_of_logs_is_named_as_such(tmp_path, call):
     (tmp_path / "b.csv").write_text("time,a\n0,1\n1,2\n")
     done = call("check", tmp_path)

@@ -39,3 +39,17 @@ def test_errors_stand_before_remarks(call, project):
         line.partition(":")[0] for line in said.splitlines() if line.startswith(("error", "remark"))
     ]
     assert kinds == sorted(kinds) and set(kinds) == {"error", "remark"}
+
+
+def test_what_several_places_have_in_common_stands_once(call, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = call("check", "kvlcc2_open", "--for", "libcosim")
+    assert done.out.count("error: ") == 7 and done.out.count("refuses the system") == 1
+
+
+def test_the_remedy_for_libcosim_makes_the_flagship_pass(call, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    failed = call("check", "gunnerus_dp", "--for", "libcosim")
+    assert failed.code == 1 and "`shipcosim export osp`" in failed.out
+    assert call("export", "osp", "gunnerus_dp", "--out", "osp").code == 0
+    assert call("check", "osp", "--for", "libcosim").code == 0

@@ -74,6 +74,13 @@ def test_log_config_of_libcosim_chooses_signals_and_rows(call, full, project):
     assert "records LogConfig.xml" in json.loads(table.attrs["changed"])
 
 
+def test_an_input_in_a_log_config_stands_for_its_source(call, full, project):
+    """libcosim logs inputs too, and its files name them; here the source has the same values."""
+    Path("LogConfig.xml").write_text(CONFIG.format(1).replace('"y"', '"u"'))
+    assert call("run", "fill", "--record", "LogConfig.xml", "--out", "out").code == 0
+    assert "level_set" in kept("out")[0]
+
+
 def test_log_config_without_variables_takes_all_of_a_simulator(tmp_path):
     (tmp_path / "c.xml").write_text(
         '<simulators><simulator name="a"/><simulator name="b" '
@@ -119,6 +126,23 @@ def test_two_intervals_in_one_scenario_are_refused(call, project):
     scenario.write_text(text)
     failed = call("run", "fill")
     assert failed.code == 2 and "two intervals of rows" in failed.err
+
+
+@pytest.mark.parametrize(
+    ("signal", "said"),
+    [
+        ("lagg", "lagg: There is no such signal or component."),
+        ("lag.u", "it is what level_set puts out. Take level_set instead."),
+    ],
+)
+def test_check_finds_what_a_scenario_cannot_keep_at_its_line(call, full, project, signal, said):
+    scenario = project / "scenarios" / "fill.toml"
+    scenario.write_text(f'{scenario.read_text()}\n[record]\nsignals = ["{signal}"]\n')
+    line = len(scenario.read_text().splitlines())
+    for command in ("check", "run"):
+        failed = call(command, "scenarios/fill.toml")
+        assert failed.code in (1, 2) and said in failed.out + failed.err
+        assert f"scenarios/fill.toml, line {line}:" in failed.out + failed.err
 
 
 def test_command_and_call_keep_the_same(call, project):

@@ -99,7 +99,11 @@ def test_known_numbers_leave_out_what_a_cause_turns_or_speaks_for():
     lag = next(s for s in problem("healthy").hypotheses if s.cause == "navigation_lag")
 
     def turned(hypotheses):
-        return {path for column in problem("healthy").ship_columns(hypotheses) for path in column.changes}
+        return {
+            path
+            for column in problem("healthy").ship_columns(hypotheses)
+            for path in column.changes
+        }
 
     assert "port.thrust_loss" in turned(()) and "port.thrust_loss" not in turned((loss,))
     assert "instruments.thruster_lag" in turned(()) and "instruments.thruster_lag" not in turned(

@@ -1,6 +1,7 @@
 """Raw sentences of NMEA 0183: what a voyage is written as is read back, and what is damaged is left out and said."""
 
 import functools
+import json
 import operator
 
 import numpy as np
@@ -185,6 +186,53 @@ def test_a_time_before_each_sentence_is_its_time(read, form):
         59.0
     ) and "stand before the sentences" in said(log)
     assert log["heading"].values[0] == pytest.approx(355.0)
+
+
+SINCE_1970 = 1666914000  # s, of the first sentence
+WRAPPED = {
+    "lines of JSON": lambda t, line: json.dumps({"at": iso(t), "channel": "eth1", "raw": line}),
+    "interface": lambda t, line: f"{iso(t)} [eth1] {line}",
+    "TAG block": lambda t, line: f"\\s:GP0001,c:{SINCE_1970 + t:.0f}*5A\\{line}",
+    "milliseconds": lambda t, line: f"{1000 * (SINCE_1970 + t):.0f} {line}",
+}
+"""How recorders wrap a sentence that was received at a time."""
+
+
+def iso(t):
+    return (np.datetime64(SINCE_1970, "s") + np.timedelta64(int(t), "s")).item().isoformat() + "Z"
+
+
+@pytest.mark.parametrize("form", WRAPPED)
+def test_sentences_in_the_records_of_a_recorder_have_its_times(read, form):
+    received = [(t, line) for t in SECONDS for line in (gga(t), rmc(t), *others(t))]
+    log = read([WRAPPED[form](t, line) for t, line in received], "bridge.log")
+    assert "Times are those that stand before the sentences." in said(log)
+    time = log["time"].values
+    assert np.diff(time) == pytest.approx(1.0) and len(time) == len(SECONDS)
+    t = time - time[0]
+    assert np.abs((log["heading"].values - truth(t)["heading"] + 180.0) % 360.0 - 180.0).max() < 0.1
+
+
+def test_a_list_of_records_may_have_the_time_behind_the_sentence(read):
+    received = [(t, line) for t in SECONDS for line in (rmc(t), *others(t))]
+    log = read([json.dumps([{"raw": line, "meta": {"at": iso(t)}} for t, line in received])])
+    assert "Times are those that stand before" in said(log) and log.sizes["time"] == len(SECONDS)
+
+
+def test_reports_of_gpsd_give_speed_and_course_over_ground(read):
+    """Position and heading come in reports of their own."""
+    lines = [json.dumps({"class": "VERSION", "release": "3.25"})]
+    for t in SECONDS:
+        now = truth(t)
+        fix = {"lat": LATITUDE, "lon": now["longitude"], "track": 90.0, "speed": 2.0}
+        lines.append(json.dumps({"class": "TPV", "mode": 3, "time": iso(t)} | fix))
+        lines.append(json.dumps({"class": "SKY", "time": iso(t), "hdop": 0.9}))
+        heading = {"heading": now["heading"]}
+        lines.append(json.dumps({"class": "ATT", "time": iso(t)} | heading))
+    log = read(lines, "gpsd.json")
+    surge, sway = log["surge"].values[5], log["sway"].values[5]  # heading about 356, course 90
+    assert (surge, sway) == pytest.approx((-0.14, 2.0), abs=0.05)
+    assert np.isfinite(log["surge"].values).all() and log.sizes["time"] == len(SECONDS)
 
 
 def test_units_of_wind_are_those_of_the_sentence(read):

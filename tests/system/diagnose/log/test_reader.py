@@ -236,3 +236,12 @@ def test_a_remark_does_not_list_thousands_of_columns(tmp_path):
     log = read_log(written(tmp_path, "\n".join([",".join(names), *rows])))
     assert all(len(remark) < 500 for remark in log.attrs["column_remarks"])
     assert "and 2980 more" in " ".join(log.attrs["column_remarks"])
+
+
+def test_a_column_that_is_only_guessed_comes_with_how_to_confirm_it(tmp_path):
+    rows = [f"{t},{0.1 * t},0.0,{t},{t % 7}" for t in range(30)]
+    path = tmp_path / "log.csv"
+    path.write_text("\n".join(["time [s],north [m],east [m],heading [deg],yaw rate", *rows]) + "\n")
+    said = read_log(path).attrs["column_remarks"]
+    guessed = [k for k, text in enumerate(said) if "is not used: it may be" in text]
+    assert guessed and "shipcosim channels LOG --out" in said[guessed[-1] + 1]

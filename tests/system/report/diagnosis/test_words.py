@@ -230,7 +230,7 @@ def test_consistent_log_asks_for_nothing():
     assert next_steps(Diagnosis("consistent")) == ["Nothing needs to be done."]
     lacking = Diagnosis("unknown", not_testable=("drag",), obstacles=("No tunnel_rpm in the log.",))
     assert next_steps(lacking) == [
-        "Log as the remarks ask and diagnose again: from this log no cause can be named."
+        "Confirm columns or log more, as the remarks ask, and diagnose again: without it no cause can be named."
     ]
     assert lacking.obstacles[0] in lacking.notes
 

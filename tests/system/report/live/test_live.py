@@ -86,6 +86,17 @@ def test_a_page_has_the_optimal_allocator_too(browse, tmp_path):
     assert worst < OPTIMISED
 
 
+def test_switches_of_units_that_a_ship_has_not_are_not_offered(browse, tmp_path):
+    """An allocator is made for six units; this ship has four."""
+    page = browse(exported("allocation/four_azimuths", tmp_path / "four.html"))
+    page.wait("return Boolean(window.desk && window.scene)")
+    offered = page.ask(
+        "return [...document.querySelectorAll('#failures button')].map(one => one.title.split(':')[0])"
+    )
+    assert "sensors.position_1_lost" in offered
+    assert not [name for name in offered if ".available_" in name]
+
+
 def test_going_back_forgets_what_came_after(desk, tmp_path):
     desk.ask(
         "const { live, act } = desk; live.reach(40); act('override', 'tunnel.full_thrust', true); live.reach(80);"

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import shipcosim
 from shipcosim.errors import ShipcosimError
 from shipcosim.report import write_comparison
 from shipcosim.report.run.comparison import differences, lay_over
@@ -117,6 +118,17 @@ def test_ships_of_other_names_are_compared_too(browse, tmp_path):
     assert page.ask("return document.getElementById('scene-vessel').hidden")
 
 
+def test_of_systems_without_a_ship_what_differs_is_drawn_of_both_runs(browse, tmp_path):
+    time = np.arange(0.0, 10.0)
+    names = [f"part.{letter}" for letter in "abcdefgh"]
+    tank = xr.Dataset({name: ("time", time, {"units": "m"}) for name in names}, {"time": time})
+    other = tank.assign({"part.h": tank["part.h"] * 2.0})
+    write_comparison((tank, other), ("dry", "wet"), tmp_path / "report.html")
+    page = browse(tmp_path / "report.html")
+    drawn = "return [...document.querySelectorAll('#choices input:checked')].map(box => box.value)"
+    assert page.ask(drawn) == ["dry: part.h", "wet: part.h"]
+
+
 def test_runs_with_nothing_in_common_are_refused(tmp_path):
     other = boat().rename({name: f"other.{name}" for name in boat().data_vars})
     with pytest.raises(ShipcosimError, match="no signal in common"):
@@ -146,3 +158,14 @@ def test_a_ship_that_is_nowhere_at_times_has_a_page(tmp_path, largest, rows):
     table["boat.y"].values[rows] = largest
     outcome, _ = write_comparison((table, table), ("A", "B"), tmp_path / "page.html")
     assert outcome.word == "SAME"
+
+
+def test_the_page_of_two_ships_is_not_wider_than_the_window(browse, tmp_path):
+    calm = shipcosim.run("gust", stop_time=2.0)
+    rough = shipcosim.run("gust", stop_time=2.0, set={"environment.wind_speed": 12.0})
+    page = browse(shipcosim.report(calm, rough).page().save(tmp_path / "report.html"))
+    assert page.ask("return document.documentElement.scrollWidth <= innerWidth")
+    # Below the compasses nothing reaches out of its instrument.
+    inside = """return [...document.querySelectorAll('#scene-compasses .instrument')].every((one) =>
+        one.querySelector('table').getBoundingClientRect().right <= one.getBoundingClientRect().right)"""
+    assert page.ask(inside)

@@ -71,6 +71,20 @@ def test_looking_at_a_system(system):
     assert dict(system.parameters) == {"hull.mass": 2.0}
 
 
+def test_a_graph_has_every_component_and_the_inputs_that_each_feeds(system):
+    system.add_connector("order", "input", unit="deg")
+    system.connect("order", "thruster.cmd")
+    assert system.to_dot().splitlines() == [
+        "digraph {",
+        "  node [shape=box];",
+        '  "hull";',
+        '  "thruster";',
+        '  "thruster" -> "hull" [label="force"];',
+        '  "test" -> "thruster" [label="cmd"];',
+        "}",
+    ]
+
+
 def test_reading_what_is_no_system_is_refused(shop, tmp_path):
     (tmp_path / "x.ssd").write_text('<?xml version="1.0"?>\n<a/>')
     assert "Its outermost element is <a>." in refused(read, tmp_path / "x.ssd")

@@ -8,6 +8,9 @@ from pathlib import Path
 
 from shipcosim.diagnose.log.files.text import head_of, text_of
 
+_GPSD = {"track": "course over ground [deg]", "speed": "speed over ground [m/s]"}
+"""Reference: gpsd_json(5), gpsd 3.25: classes TPV and ATT."""
+
 
 def is_json(path: Path) -> bool:
     """Whether a file holds records of JSON by its first characters."""
@@ -33,6 +36,13 @@ def text_of_records(path: Path) -> tuple[str, list[str]]:
     # Deltas of Signal K: each has values by their paths.
     if isinstance(content, list) and any("updates" in record for record in content):
         content = [row for record in content for row in _rows_of_delta(record)]
+    # Reports of gpsd: their names have units and one meaning, and other classes of them have none of ours.
+    if isinstance(content, list) and any(record.get("class") == "TPV" for record in content):
+        content = [
+            {_GPSD.get(name, name): value for name, value in record.items()}
+            for record in content
+            if record.get("class") in ("TPV", "ATT")
+        ]
     # One record of lists is a table by its columns.
     is_by_column = isinstance(content, dict) and any(
         isinstance(values, (list, dict)) for values in content.values()

@@ -158,16 +158,21 @@ def brought_together(
     time, signals and list of str
         Interpolated between a channel's own times, angles the short way round, not across holes; remarks.
     """
-    # If more than a few rows hold most of the channels, the log needs no interpolation.
     is_finite = {name: np.isfinite(values) for name, (values, _) in signals.items()}
     there = {name: rows for name, rows in is_finite.items() if rows.sum() > 1}
-    counts = np.sum(list(there.values()), axis=0) if there else np.zeros(len(time))
-    if not there or not joined and (len(there) < 3 or (counts > 0.5 * len(there)).mean() > _ALONE):
+    if not there:
         return time, signals, []
     # Times of one channel, preferably the heading, are the common clock.
     base = next(
         (n for n in ("heading", "latitude", "north", "surge") if n in there), next(iter(there))
     )
+    # If more than a few rows hold most of the channels, and each channel shares some with the clock's, the log needs
+    # no interpolation.
+    counts = np.sum(list(there.values()), axis=0)
+    together = len(there) < 3 or (counts > 0.5 * len(there)).mean() > _ALONE
+    apart = any((rows & there[base]).sum() <= _ALONE * rows.sum() for rows in there.values())
+    if not joined and together and not apart:
+        return time, signals, []
     clock = np.unique(time[there[base] & np.isfinite(time)])
     interpolated = {}
     # Interpolate each channel from its own rows, in order of time and without repeated times.

@@ -14,12 +14,22 @@ from datetime import date
 import numpy as np
 
 from shipcosim.diagnose.log.files.interpolation import at_times
-from shipcosim.diagnose.log.files.times import DAY, seconds_of, seconds_of_clock
+from shipcosim.diagnose.log.files.times import (
+    DAY,
+    EPOCHS,
+    epoch_unit,
+    seconds_of,
+    seconds_of_clock,
+)
 from shipcosim.errors import error_at
 
 _SENTENCE = re.compile(
-    r"(?P<before>[^$!]*)[$!](?P<body>[A-Z][A-Z0-9]{3,7},[^*\r\n\"]*)(?:\*(?P<sum>[0-9A-Fa-f]{2}))?.*"
+    r"(?P<before>[^$!]*)[$!](?P<body>[A-Z][A-Z0-9]{3,7},[^*\r\n\"]*)(?:\*(?P<sum>[0-9A-Fa-f]{2}))?(?P<after>.*)"
 )
+_STAMP = re.compile(
+    r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d:\d\d(\.\d+)?(Z|[+-]\d\d:?\d\d)?|(?<![\d.])\d{9,}(\.\d+)?(?![\d.:])"
+)
+"""A time with its date, or one since 1970, among other words around a sentence, such as a TAG block's."""
 _SAMPLE = 200  # lines by which a file is judged; share of them that may be no sentences. Assumed.
 _MOST_OTHERS = 0.3
 _MOST_DAMAGED = (
@@ -242,7 +252,9 @@ def _read(lines: list[str]) -> _Read:
         else:
             try:
                 read.sentences.append((number, fields[0], _KINDS[kind](fields)))
-                read.stamps[number] = match["before"].strip(" ,;|\t\"'")
+                stamp = _STAMP.search(f"{match['before']} {match['after']}")
+                text = stamp[0] if stamp else match["before"].strip(" ,;|\t\"'")
+                read.stamps[number] = text
             except (ValueError, IndexError, KeyError):
                 if any(fields[1:]):
                     read.damaged.append(number)
@@ -286,6 +298,7 @@ def _times(source: str, read: _Read) -> tuple[np.ndarray, list[str]]:
         texts = np.array([stamp or None for stamp in stamped], object)
         try:
             numbers = np.array([np.nan if text is None else float(text) for text in texts])
+            numbers /= EPOCHS[epoch_unit(numbers) or "s"]
             return numbers, ["Times are those that stand before the sentences."]
         except ValueError:
             pass

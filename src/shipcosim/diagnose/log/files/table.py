@@ -93,9 +93,11 @@ def read_file(path: Path, form: FileLayout) -> LogColumns:
         form = form.model_copy(update={"separator": "\t"})
     else:
         text, remarks = text_of(path, form.encoding)
-        if holds_sentences(lines := text.splitlines()):
-            values, units, more = columns_of_sentences(str(path), lines)
-            return LogColumns(str(path), values, units, (*remarks, *more))
+    # Records and sheets may hold raw sentences too, behind the times at which they were received.
+    lines = text.splitlines()[1 if is_json(path) else 0 :]
+    if holds_sentences(lines):
+        values, units, more = columns_of_sentences(str(path), lines)
+        return LogColumns(str(path), values, units, (*remarks, *more))
     read = _of_text(str(path), text, form)
     return replace(read, remarks=(*remarks, *read.remarks))
 

@@ -196,5 +196,6 @@
     draw(place, () => drawPanel(place, panel));
   });
   choices();
-  if (!data.panels.length) for (const box of [...document.querySelectorAll("#choices input")].slice(0, 6)) box.click();
+  const first = data.chosen || data.choice.slice(0, 6);
+  if (!data.panels.length) for (const box of document.querySelectorAll("#choices input")) if (first.includes(box.value)) box.click();
 })();

@@ -32,15 +32,13 @@ def chosen(names: Iterable[str], wanted: Sequence[str]) -> list[str]:
     available = list(names)
     matched = {}
     problems = []
-    for pattern in wanted:
+    for pattern in map(str, wanted):
         matching = _matching(available, pattern)
         matched |= dict.fromkeys(matching)
         if not matching:
             problems.append(
                 Problem(
-                    str(pattern),
-                    "There is no such signal or component.",
-                    _remedy(available, str(pattern)),
+                    pattern, "There is no such signal or component.", _remedy(available, pattern)
                 )
             )
     raise_errors(problems)
