@@ -368,6 +368,8 @@ class LiveRun:
     def _greet(self, page: Any) -> None:
         steers = json.dumps({"steers": self._pages.steers(page)})
         self._pages.send(steers, *self._greeting(), to=page)
+        if self._pages.steers(page):
+            self._pages.send(json.dumps({"taken": True}))
 
     def _greeting(self) -> tuple[str, bytes]:
         run = {

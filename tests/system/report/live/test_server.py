@@ -20,6 +20,7 @@ from websockets.sync.client import connect
 
 from shipcosim.cli.app import app
 from shipcosim.live import LiveRun, LiveServer
+from shipcosim.live.server import TAKE_OVER
 from shipcosim.report.live import prepared, server_page
 from shipcosim.scenario import read_scenario
 from shipcosim.ssp import read_system
@@ -190,6 +191,44 @@ def test_a_second_page_shows_the_run_and_changes_nothing(served, browse):
     craft.wait("return document.getElementById('server').textContent.includes('pauses')")
 
 
+def test_a_second_page_takes_over_without_a_reload_once_nobody_steers(
+    served, browse, craft_project
+):
+    with socket(served) as first:
+        told(first, "run")
+        craft = opened(browse, served)
+        first.send(advance(101, [50, "override", "gear", 2]))
+        craft.wait("return desk.live.end === 10")
+        take_over = "document.querySelector('#server button')"
+        assert not craft.ask(f"return {take_over}")
+    craft.wait(f"return {take_over}")
+    with socket(served) as third:
+        # Another page was faster: this one reads on.
+        assert told(third, "steers")["steers"] is True
+        craft.wait("return document.getElementById('server').textContent.includes('Another page')")
+        assert not craft.ask(f"return {take_over}")
+        third.send(advance(121))
+        craft.wait("return desk.live.end === 12")
+    craft.wait(f"return {take_over}")
+    craft.ask(f"window.stays = true; {take_over}.click()")
+    craft.wait("return !document.getElementById('scene-play').disabled")
+    assert craft.ask("return document.getElementById('server').hidden && stays")
+    assert not craft.ask("return document.getElementById('inputs').inert")
+    # It steers: what it does and what was done before it stand in its scenario.
+    with socket(served) as reader:
+        assert told(reader, "steers")["steers"] is False
+        craft.ask("desk.act('override', 'gear', 3)")
+        reach(craft, 15)
+        assert told(reader, "acted")["acted"] == [[121, "override", "gear", 3]]
+    worst, count = largest_difference(craft, repeated(craft, craft_project / "scenarios"))
+    assert count > 15
+    assert worst < SAME
+    craft.ask("scene.go(10)")
+    back = "[...document.querySelectorAll('button')].find((b) => b.textContent === 'Continue from here')"
+    craft.wait(f"return !{back}.disabled")
+    assert craft.errors() == []
+
+
 # ---- who may do what, without a browser
 
 
@@ -236,10 +275,22 @@ def test_one_page_steers_and_the_others_read(served):
     assert told(second, "left")
     third = socket(served)
     assert told(third, "steers")["steers"] is True
+    assert told(second, "taken")
+    # Who asks for it now, asks in vain.
+    second.send(TAKE_OVER)
     run = told(third, "run")["run"]
     assert run["done"] == [[11, "override", "gear", 2]]
     assert run["step"] == 26
-    second.close(), third.close()
+    second.send(advance(50))
+    third.send(advance(31))
+    while (step := step_of(third)) < 31:
+        pass
+    assert step == 31
+    third.close()
+    assert told(second, "left")
+    second.send(TAKE_OVER)
+    assert told(second, "steers")["steers"] is True
+    second.close()
 
 
 def greeting_rows(server, step):
