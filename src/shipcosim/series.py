@@ -33,7 +33,15 @@ from shipcosim.dialects import (
     separator_of,
     unicode_of,
 )
-from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors, reading, shortened
+from shipcosim.errors import (
+    Problem,
+    ShipcosimError,
+    error_at,
+    imported,
+    raise_errors,
+    reading,
+    shortened,
+)
 from shipcosim.temporary import replacement
 from shipcosim.units import UnitError, spelled_conversion, spelled_unit
 
@@ -362,8 +370,16 @@ def _check_declared(path: Path) -> None:
 def _open_netcdf(path: Path) -> xarray.Dataset:
     import xarray
 
-    _check_declared(path)
-    with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as table:
+    with path.open("rb") as file:
+        is_classic = file.read(3) == b"CDF"
+    if is_classic:
+        # The live page saves NetCDF 3. It declares no more than it has.
+        with imported(str(path), "is NetCDF 3, which is read with scipy.", "matlab"):
+            import scipy.io  # noqa: F401
+    else:
+        _check_declared(path)
+    engine = "scipy" if is_classic else "h5netcdf"
+    with xarray.open_dataset(path, engine=engine, decode_times=False) as table:
         table = table.load()
     for variable in table.variables.values():
         if "units" in variable.attrs:

@@ -33,9 +33,11 @@
   const back = element("button", { type: "button", className: "plain", textContent: "Continue from here", title: "Forget what came after the time that is shown" });
   const minute = element("button", { type: "button", className: "plain", textContent: "−60 s", title: "Show a minute earlier" });
   const move = element("button", { type: "button", className: "plain", textContent: "Move set point", title: "Then click in the chart" });
-  const save = element("button", { type: "button", className: "plain", textContent: "Save scenario" }), table = element("button", { type: "button", className: "plain", textContent: "Save table" });
+  const saver = (textContent, title) => element("button", { type: "button", className: "plain", textContent, title });
+  const save = saver("Save scenario", "All that was done: shipcosim run repeats it"), result = saver("Save result.nc", "All signals with names and units, as NetCDF"), table = saver("Save table", "All signals as CSV");
   move.setAttribute("aria-pressed", "false");
-  by("scene-play").after(step, reset, minute, back, move, save, table);
+  by("scene-play").after(step, reset, minute);
+  by("scene-time").closest(".player").append(back, move, save, result, table);
   const speed = by("scene-speed");
   speed.prepend(new Option("0.5×", 0.5));
   speed.append(new Option("as fast as it goes", Infinity));
@@ -51,7 +53,7 @@
 
   // A server that cannot go back says why. Its rows come when they are there; who looks at the end goes on looking there.
   const noWay = () => live.engine.noWayBack;
-  function tellWay() { if (noWay()) { back.disabled = true; back.title = `Going back is not possible. ${noWay()}`; } }
+  function tellWay() { if (noWay()) back.title = `Going back is not possible. ${noWay()}`; }
   tellWay();
   addEventListener("live-arrived", ({ detail: before }) => {
     tellWay();
@@ -230,7 +232,9 @@
   function tell() {
     const end = live.time.last, past = scene.time < end - 1e-6, words = past ? `Shown is ${scene.time.toFixed(1)} s of ${end.toFixed(1)} s. What you change acts at the end; ${noWay() ? `there is no way back: ${noWay()}` : `“Continue from here” forgets what came after ${scene.time.toFixed(1)} s.`}` : told;
     if (by("past").textContent !== words) by("past").textContent = words;
+    back.disabled = !past || Boolean(noWay()) || live.engine.steers === false;
   }
+
   // ---- trends
 
   const trends = [], names = by("trend-names");
@@ -308,10 +312,17 @@
     return `${lines.join("\n")}\n`;
   }
 
-  function keep(name, text) {
-    const address = URL.createObjectURL(new Blob([text], { type: "text/plain" })), link = element("a", { href: address, download: name });
+  function netcdf() {
+    const signals = about.columns.flatMap((names, x) => names.map((name) => ({ name, kind: about.kinds[x], unit: about.signals[name]?.unit ?? "", text: about.signals[name]?.text ?? "", values: live.raw.get(name).values })));
+    const { description = "", system, step_size } = about.scenario;
+    const clock = { name: "time", kind: "Real", unit: "s", text: "time", values: live.time.values };
+    return netcdfOf({ description, system, step_size, saved_scenario: scenario() }, [clock, ...signals]);
+  }
+
+  function keep(name, content) {
+    const file = new Blob([content], { type: content.type || "text/plain" }), address = URL.createObjectURL(file), link = element("a", { href: address, download: name });
     link.click();
-    told = `Saved as ${name}, ${(text.length / 1e6).toFixed(text.length > 1e6 ? 0 : 3)} MB.`;
+    told = `Saved as ${name}, ${(file.size / 1e6).toFixed(file.size > 1e6 ? 0 : 3)} MB.`;
     setTimeout(() => URL.revokeObjectURL(address), 1000);
   }
   // Who leaves the page with something done that is not saved is asked first.
@@ -319,8 +330,9 @@
   addEventListener("live-acted", () => { unsaved = true; });
   addEventListener("beforeunload", (event) => { if (unsaved && navigator.userActivation?.hasBeenActive) event.preventDefault(); });
   save.addEventListener("click", () => { keep("live.toml", scenario()); unsaved = false; });
+  result.addEventListener("click", () => { keep("result.nc", netcdf()); unsaved = false; });  // the scenario stands in it
   table.addEventListener("click", () => keep("live.csv", csv()));
-  Object.assign(window.desk, { scenario, csv });
+  Object.assign(window.desk, { scenario, csv, netcdf });
 
   // ---- go
 
