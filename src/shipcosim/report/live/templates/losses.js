@@ -1,6 +1,6 @@
 // What comes of each loss, by simulation of this very system in a worker, again and again.
 (() => {
-  const { live } = report, { about } = live, { element, present } = window.desk, section = document.getElementById("losses"), body = section.querySelector("tbody"), said = document.getElementById("losses-said");
+  const { live } = report, { about } = live, { element, present, isBus, busOf } = window.desk, section = document.getElementById("losses"), body = section.querySelector("tbody"), said = document.getElementById("losses-said");
   const ahead = 120, run = report.data.scene[0], vessel = run.vessels[0], aim = vessel && (vessel.aims.reference || vessel.aims["set point"]);
   const name = (column) => run.recipes[column]?.signal, real = about.kinds.indexOf("Real");
   const columns = aim ? [...vessel.pose, ...aim].map((column) => about.columns[real].indexOf(name(column))) : [];
@@ -8,7 +8,7 @@
   // Losses: a unit that has a switch "failed", and a bus without power.
   const losses = Object.entries(about.signals).filter(([, signal]) => signal.free).flatMap(([signal, { kind }]) => {
     if (kind === "Boolean" && /\.failed$/.test(signal)) return [{ name: signal.slice(0, signal.lastIndexOf(".")), changes: [["override", signal, true]] }];
-    if (kind === "Real" && /bus\w*_power$/.test(signal)) return [{ name: signal.slice(signal.lastIndexOf(".") + 1).replace(/_power$/, "").replaceAll("_", " "), changes: [["override", signal, 0]] }];
+    if (isBus([signal, { kind }])) return [{ name: busOf(signal), changes: [["override", signal, 0]] }];
     return [];
   });
   if (about.server) {

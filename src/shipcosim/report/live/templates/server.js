@@ -15,7 +15,7 @@ function connectEngine(about, record) {
   function permit() {
     if (!isOpen) return;
     for (const id of ["inputs", "failures", "starts"]) document.getElementById(id).inert = !engine.steers;
-    for (const button of document.querySelectorAll("#scene button.plain")) if (!button.textContent.startsWith("Save")) button.disabled = !engine.steers;
+    for (const button of document.querySelectorAll("#scene button.plain")) if (!/^(Save|−60)/.test(button.textContent)) button.disabled = !engine.steers;
     document.getElementById("scene-play").disabled = !engine.steers;
     tell(engine.steers ? "" : "Another page steers this run; this one shows it. Once that one is closed, this one can take over.");
     scene.refresh();
