@@ -136,6 +136,7 @@ def test_what_is_done_at_a_server_is_repeated_by_the_saved_scenario(served, brow
     assert json.loads(table.attrs["start_values"])["craft.seed"] == 4
     worst, _ = largest_difference(craft, table)
     assert worst < SAME
+    craft.wait("return desk.losses.time === desk.live.end")
 
 
 def test_a_page_runs_pauses_and_is_loaded_again_where_it_was(served, browse):
@@ -146,11 +147,41 @@ def test_a_page_runs_pauses_and_is_loaded_again_where_it_was(served, browse):
     craft.wait("return scene.time > 2 && desk.live.value('craft.engaged') === 0")
     craft.ask("document.getElementById('scene-play').click()")
     reached = craft.ask("return desk.live.end")
-    assert "the server has one" in craft.text("#losses-said")
     craft = opened(browse, served)
     assert craft.ask("return desk.live.end") >= reached
     assert craft.ask("return desk.live.held('craft.engaged')")[1] == "override"
     assert any("closed at t = " in text and "pauses" in text for text in served.shown)
+
+
+def test_the_forecast_of_a_server_equals_a_run_with_that_loss(served, browse):
+    craft = opened(browse, served)
+    reach(craft, 6)
+    craft.ask("desk.act('override', 'craft.x_set', 30); desk.act('override', 'craft.y_set', 4)")
+    reach(craft, 6.5)
+    # The scenario acts at 9 s, which the forecast has in it.
+    craft.wait("return desk.losses.time === desk.live.end && desk.losses.answers.length === 1")
+    answer = craft.ask("return JSON.parse(JSON.stringify(desk.losses.answers[0]))")
+    assert answer["name"] == "craft"
+    step = craft.ask("return desk.live.now()")
+    assert step < 90
+    craft.ask("desk.act('override', 'craft.failed', true)")
+    reach(craft, 130)
+    names = ("x", "y", "psi", "x_set", "y_set")
+    after = np.arange(craft.ask("return desk.live.time.length")) * 5 >= step
+    x, y, psi, x_set, y_set = (
+        np.array(craft.ask("return [...desk.live.raw.get(arguments[0]).values]", f"craft.{name}"))[
+            after
+        ][:240]
+        for name in names
+    )
+    assert answer["distance"] == pytest.approx(np.hypot(x - x_set, y - y_set).max(), rel=1e-9)
+    assert np.ptp(psi) > 0.1
+    np.testing.assert_allclose(np.reshape(answer["track"], (-1, 3)), np.transpose([x, y, psi]))
+    # What was changed on the way belongs to the run alone.
+    craft.wait(
+        "return document.querySelector('#losses tbody').innerText.includes('is lost already')"
+    )
+    assert craft.errors() == []
 
 
 def test_a_foreign_fmu_that_fails_is_named_and_its_run_is_saved(
@@ -163,6 +194,7 @@ def test_a_foreign_fmu_that_fails_is_named_and_its_run_is_saved(
         back = "[...document.querySelectorAll('button')].find((b) => b.textContent === 'Continue from here')"
         assert craft.ask(f"return {back}.disabled")
         assert "pilot.fmu cannot store its state" in craft.ask(f"return {back}.title")
+        assert "Not possible here" in craft.text("#losses-said")
         craft.ask("desk.act('override', 'wish', 200)")
         reach(craft, 15)
         craft.wait("return desk.live.stopped")
@@ -258,6 +290,37 @@ def advance(to, *changes):
     return json.dumps({"do": "advance", "to": to, "changes": changes})
 
 
+def forecast(losses=((("override", "craft.failed", True),),), steps=100, watched=("craft.x",)):
+    return json.dumps({"do": "forecast", "losses": losses, "steps": steps, "watched": watched})
+
+
+def test_a_forecast_leaves_the_run_alone_and_all_pages_get_it(served):
+    with socket(served) as first, socket(served) as second:
+        told(first, "run"), told(second, "run")
+        second.send(forecast())  # in vain
+        first.send(advance(31))
+        first.send(forecast(losses=[[], [["override", "speed", 4.0]]]))
+        first.send(advance(41))
+        one, other = (told(page, "forecast")["forecast"] for page in (first, second))
+        assert one == other
+        assert one["step"] == 31
+        healthy, faster = (np.ravel(answer["rows"]) for answer in one["answers"])
+        assert len(healthy) == 20
+        assert not np.allclose(healthy, faster)
+        first.send(advance(131))
+        rows = greeting_rows(served, 131)
+        page = np.frombuffer(rows)
+        n, columns = int(page[1]), len(page[2:]) // int(page[1])
+        assert n == 27 and columns > 10
+        # A page that goes back meanwhile gets its answer, too.
+        first.send(advance(200_000))
+        first.send(forecast())
+        first.send(json.dumps({"do": "back", "to": 51}))
+        assert told(first, "forecast")["forecast"]["step"] < 200_000
+    with socket(served) as third:
+        assert told(third, "run")["run"]["done"] == []
+
+
 def test_one_page_steers_and_the_others_read(served):
     first = socket(served)
     assert told(first, "steers")["steers"] is True
@@ -337,6 +400,10 @@ def test_the_command_starts_a_server_where_no_page_can_run_the_system(foreign_pr
         "{",
         "[]",
         '{"do": "back", "to": "x"}',
+        forecast(watched=["nothing"]),
+        forecast(steps=1_000_000),
+        forecast(losses=[[["override", "nothing", True]]]),
+        forecast(losses=[[]] * 1000),
         '{"do": "start", "values": {"craft.nothing": 1}}',
         '{"do": "start", "values": {"craft.seed": NaN}}',
         advance(50, [20, "override", "nothing", 1]),

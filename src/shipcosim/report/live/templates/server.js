@@ -40,6 +40,7 @@ function connectEngine(about, record) {
       asked = to;
     },
     start(starts) { waits = true; ask({ do: "start", values: Object.fromEntries(Object.entries(starts).map(([place, value]) => [signals[place], value])) }); },
+    forecast(question) { ask({ do: "forecast", ...question }); },
     back(to) { waits = true; ask({ do: "back", to }); },
   };
   engine.opened = new Promise((resolve, reject) => {
@@ -55,6 +56,7 @@ function connectEngine(about, record) {
         record.fail(told.failed);
       } else if (told.acted) { if (!engine.steers) record.acted(told.acted); }
       else if (told.left) { if (!engine.steers) { tell("The page that steered was closed: the run pauses. "); notice.append(takeOver); } }
+      else if (told.forecast) dispatchEvent(new CustomEvent("live-forecast", { detail: told.forecast }));
       else if (told.taken) permit();  // by this page, or by another one
       else {
         const numbers = new Float64Array(data), now = performance.now();
