@@ -16,6 +16,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
@@ -33,15 +34,7 @@ from shipcosim.dialects import (
     separator_of,
     unicode_of,
 )
-from shipcosim.errors import (
-    Problem,
-    ShipcosimError,
-    error_at,
-    imported,
-    raise_errors,
-    reading,
-    shortened,
-)
+from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors, reading, shortened
 from shipcosim.temporary import replacement
 from shipcosim.units import UnitError, spelled_conversion, spelled_unit
 
@@ -372,11 +365,11 @@ def _open_netcdf(path: Path) -> xarray.Dataset:
 
     with path.open("rb") as file:
         is_classic = file.read(3) == b"CDF"
-    if is_classic:
-        # The live page saves NetCDF 3. It declares no more than it has.
-        with imported(str(path), "is NetCDF 3, which is read with scipy.", "matlab"):
-            import scipy.io  # noqa: F401
-    else:
+    # The live page saves NetCDF 3, which xarray reads with scipy. It declares no more than it has.
+    if is_classic and find_spec("scipy") is None:
+        remedy = "Install it: pip install 'shipcosim[matlab]'."
+        raise error_at(str(path), "is NetCDF 3, which is read with scipy.", remedy)
+    if not is_classic:
         _check_declared(path)
     engine = "scipy" if is_classic else "h5netcdf"
     with xarray.open_dataset(path, engine=engine, decode_times=False) as table:

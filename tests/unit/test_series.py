@@ -397,6 +397,6 @@ def test_netcdf_3_of_other_programs_is_read_and_a_damaged_one_refused(table, tmp
 
 def test_netcdf_3_without_scipy_says_what_to_install(table, tmp_path, monkeypatch):
     table.to_netcdf(tmp_path / "t.nc", format="NETCDF3_64BIT", engine="scipy")
-    monkeypatch.setitem(sys.modules, "scipy.io", None)
+    monkeypatch.setitem(sys.modules, "scipy", None)
     with pytest.raises(ShipcosimError, match=r"pip install 'shipcosim\[matlab\]'"):
         read_table(tmp_path / "t.nc")
