@@ -274,6 +274,7 @@
       let low = Infinity, high = -Infinity;
       const values = live.raw.get(name).values;
       for (let k = begin; k < values.length && time[k] <= last + 1e-9; k++) { low = Math.min(low, factor * values[k]); high = Math.max(high, factor * values[k]); }
+      const constant = high === low ? String(digits(low)) : "";
       if (!(high > low)) { high += 0.5; low -= 0.5; }
       const x = (t) => 8 + ((width - 16) * (t - from)) / (last - from || 1), y = (v) => height - 20 - ((height - 42) * (v - low)) / (high - low);
       c.beginPath();
@@ -283,7 +284,7 @@
       c.textAlign = "left"; c.fillText(`${name}${unit ? ` [${unit}]` : ""}`, 8, 12, Math.max(width - 190, 60));
       // Ends of the range, to a hundredth of it.
       const least = 10 ** (Math.floor(Math.log10(high - low)) - 1), end = (v) => String(digits(Math.round(v / least) * least)).replaceAll("-", "−");
-      c.textAlign = "right"; c.fillText(`${end(low)} to ${end(high)}`, width - 32, 12);
+      c.textAlign = "right"; c.fillText(constant || `${end(low)} to ${end(high)}`, width - 32, 12);
       c.fillText(`${last.toFixed(0)} s`, width - 8, height - 4);
       c.textAlign = "left"; c.fillText(`${from.toFixed(0)} s`, 8, height - 4);
     }
