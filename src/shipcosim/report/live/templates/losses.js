@@ -50,7 +50,9 @@
       if (error) { stop(error); return; }
       take({ time: live.engine.seconds(step - 1), milliseconds, answers: answers.map((one, k) => ({ name: losses[k].name, ...(one.error ? one : outcomeOf(one.rows, limits, spacing)) })) });
     });
-    return (steps) => live.engine.forecast({ steps, watched, losses: losses.map(({ changes }) => changes) });
+    // What was done in a pause goes to the server with the next steps only, so each loss brings it.
+    const pending = () => live.pending.filter(([, , , , byHand]) => byHand).map((change) => change.slice(1, 4));
+    return (steps) => live.engine.forecast({ steps, watched, losses: losses.map(({ changes }) => [...pending(), ...changes]) });
   }
 
   // A unit that is lost already is no further loss.
