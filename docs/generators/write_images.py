@@ -38,7 +38,7 @@ ACTS = {  # what is done before the picture, and what must be there then
     )
 }
 TIMES = {"four_corner": "#t=330"}  # s: under way, with set point and reference apart
-HEIGHTS = {"four_corner": 1140, "diagnosis": 1020, "capability": 1030, "study": 850, "live": 1060}
+HEIGHTS = {"four_corner": 1140, "diagnosis": 1020, "capability": 1030, "study": 850, "live": 1004}
 SHIPCOSIM = Path(sys.executable).with_name("shipcosim")
 WIDTH = 1280
 SQUARE, CLEARLY = 20, 12  # px; of 255 shades of grey: a letter more or less is not

@@ -16,6 +16,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
@@ -366,8 +367,16 @@ def _check_declared(path: Path) -> None:
 def _open_netcdf(path: Path) -> xarray.Dataset:
     import xarray
 
-    _check_declared(path)
-    with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as table:
+    with path.open("rb") as file:
+        is_classic = file.read(3) == b"CDF"
+    # The live page saves NetCDF 3, which xarray reads with scipy. It declares no more than it has.
+    if is_classic and find_spec("scipy") is None:
+        remedy = "Install it: pip install 'shipcosim[matlab]'."
+        raise error_at(str(path), "is NetCDF 3, which is read with scipy.", remedy)
+    if not is_classic:
+        _check_declared(path)
+    engine = "scipy" if is_classic else "h5netcdf"
+    with xarray.open_dataset(path, engine=engine, decode_times=False) as table:
         table = table.load()
     for variable in table.variables.values():
         if "units" in variable.attrs:

@@ -93,7 +93,7 @@ MAY_IMPORT = {
         "capability",
         "sweep",
     },
-    "live": {"errors", "options", "scenario", "ssp", "cosim"},
+    "live": {"errors", "temporary", "options", "scenario", "ssp", "cosim"},
     "results": {
         "temporary",
         "errors",

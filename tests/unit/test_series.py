@@ -379,3 +379,24 @@ def test_a_table_that_cannot_be_told_into_columns_is_refused_in_one_sentence(tmp
     with pytest.raises(ShipcosimError, match=rf"weather\.csv, {found}") as refused:
         read_table(path)
     assert len(refused.value.problems) == 1
+
+
+def test_netcdf_3_of_other_programs_is_read_and_a_damaged_one_refused(table, tmp_path):
+    file = tmp_path / "t.nc"
+    table.to_netcdf(file, format="NETCDF3_64BIT", engine="scipy")
+    again = read_table(file)
+    for name, column in table.variables.items():
+        assert np.array_equal(again[name].values, column.values), name
+        assert again[name].attrs["units"] == column.attrs["units"]
+    assert list(read_columns(file)) == ["vessel.x", "port.failed", "weather.seed", "time"]
+    for length in (4, 40, file.stat().st_size - 9):
+        (tmp_path / "short.nc").write_bytes(file.read_bytes()[:length])
+        with pytest.raises(ShipcosimError, match="short.nc: cannot be read"):
+            read_table(tmp_path / "short.nc")
+
+
+def test_netcdf_3_without_scipy_says_what_to_install(table, tmp_path, monkeypatch):
+    table.to_netcdf(tmp_path / "t.nc", format="NETCDF3_64BIT", engine="scipy")
+    monkeypatch.setitem(sys.modules, "scipy", None)
+    with pytest.raises(ShipcosimError, match=r"pip install 'shipcosim\[matlab\]'"):
+        read_table(tmp_path / "t.nc")

@@ -64,11 +64,11 @@ def report(
 def names_of(first: AnyPath | Run | Dataset, second: AnyPath | Run | Dataset) -> tuple[str, str]:
     """Short names of two runs: those of their scenarios, folders or files, else A and B."""
     ways = []
-    for one in (first, second):
-        if not isinstance(one, (str, Path)):
-            ways.append([getattr(one, "name", "")])
+    for run in (first, second):
+        if not isinstance(run, (str, Path)):
+            ways.append([getattr(run, "name", "")])
             continue
-        path = Path(one).resolve()
+        path = Path(run).resolve()
         parts = list(path.parts[1:]) if path.is_dir() else [*path.parts[1:-1], path.stem]
         if len(parts) > 1 and parts[-1] in ("result", "result-partial"):
             parts.pop()

@@ -120,8 +120,8 @@ def files_of(given: str) -> list[str]:
     if not folder.is_dir() or any(_is_one(kind, folder) for kind in ("system", "ship")):
         return [given]
     kinds = ("scenario", "study", "system", "ship")
-    found = [path for kind in kinds for _, path in in_root(kind, folder)]
-    return [str(path) for path in found or sorted(folder.glob("*.toml"))] or [given]
+    paths = [path for kind in kinds for _, path in in_root(kind, folder)]
+    return [str(path) for path in paths or sorted(folder.glob("*.toml"))] or [given]
 
 
 def find_parameters(given: Path, system: AnyPath) -> Path:

@@ -6,47 +6,48 @@ import json
 import queue
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 from math import isfinite
 from time import perf_counter
 from typing import Any, Protocol
 
 import numpy as np
 
-from shipcosim.cosim.interactive import changeable_inputs, kinds_of
+from shipcosim.cosim.interactive import kinds_of, row_signals
 from shipcosim.cosim.master.algorithm import Ended, Failure
 from shipcosim.cosim.master.events import changes, modifiers_of
 from shipcosim.cosim.master.interrupt import delayed_interrupt
 from shipcosim.cosim.master.plan import label
 from shipcosim.cosim.master.restore import check_storable
-from shipcosim.cosim.master.run import Simulation
-from shipcosim.cosim.master.signals import Exchange, Modifiers
-from shipcosim.cosim.master.time_grid import TimeGrid, time_grid_of
 from shipcosim.cosim.processes.remote_slave import IsolatedInstances
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import ShipcosimError
-from shipcosim.options import TIMEOUT, RunOptions
-from shipcosim.scenario import Scenario, step_times
+from shipcosim.live.forecast import Forecaster, Question
+from shipcosim.live.simulation import (
+    Change,
+    SystemState,
+    apply_changes,
+    endless_grid,
+    endless_simulation,
+    restore,
+    state_of,
+)
+from shipcosim.options import TIMEOUT
+from shipcosim.scenario import Scenario
 from shipcosim.ssp import System, with_values
 
-LONGEST = 86400.0
-"""A run ends after a day at the latest. [s]"""
-MOST_STEPS, MOST_ROWS = 2_000_000, 400_000
-"""It ends earlier where memory for its times and rows would not do: 1 GB for rows of 300 signals."""
 SLICE = 0.03
 """Time between two looks at what the page asks. Assumed: nobody notices it. [s]"""
 MOST_AT_ONCE = 4096
 """Steps between two such looks."""
 EVERY, RECENT, MOST_STATES = 5.0, 60.0, 80
 """Time between two states to go back to, the age up to which all are kept, and their number. [s, s, 1]"""
+MOST_LOSSES, FARTHEST = 50, 36_000
+"""Losses of a forecast, and its steps."""
 
 NUMBERS = {"Real": int | float, "Integer": int, "Boolean": bool}
 """What a page sends for a signal of each kind."""
-
-Change = tuple[int, str, str, Any]
-"""Step before which it acts; override, bias or reset; signal; value."""
 
 
 class Pages(Protocol):
@@ -70,15 +71,6 @@ class Pages(Protocol):
 
 class _Again(Exception):
     """The run is to start again."""
-
-
-@dataclass(frozen=True)
-class _State:
-    """A system between two steps: states of the FMUs by name, arrays and modifiers of each exchange."""
-
-    fmus: dict[str, bytes]
-    arrays: list[list[np.ndarray]]
-    modifiers: list[list[dict]]
 
 
 class LiveRun:
@@ -121,28 +113,20 @@ class LiveRun:
             apart = module_clashes(system, late_alone=True)
             with IsolatedInstances(system, TIMEOUT) if apart else Instances() as instances:
                 while True:
-                    with suppress(_Again):
-                        self._run_once(instances)
+                    started = with_values(system, self._starts, "the page")
+                    with suppress(_Again), Forecaster(started, self._scenario) as self._forecaster:
+                        self._run_once(started, instances)
 
-    def _new_simulation(self) -> Simulation:
-        system = with_values(self._first_system, self._starts, "the page")
-        # The page changes any input, and all events act between two steps as what it changes does.
-        named = [name for event in self._scenario.events for _, name, _ in event.changes]
-        names = list(dict.fromkeys([*changeable_inputs(system), *named]))
-        quiet = self._scenario.model_copy(update={"events": []})
-        options = RunOptions(engine="native")
-        return Simulation(system, quiet, self._grid, options, changeable=names)
-
-    def _run_once(self, instances) -> None:
+    def _run_once(self, system: System, instances) -> None:
         """Start, and go on until the page starts again."""
-        self._simulation = simulation = self._new_simulation()
+        self._simulation = simulation = endless_simulation(system, self._scenario, self._grid)
         plan = simulation.plan
         events = changes(self._scenario, plan, self._grid)
         self._events: list[Change] = [
             (e.step, e.action, label(e.end), e.value or 0) for e in events
         ]
         self._done: list[Change] = []
-        self._states: dict[int, _State] = {}
+        self._states: dict[int, SystemState] = {}
         self._waiting: list[tuple[Any, str]] = []
         self._failure = ""
         self._now, self._goal, self._sent, self._slice = 0, 1, 0, 1
@@ -180,7 +164,7 @@ class LiveRun:
         # What is due now acts on the step that starts; then on to whatever comes first.
         k = self._now
         due = [change for change in (*self._events, *self._done) if change[0] == k]
-        self._change(due)
+        apply_changes(self._simulation, k, due)
         later = [change[0] for change in (*self._events, *self._done) if change[0] > k]
         next_state = (k // self._spacing + 1) * self._spacing
         self._looked = perf_counter()
@@ -192,7 +176,7 @@ class LiveRun:
         if self._no_way_back or not is_due:
             return
         try:
-            self._states[self._now] = self._state()
+            self._states[self._now] = state_of(self._simulation, self._master)
         except SlaveError as error:
             self._no_way_back = f"A component does not give its state: {error}"
             self._states.clear()
@@ -220,9 +204,9 @@ class LiveRun:
                 self._greet(page)
                 continue
             # Steps that were asked for are given up where another start is wanted, or nobody steers any more.
-            if what == "left" or '"advance"' not in text:
+            if what == "left" or not ('"advance"' in text or '"forecast"' in text):
                 self._goal = self._now
-                self._waiting.clear()
+                self._waiting = [message for message in self._waiting if '"forecast"' in message[1]]
             if what == "asked":
                 self._waiting.append((page, text))
             else:
@@ -246,12 +230,16 @@ class LiveRun:
                         self._pages.send(json.dumps({"acted": done}))
             elif request["do"] == "back":
                 self._go_back(int(request["to"]))
+            elif request["do"] == "forecast":
+                self._forecast(request["losses"], int(request["steps"]), request["watched"])
             else:
                 values = dict(request["values"])
                 if not all(isfinite(value) for value in values.values()):
                     raise ValueError(values)
                 with_values(self._first_system, values, "the page")
                 self._starts = values
+                # A forecast of the old run gets no answer any more.
+                self._pages.send(json.dumps({"forecast": {"error": ""}}))
                 raise _Again
         except (LookupError, ValueError, TypeError, OverflowError, RecursionError, ShipcosimError):
             self._pages.refuse(page)
@@ -274,75 +262,49 @@ class LiveRun:
             raise ValueError(name)
         return int(step), action, str(name), number
 
-    # ---- changes and states
+    # ---- states
 
-    def _change(self, due: list[Change]) -> None:
-        """Apply changes of one step."""
-        plan = self._simulation.plan
-        exchanges = self._simulation.exchanges
-        # Inputs of the system are passed on with the values of this time, as `Master.run` does with external ones.
-        for _, action, name, value in due:
-            end = plan.system.split(name)
-            for kind, exchange in exchanges.items() if end[0] is None else ():
-                layout = plan.layouts[kind]
-                if end in layout.external:
-                    start: Any = layout.external[end] or 0
-                    given = value if action == "override" else start + value
-                    exchange.external[list(layout.external).index(end)] = given
-        if due:
-            for exchange in exchanges.values():
-                exchange.transfer(self._now)
-        # Overrides come after that: an output that is overridden now shows it from what this step puts out.
-        for _, action, name, value in due:
-            end = plan.system.split(name)
-            if end[0] is not None:
-                modifiers, row = modifiers_of(end, plan, exchanges)
-                modifiers.put(row, 0 if action == "override" else 1, value)
-        for exchange in exchanges.values() if due else ():
-            exchange.refresh()
+    def _forecast(self, losses: list, steps: int, watched: list) -> None:
+        """Have the time after each loss, a list of changes, computed from the present state; all pages get the answer."""
 
-    def _state(self) -> _State:
-        """The state between two steps. Raises SlaveError."""
-        self._master.give_back()
-        simulation = self._simulation
-        fmus = {name: component.slave.state() for name, component in simulation.components.items()}
-        exchanges = simulation.exchanges.values()
-        arrays = [[values.copy() for values in arrays_of(exchange)] for exchange in exchanges]
-        return _State(fmus, arrays, [[m.active for m in modifiers_in(e)] for e in exchanges])
+        def answer(forecast: dict[str, Any]) -> None:
+            self._pages.send(json.dumps({"forecast": forecast}))
+
+        present = self._now
+        signals = row_signals(self._simulation.plan, "Real")
+        if len(losses) > MOST_LOSSES or steps > FARTHEST or not set(watched) <= set(signals):
+            raise ValueError(watched)
+        # What the scenario and the page change in that time happens in each future.
+        changes = (*self._events, *self._done)
+        coming = [change for change in changes if present <= change[0] < present + steps]
+        futures = [
+            [*coming, *(self._checked(present, *change) for change in loss)] for loss in losses
+        ]
+        if reason := self._failure or self._no_way_back:
+            answer({"error": reason})
+            return
+        try:
+            state = state_of(self._simulation, self._master)
+        except SlaveError as error:
+            answer({"error": str(error)})
+            return
+        self._forecaster.ask(Question(present, state, steps, futures, watched), answer)
 
     def _go_back(self, to: int) -> None:
         """Go back to a step, by a state at or before it; later changes are discarded."""
         if self._no_way_back or not self._states:
             raise ValueError("there is no state")
-        # The latest state at or before the step: FMUs first, then the values that are exchanged.
         step = max((number for number in self._states if number <= to), default=min(self._states))
-        state = self._states[step]
-        simulation = self._simulation
         try:
-            for name, component in simulation.components.items():
-                component.restore(state.fmus[name])
+            restore(self._simulation, self._master, self._states[step])
         except SlaveError as error:
             self._fail(f"A component does not take its state back: {error}")
             return
-        for exchange, arrays, active in zip(
-            simulation.exchanges.values(), state.arrays, state.modifiers, strict=True
-        ):
-            for values, before in zip(arrays_of(exchange), arrays, strict=True):
-                values[:] = before
-            for modifiers, wanted in zip(modifiers_in(exchange), active, strict=True):
-                for row in modifiers.active:
-                    modifiers.reset(row)
-                for row, modifier in wanted.items():
-                    modifiers.put(row, *modifier)
-        # Texts are passed on again, since the FMUs may have others; compiled components take the numbers of their FMUs.
-        for connection in simulation.strings:
-            connection.last = None
-        self._master.take_back()
         # From here on the run knows nothing of what came later.
         self._done = [change for change in self._done if change[0] < to]
         self._states = {number: kept for number, kept in self._states.items() if number <= step}
         self._now, self._goal, self._failure = step, max(to, step), ""
-        simulation.recorders.n_rows = -(-step // self._grid.steps_per_row)
+        self._simulation.recorders.n_rows = -(-step // self._grid.steps_per_row)
         self._greets = True
 
     # ---- messages to the pages
@@ -368,6 +330,8 @@ class LiveRun:
     def _greet(self, page: Any) -> None:
         steers = json.dumps({"steers": self._pages.steers(page)})
         self._pages.send(steers, *self._greeting(), to=page)
+        if self._pages.steers(page):
+            self._pages.send(json.dumps({"taken": True}))
 
     def _greeting(self) -> tuple[str, bytes]:
         run = {
@@ -388,23 +352,3 @@ class LiveRun:
         ]
         head = np.array([self._now, recorders.n_rows - first], float)
         return b"".join([head.tobytes(), *rows])
-
-
-def endless_grid(scenario: Scenario) -> TimeGrid:
-    """Time grid of a run that ends when nobody can want it any more."""
-    grid = time_grid_of(scenario)
-    step = scenario.step_size
-    last = min(int(LONGEST / step), MOST_STEPS, MOST_ROWS * grid.steps_per_row)
-    # The step of a slow component may go beyond the end.
-    times = step_times(step, 0, last + int(LONGEST / 24 / step))
-    return TimeGrid(0.0, float(times[-1]), 0, last, times, grid.steps_per_row)
-
-
-def arrays_of(exchange: Exchange) -> list[np.ndarray]:
-    """Arrays of an exchange that change from step to step."""
-    return [exchange.sources, exchange.modified_sources, exchange.transferred, exchange.inputs]
-
-
-def modifiers_in(exchange: Exchange) -> tuple[Modifiers, Modifiers]:
-    """Overrides and biases of an exchange's outputs and inputs."""
-    return exchange.output_modifiers, exchange.input_modifiers

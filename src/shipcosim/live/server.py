@@ -30,6 +30,8 @@ LARGEST = 1 << 20
 """Size of a message that a page may send. [B]"""
 LONGEST_END = 1.0
 """Time that pages have to take their leave at the end. [s]"""
+TAKE_OVER = '{"do":"steer"}'
+"""What a page that reads sends to steer."""
 NOT_ALLOWED = 1008
 """Code of WebSocket with which a connection is closed that asks for what there is not."""
 POLICY = (
@@ -50,7 +52,7 @@ class LiveServer:
     ----------
     inbox : Queue of (str, page, str)
         What happened: a page has "joined" or "left", or has "asked" for what a text says. Of several pages only the
-        first steers: the others read, and what they ask for is thrown away.
+        first steers. The others read; they can only ask to take over, once nobody steers.
     url : str
         Address of the page, with its token.
     """
@@ -137,7 +139,11 @@ class LiveServer:
         try:
             with suppress(ConnectionClosed):
                 async for message in connection:
-                    if connection is self._steering and isinstance(message, str):
+                    if self._steering is None and message == TAKE_OVER:
+                        # It starts with the whole run, as a page that has just come.
+                        self._steering = connection
+                        self.inbox.put(("joined", connection, ""))
+                    elif connection is self._steering and isinstance(message, str):
                         self.inbox.put(("asked", connection, message))
         finally:
             self._joined.discard(connection)

@@ -56,7 +56,7 @@ class RunComparison(SavedResult):
         """
         from shipcosim.report.notebook.figures import panels_svg
 
-        differing = [one.signal for one in self.comparison.differences[:3]]
+        differing = [difference.signal for difference in self.comparison.differences[:3]]
         both = self.comparison.both
         first = list(map(str, self.comparison.pair.shown[0].data_vars))
         drawn = [
@@ -92,9 +92,9 @@ def table_of(given: AnyPath | Run | xarray.Dataset) -> xarray.Dataset:
         return given  # pyright: ignore[reportReturnType]
     path = Path(given)
     names = ("result.nc", "result.csv", "result-partial.nc", "result-partial.csv")
-    found = [path / name for name in names if (path / name).is_file()]
-    if path.is_dir() and not found:
+    tables = [path / name for name in names if (path / name).is_file()]
+    if path.is_dir() and not tables:
         raise error_at(
             str(path), "There is no result.nc in this folder.", "Give the --out of a run."
         )
-    return read_table(found[0] if path.is_dir() else path)
+    return read_table(tables[0] if path.is_dir() else path)

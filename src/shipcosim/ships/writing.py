@@ -141,9 +141,9 @@ def ship_text(answers: Answers) -> str:
         weight = answers.displacement or usual(answers, "displacement")
         speed = answers.speed or usual(answers, "speed")
         form = _form(replace(answers, displacement=weight, speed=speed))
-        given = {one.get("name"): one for one in answers.thrusters}
+        given = {thruster.get("name"): thruster for thruster in answers.thrusters}
         usual_ones = [] if given and not answers.layout else _thrusters(answers)
-        thrusters = [*({one["name"]: one for one in usual_ones} | given).values()]
+        thrusters = [*({thruster["name"]: thruster for thruster in usual_ones} | given).values()]
     except ValueError as error:
         raise error_at("new ship", f"{error}") from None
     shown = "\n\n".join(
@@ -203,7 +203,7 @@ def _thrusters(answers: Answers) -> list[dict[str, str]]:
     L, B, T = (number_in(getattr(answers, key), "m") for key in ("length", "breadth", "draught"))
     power = _given(answers, "power", "W") or number_in(usual(answers, "power"), "W")
     power /= 1000.0  # kW
-    known = Usual if isinstance(answers.power or Usual(), Usual) else str
+    kind = Usual if isinstance(answers.power or Usual(), Usual) else str
     aft = _m(-0.45 * L)
     side = 0.25 * B
     wheel = _m(0.55 * T)
@@ -211,9 +211,9 @@ def _thrusters(answers: Answers) -> list[dict[str, str]]:
     bow = {"kind": "tunnel", "x": _m(0.4 * L), "diameter": _m(0.35 * T), "power": _kW(0.35 * power)}
     if layout == "rudder":
         place = {"name": "propeller", "kind": "rudder", "x": aft, "y": "0 m"}
-        return [place | {"diameter": _m(0.65 * T), "power": known(_kW(power))}]
+        return [place | {"diameter": _m(0.65 * T), "power": kind(_kW(power))}]
     # Two equal propellers share the power.
-    half = {"x": aft, "diameter": wheel, "power": known(_kW(0.5 * power))}
+    half = {"x": aft, "diameter": wheel, "power": kind(_kW(0.5 * power))}
     pair = {"port": _m(-side), "starboard": _m(side)}
     if layout == "screws":
         stern = bow | {"x": _m(-0.4 * L)}

@@ -274,9 +274,9 @@ def _tries(problem: IdentificationProblem, base: Fit, linear: InParts) -> list[_
     # Evidence of each course, with what the search over its times costs; the best course of each
     # cause.
     for candidate in chosen:
-        own = range(place, place + len(candidate.group))
+        places = range(place, place + len(candidate.group))
         place += len(candidate.group)
-        gain, theta, _ = _weighed(products, base, own)
+        gain, theta, _ = _weighed(products, base, places)
         scored = candidate._replace(
             score=gain + candidate.occam, values=_values(problem, candidate.group, theta)
         )

@@ -100,9 +100,9 @@ def write_comparison(
     ShipcosimError
         If a run has no rows, the two have no signal in common, or the file cannot be written.
     """
-    found = compared(tables, names)
-    write_file(path, render("run/templates/run.html.jinja", found.page).encode())
-    return found.page.outcome, found.differences
+    comparison = compared(tables, names)
+    write_file(path, render("run/templates/run.html.jinja", comparison.page).encode())
+    return comparison.page.outcome, comparison.differences
 
 
 class Comparison(NamedTuple):

@@ -124,7 +124,7 @@ class Subject:
     @cached_property
     def values(self) -> list[tuple[ParameterValue, Variable, FmuDescription]]:
         """(value, variable, FMU) of values bound to components under their own names."""
-        found = []
+        entries = []
         # A mapping renames parameters: these are not the FMU's names.
         for _, fmu, binding, values in self.sets:
             if fmu is None or binding.mapping is not None:
@@ -132,8 +132,8 @@ class Subject:
             for value in values.values:
                 variable = fmu.variables.get(value.name.removeprefix(binding.prefix))
                 if variable is not None:
-                    found.append((value, variable, fmu))
-        return found
+                    entries.append((value, variable, fmu))
+        return entries
 
     @cached_property
     def fmus(self) -> list[tuple[str, FmuDescription]]:

@@ -1,8 +1,11 @@
 """What a reader does at the desk, by keys and pointer, and what stands of it in the saved scenario."""
 
+import base64
 import tomllib
 
+import numpy as np
 import pytest
+import xarray as xr
 from report.live.test_live import SAME, largest_difference, repeated
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
@@ -14,6 +17,7 @@ from shipcosim.cosim.export.fmu import block_of
 from shipcosim.fmi.export.builder import build_fmu
 from shipcosim.report.live.export import live_page
 from shipcosim.scenario import Scenario
+from shipcosim.series import read_table, write_table
 
 
 def saved(page):
@@ -47,6 +51,52 @@ def test_a_craft_of_all_kinds_of_inputs_repeats_what_was_done(craft, craft_proje
     assert worst < SAME
     assert craft.ask("return window.hacked ?? null") is None
     assert craft.errors() == []
+
+
+def test_the_saved_netcdf_holds_the_run_with_names_units_and_kinds(
+    craft, craft_project, tmp_path, monkeypatch
+):
+    craft.ask(
+        "const { live, act } = desk; live.reach(12); act('override', 'gear', -2); live.reach(20)"
+    )
+    content = craft.ask(
+        "return desk.netcdf().arrayBuffer().then((all) => btoa(String.fromCharCode(...new Uint8Array(all))))"
+    )
+    file = tmp_path / "result.nc"
+    file.write_bytes(base64.b64decode(content))
+    # The saved scenario goes on to the end of its last step's row.
+    known = repeated(craft, craft_project / "scenarios").sel(time=slice(0, 20))
+    # Another program's reader, and ours.
+    with xr.open_dataset(file, engine="scipy", decode_times=False) as found:
+        assert set(known) <= set(found)
+        assert found.attrs["system"] == "craft"
+        assert found.attrs["saved_scenario"] == craft.ask("return desk.scenario()")
+        assert found["gear"].dtype == "int32" and found["craft.engaged"].dtype == bool
+        np.testing.assert_array_equal(found["time"], known["time"])
+    found = read_table(file)
+    for name, signal in known.items():
+        assert found[name].attrs == signal.attrs
+        assert found[name].dtype == signal.dtype
+        np.testing.assert_allclose(found[name], signal, rtol=SAME, atol=SAME)
+    write_table(known, tmp_path / "known.nc")
+    monkeypatch.chdir(tmp_path)
+    compared = CliRunner().invoke(app, ["report", "result.nc", "known.nc", "--out", "compared"])
+    assert compared.exit_code == 0, compared.output
+    assert "are the same" in compared.output
+
+
+def test_a_name_that_netcdf_does_not_have_is_kept_in_its_file(craft, tmp_path):
+    content = craft.ask(
+        "const one = { kind: 'Real', unit: '°', text: '', values: [1, 2.5] };"
+        "const columns = ['time', 'a/b ⚓', ' x'].map((name) => ({ ...one, name }));"
+        "return netcdfOf({}, columns).arrayBuffer().then((all) => btoa(String.fromCharCode(...new Uint8Array(all))))"
+    )
+    file = tmp_path / "odd.nc"
+    file.write_bytes(base64.b64decode(content))
+    table = read_table(file)
+    assert list(table) == ["a/b ⚓", " x"]
+    assert table[" x"].attrs["units"] == "°"
+    assert table[" x"].values.tolist() == [1.0, 2.5]
 
 
 def test_a_switch_that_begins_on_is_switched_off_and_on_again(craft):

@@ -162,6 +162,35 @@ def test_a_reader_runs_pauses_fails_and_undoes_by_the_pages_own_buttons(desk):
     assert desk.requests() == []
 
 
+def test_a_bus_trips_by_a_click_as_in_its_forecast_and_comes_back_by_another(desk):
+    desk.ask("desk.live.reach(20); scene.grown(20); scene.go(20)")
+    bus = "document.querySelector('[aria-label=\"allocator: bus a lost\"]')"
+    desk.ask(f"{bus}.click()")
+    assert desk.ask("return desk.present('allocator.bus_a_power')") == 0
+    assert desk.ask(f"return {bus}.className") == "changed"
+    lost = "[...document.querySelectorAll('#losses tr')].find((row) => row.cells[0].textContent === 'bus a')"
+    desk.wait(f"return {lost}?.cells[1].textContent === 'is lost already'")
+    desk.ask("desk.live.reach(21)")
+    desk.ask(f"{bus}.click()")
+    assert desk.ask(f"return {bus}.ariaPressed") == "false"
+    events = tomllib.loads(desk.ask("return desk.scenario()"))["events"][-2:]
+    assert events[0]["override"] == {"allocator.bus_a_power": 0.0}
+    assert events[1]["reset"] == ["allocator.bus_a_power"]
+
+
+@pytest.mark.parametrize(("width", "is_beside"), [(500, False), (1280, False), (2560, True)])
+def test_the_page_fits_screens_from_500_to_2560_pixels(page_file, shown_at, width, is_beside):
+    desk = shown_at(page_file, width)
+    desk.wait("return Boolean(window.desk && window.scene)")
+    assert desk.ask("return document.documentElement.scrollWidth") <= width
+    box = "const box = (id) => document.getElementById(id).getBoundingClientRect();"
+    # One can run her, and see the time, without scrolling.
+    assert (
+        desk.ask(f"{box} return Math.max(box('scene-play').bottom, box('scene-time').bottom)") < 900
+    )
+    assert desk.ask(f"{box} return box('failures').top < box('scene').bottom") is is_beside
+
+
 @pytest.mark.parametrize("palette", PALETTES)
 def test_instruments_show_the_signals_of_the_running_system(desk, palette):
     desk.ask("desk.live.reach(90); scene.grown(90); scene.go(90)")

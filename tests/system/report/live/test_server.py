@@ -20,6 +20,7 @@ from websockets.sync.client import connect
 
 from shipcosim.cli.app import app
 from shipcosim.live import LiveRun, LiveServer
+from shipcosim.live.server import TAKE_OVER
 from shipcosim.report.live import prepared, server_page
 from shipcosim.scenario import read_scenario
 from shipcosim.ssp import read_system
@@ -135,6 +136,7 @@ def test_what_is_done_at_a_server_is_repeated_by_the_saved_scenario(served, brow
     assert json.loads(table.attrs["start_values"])["craft.seed"] == 4
     worst, _ = largest_difference(craft, table)
     assert worst < SAME
+    craft.wait("return desk.losses.time === desk.live.end")
 
 
 def test_a_page_runs_pauses_and_is_loaded_again_where_it_was(served, browse):
@@ -145,11 +147,53 @@ def test_a_page_runs_pauses_and_is_loaded_again_where_it_was(served, browse):
     craft.wait("return scene.time > 2 && desk.live.value('craft.engaged') === 0")
     craft.ask("document.getElementById('scene-play').click()")
     reached = craft.ask("return desk.live.end")
-    assert "the server has one" in craft.text("#losses-said")
     craft = opened(browse, served)
     assert craft.ask("return desk.live.end") >= reached
     assert craft.ask("return desk.live.held('craft.engaged')")[1] == "override"
     assert any("closed at t = " in text and "pauses" in text for text in served.shown)
+
+
+def test_the_forecast_of_a_server_equals_a_run_with_that_loss(served, browse):
+    craft = opened(browse, served)
+    reach(craft, 5)
+    craft.wait("return desk.losses.time === desk.live.end")
+    step = craft.ask("return desk.live.now()")
+    # Without a loss it is what the run does then, with what the scenario does at 7 and 9 s.
+    craft.ask(
+        "addEventListener('live-forecast', ({ detail }) => { window.healthy = detail.answers[0].rows; });"
+        "desk.live.engine.forecast({ steps: 100, watched: ['craft.x'], losses: [[]] })"
+    )
+    craft.wait("return window.healthy?.length === 20")
+    reach(craft, 17)
+    after = np.arange(craft.ask("return desk.live.time.length")) * 5 >= step
+    x = np.array(craft.ask("return [...desk.live.raw.get('craft.x').values]"))[after][:20]
+    np.testing.assert_allclose(np.ravel(craft.ask("return healthy")), x)
+    # With one, and with what is done in the pause before it.
+    craft.ask("desk.act('override', 'craft.x_set', 30); desk.act('override', 'wish', 1.5)")
+    craft.wait(
+        "return desk.losses.time === desk.live.end && desk.losses.answers[0]?.track.at(-1) > 1"
+    )
+    answer = craft.ask("return JSON.parse(JSON.stringify(desk.losses.answers[0]))")
+    assert answer["name"] == "craft"
+    step = craft.ask("return desk.live.now()")
+    craft.ask("desk.act('override', 'craft.failed', true)")
+    reach(craft, 140)
+    names = ("x", "y", "psi", "x_set", "y_set")
+    after = np.arange(craft.ask("return desk.live.time.length")) * 5 >= step
+    x, y, psi, x_set, y_set = (
+        np.array(craft.ask("return [...desk.live.raw.get(arguments[0]).values]", f"craft.{name}"))[
+            after
+        ][:240]
+        for name in names
+    )
+    assert answer["distance"] == pytest.approx(np.hypot(x - x_set, y - y_set).max(), rel=1e-9)
+    assert np.ptp(psi) > 0.1
+    np.testing.assert_allclose(np.reshape(answer["track"], (-1, 3)), np.transpose([x, y, psi]))
+    # What was changed on the way belongs to the run alone.
+    craft.wait(
+        "return document.querySelector('#losses tbody').innerText.includes('is lost already')"
+    )
+    assert craft.errors() == []
 
 
 def test_a_foreign_fmu_that_fails_is_named_and_its_run_is_saved(
@@ -162,6 +206,7 @@ def test_a_foreign_fmu_that_fails_is_named_and_its_run_is_saved(
         back = "[...document.querySelectorAll('button')].find((b) => b.textContent === 'Continue from here')"
         assert craft.ask(f"return {back}.disabled")
         assert "pilot.fmu cannot store its state" in craft.ask(f"return {back}.title")
+        assert "Not possible here" in craft.text("#losses-said")
         craft.ask("desk.act('override', 'wish', 200)")
         reach(craft, 15)
         craft.wait("return desk.live.stopped")
@@ -188,6 +233,44 @@ def test_a_second_page_shows_the_run_and_changes_nothing(served, browse):
         craft.wait("return scene.time === 10 && desk.live.value('gear') === 2")
         assert craft.ask("return desk.live.held('gear')[3]") == 2
     craft.wait("return document.getElementById('server').textContent.includes('pauses')")
+
+
+def test_a_second_page_takes_over_without_a_reload_once_nobody_steers(
+    served, browse, craft_project
+):
+    with socket(served) as first:
+        told(first, "run")
+        craft = opened(browse, served)
+        first.send(advance(101, [50, "override", "gear", 2]))
+        craft.wait("return desk.live.end === 10")
+        take_over = "document.querySelector('#server button')"
+        assert not craft.ask(f"return {take_over}")
+    craft.wait(f"return {take_over}")
+    with socket(served) as third:
+        # Another page was faster: this one reads on.
+        assert told(third, "steers")["steers"] is True
+        craft.wait("return document.getElementById('server').textContent.includes('Another page')")
+        assert not craft.ask(f"return {take_over}")
+        third.send(advance(121))
+        craft.wait("return desk.live.end === 12")
+    craft.wait(f"return {take_over}")
+    craft.ask(f"window.stays = true; {take_over}.click()")
+    craft.wait("return !document.getElementById('scene-play').disabled")
+    assert craft.ask("return document.getElementById('server').hidden && stays")
+    assert not craft.ask("return document.getElementById('inputs').inert")
+    # It steers: what it does and what was done before it stand in its scenario.
+    with socket(served) as reader:
+        assert told(reader, "steers")["steers"] is False
+        craft.ask("desk.act('override', 'gear', 3)")
+        reach(craft, 15)
+        assert told(reader, "acted")["acted"] == [[121, "override", "gear", 3]]
+    worst, count = largest_difference(craft, repeated(craft, craft_project / "scenarios"))
+    assert count > 15
+    assert worst < SAME
+    craft.ask("scene.go(10)")
+    back = "[...document.querySelectorAll('button')].find((b) => b.textContent === 'Continue from here')"
+    craft.wait(f"return !{back}.disabled")
+    assert craft.errors() == []
 
 
 # ---- who may do what, without a browser
@@ -219,6 +302,38 @@ def advance(to, *changes):
     return json.dumps({"do": "advance", "to": to, "changes": changes})
 
 
+def forecast(losses=((("override", "craft.failed", True),),), steps=100, watched=("craft.x",)):
+    return json.dumps({"do": "forecast", "losses": losses, "steps": steps, "watched": watched})
+
+
+def test_a_forecast_leaves_the_run_alone_and_all_pages_get_it(served):
+    with socket(served) as first, socket(served) as second:
+        told(first, "run")
+        told(second, "run")
+        second.send(forecast())  # in vain
+        first.send(advance(31))
+        first.send(forecast(losses=[[], [["override", "speed", 4.0]]]))
+        first.send(advance(41))
+        one, other = (told(page, "forecast")["forecast"] for page in (first, second))
+        assert one == other
+        assert one["step"] == 31
+        healthy, faster = (np.ravel(answer["rows"]) for answer in one["answers"])
+        assert len(healthy) == 20
+        assert not np.allclose(healthy, faster)
+        first.send(advance(131))
+        rows = greeting_rows(served, 131)
+        page = np.frombuffer(rows)
+        n, columns = int(page[1]), len(page[2:]) // int(page[1])
+        assert n == 27 and columns > 10
+        # A page that goes back meanwhile gets its answer, too.
+        first.send(advance(200_000))
+        first.send(forecast())
+        first.send(json.dumps({"do": "back", "to": 51}))
+        assert told(first, "forecast")["forecast"]["step"] < 200_000
+    with socket(served) as third:
+        assert told(third, "run")["run"]["done"] == []
+
+
 def test_one_page_steers_and_the_others_read(served):
     first = socket(served)
     assert told(first, "steers")["steers"] is True
@@ -236,10 +351,22 @@ def test_one_page_steers_and_the_others_read(served):
     assert told(second, "left")
     third = socket(served)
     assert told(third, "steers")["steers"] is True
+    assert told(second, "taken")
+    # Who asks for it now, asks in vain.
+    second.send(TAKE_OVER)
     run = told(third, "run")["run"]
     assert run["done"] == [[11, "override", "gear", 2]]
     assert run["step"] == 26
-    second.close(), third.close()
+    second.send(advance(50))
+    third.send(advance(31))
+    while (step := step_of(third)) < 31:
+        pass
+    assert step == 31
+    third.close()
+    assert told(second, "left")
+    second.send(TAKE_OVER)
+    assert told(second, "steers")["steers"] is True
+    second.close()
 
 
 def greeting_rows(server, step):
@@ -286,6 +413,10 @@ def test_the_command_starts_a_server_where_no_page_can_run_the_system(foreign_pr
         "{",
         "[]",
         '{"do": "back", "to": "x"}',
+        forecast(watched=["nothing"]),
+        forecast(steps=1_000_000),
+        forecast(losses=[[["override", "nothing", True]]]),
+        forecast(losses=[[]] * 1000),
         '{"do": "start", "values": {"craft.nothing": 1}}',
         '{"do": "start", "values": {"craft.seed": NaN}}',
         advance(50, [20, "override", "nothing", 1]),

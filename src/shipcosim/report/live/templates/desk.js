@@ -33,9 +33,11 @@
   const back = element("button", { type: "button", className: "plain", textContent: "Continue from here", title: "Forget what came after the time that is shown" });
   const minute = element("button", { type: "button", className: "plain", textContent: "−60 s", title: "Show a minute earlier" });
   const move = element("button", { type: "button", className: "plain", textContent: "Move set point", title: "Then click in the chart" });
-  const save = element("button", { type: "button", className: "plain", textContent: "Save scenario" }), table = element("button", { type: "button", className: "plain", textContent: "Save table" });
+  const saver = (textContent, title) => element("button", { type: "button", className: "plain", textContent, title });
+  const save = saver("Save scenario", "All that was done: shipcosim run repeats it"), result = saver("Save result.nc", "All signals with names and units, as NetCDF"), table = saver("Save table", "All signals as CSV");
   move.setAttribute("aria-pressed", "false");
-  by("scene-play").after(step, reset, minute, back, move, save, table);
+  by("scene-play").after(step, reset, minute);
+  by("scene-time").closest(".player").append(back, move, save, result, table);
   const speed = by("scene-speed");
   speed.prepend(new Option("0.5×", 0.5));
   speed.append(new Option("as fast as it goes", Infinity));
@@ -51,7 +53,7 @@
 
   // A server that cannot go back says why. Its rows come when they are there; who looks at the end goes on looking there.
   const noWay = () => live.engine.noWayBack;
-  function tellWay() { if (noWay()) { back.disabled = true; back.title = `Going back is not possible. ${noWay()}`; } }
+  function tellWay() { if (noWay()) back.title = `Going back is not possible. ${noWay()}`; }
   tellWay();
   addEventListener("live-arrived", ({ detail: before }) => {
     tellWay();
@@ -73,7 +75,7 @@
 
   const free = Object.entries(about.signals).filter(([, signal]) => signal.free);
   const run = report.data.scene[0], aims = (run.vessels[0]?.aims["set point"] || []).map((column) => run.recipes[column]?.signal);
-  const rows = new Map();
+  const rows = [];  // what writes the present value of each input
 
   function groupsOf(place, signals, build) {
     const groups = new Map();
@@ -83,23 +85,27 @@
     }
   }
 
+  // A switch, or a bus whose power a click takes away.
+  const isBus = ([name, { kind }]) => kind === "Real" && /bus\w*_power$/.test(name), busOf = (name) => short(name).replace(/ power$/, "");
   function switchOf(name, signal) {
-    const button = element("button", { type: "button", textContent: short(name), title: `${name}: ${signal.text}` });
-    button.setAttribute("aria-label", `${owner(name)}: ${short(name)}`);
+    const bus = isBus([name, signal]), words = bus ? `${busOf(name)} lost` : short(name), isOn = () => (bus ? present(name) === 0 : Boolean(present(name)));
+    const button = element("button", { type: "button", textContent: words, title: `${name}: ${signal.text}` });
+    button.setAttribute("aria-label", `${owner(name)}: ${words}`);
     button.addEventListener("click", () => {
-      const wanted = present(name) ? 0 : 1;
-      act(wanted === startOf(name) ? "reset" : "override", name, Boolean(wanted));
+      const wanted = bus ? (isOn() ? startOf(name) : 0) : Number(!isOn());
+      act(wanted === startOf(name) ? "reset" : "override", name, bus ? wanted : Boolean(wanted));
     });
-    rows.set(name, () => {
-      button.setAttribute("aria-pressed", String(Boolean(present(name))));
-      button.classList.toggle("changed", present(name) !== startOf(name));
+    rows.push(() => {
+      button.setAttribute("aria-pressed", String(isOn()));
+      button.classList.toggle("changed", bus ? isOn() : present(name) !== startOf(name));
     });
     return button;
   }
 
-  function fieldOf(name, signal) {
+  function fieldOf(name, signal, explained) {
     const id = `input-${name}`, field = element("input", { id, inputMode: "decimal" }), release = element("button", { type: "button", textContent: "Release" });
     const label = element("label", { htmlFor: id, textContent: short(name), title: `${name}: ${signal.text}` }), remark = element("span", { className: "wrong", id: `wrong-${name}` });
+    if (explained) label.append(element("small", { textContent: signal.text.replace(/[,;].*/, "") }));
     remark.setAttribute("aria-live", "polite");
     field.setAttribute("aria-describedby", remark.id);
     const row = element("div", { className: "input" }, label, field, element("span", { textContent: unitOf(signal) }), release, remark);
@@ -113,7 +119,7 @@
     const clear = () => { remark.textContent = ""; field.removeAttribute("aria-invalid"); };
     field.addEventListener("keydown", ({ key }) => { if (key === "Escape") { clear(); field.value = digits(present(name) * factorOf(signal)); } });
     release.addEventListener("click", () => { clear(); act("reset", name); });
-    rows.set(name, () => {
+    rows.push(() => {
       const held = live.held(name);
       row.classList.toggle("held", Boolean(held));
       release.disabled = !held;
@@ -122,12 +128,12 @@
     return row;
   }
 
-  groupsOf(by("failures").querySelector(".groups"), free.filter(([, signal]) => signal.kind === "Boolean"), switchOf);
+  groupsOf(by("failures").querySelector(".groups"), free.filter((one) => one[1].kind === "Boolean" || isBus(one)), switchOf);
   const weather = new Set(run.flows.flatMap(({ what }) => free.map(([name]) => name).filter((name) => new RegExp(`(^|\\.|_)${what.replace(/s$/, "")}_(speed|from|to|height|period)$`).test(name))));
   // The system's own inputs are those that its maker chose to steer it by.
   const isMain = ([name, { side }]) => aims.includes(name) || weather.has(name) || side === 2, numbers = Object.entries(about.signals).filter(([name, signal]) => signal.kind !== "Boolean" && (signal.free || aims.includes(name)));
   const [main, rest] = by("inputs").querySelectorAll(".groups");
-  groupsOf(main, numbers.filter(isMain).sort(([a], [b]) => aims.includes(b) - aims.includes(a)), fieldOf);
+  groupsOf(main, numbers.filter(isMain).sort(([a], [b]) => aims.includes(b) - aims.includes(a)), (name, signal) => fieldOf(name, signal, true));
   groupsOf(rest, numbers.filter((one) => !isMain(one)), fieldOf);
   by("inputs").querySelector("details").hidden = !rest.childElementCount;
   if (!aims.length) by("inputs").querySelector("h2").textContent = "Steering and weather";
@@ -144,8 +150,8 @@
     if (scene.time < live.time.last) go();
     changed();
   }
-  function changed() { for (const write of rows.values()) write(); if (!live.stopped) by("failure").hidden = true; }
-  window.desk = { act, live, present, move, element, changed };  // for those who look from outside
+  function changed() { for (const write of rows) write(); if (!live.stopped) by("failure").hidden = true; }
+  window.desk = { act, live, present, move, element, changed, isBus, busOf };  // for those who look from outside
 
   // ---- other start values
 
@@ -220,6 +226,7 @@
     if (box.textContent === words.join("")) return;
     box.className = `verdict ${now.length ? "loud" : "quiet"}`;
     [box.querySelector("strong").textContent, box.querySelector("p").textContent] = words;
+    box.querySelector("p").title = words[1];  // it may be cut off
   }
 
   by("acknowledge-all").addEventListener("click", () => { for (const button of place.querySelectorAll("button")) button.click(); });
@@ -228,9 +235,13 @@
 
   let told = "";  // that a file was saved, until something else is done
   function tell() {
-    const end = live.time.last, past = scene.time < end - 1e-6, words = past ? `Shown is ${scene.time.toFixed(1)} s of ${end.toFixed(1)} s. What you change acts at the end; ${noWay() ? `there is no way back: ${noWay()}` : `“Continue from here” forgets what came after ${scene.time.toFixed(1)} s.`}` : told;
+    // While she runs the rows are a little ahead of the view.
+    const ahead = scene.playing ? live.engine.seconds(about.steps_per_row) + live.engine.ahead() : 0;
+    const end = live.time.last, past = scene.time < end - ahead - 1e-6, words = past ? `Shown is ${scene.time.toFixed(1)} s of ${end.toFixed(1)} s. What you change acts at the end; ${noWay() ? `there is no way back: ${noWay()}` : `“Continue from here” forgets what came after ${scene.time.toFixed(1)} s.`}` : told;
     if (by("past").textContent !== words) by("past").textContent = words;
+    back.disabled = !past || Boolean(noWay()) || live.engine.steers === false;
   }
+
   // ---- trends
 
   const trends = [], names = by("trend-names");
@@ -263,16 +274,19 @@
       let low = Infinity, high = -Infinity;
       const values = live.raw.get(name).values;
       for (let k = begin; k < values.length && time[k] <= last + 1e-9; k++) { low = Math.min(low, factor * values[k]); high = Math.max(high, factor * values[k]); }
+      const constant = high === low ? String(digits(low)) : "";
       if (!(high > low)) { high += 0.5; low -= 0.5; }
-      const x = (t) => 8 + ((width - 16) * (t - from)) / (last - from || 1), y = (v) => height - 8 - ((height - 30) * (v - low)) / (high - low);
+      const x = (t) => 8 + ((width - 16) * (t - from)) / (last - from || 1), y = (v) => height - 20 - ((height - 42) * (v - low)) / (high - low);
       c.beginPath();
       for (let k = begin; k < values.length && time[k] <= last + 1e-9; k++) c.lineTo(x(time[k]), y(factor * values[k]));
       scene.stroke(c, "blue", 1.5);
       c.fillStyle = scene.colour("soft");
       c.textAlign = "left"; c.fillText(`${name}${unit ? ` [${unit}]` : ""}`, 8, 12, Math.max(width - 190, 60));
       // Ends of the range, to a hundredth of it.
-      const least = 10 ** (Math.floor(Math.log10(high - low)) - 1), end = (v) => digits(Math.round(v / least) * least);
-      c.textAlign = "right"; c.fillText(`${end(low)} to ${end(high)}`, width - 32, 12);
+      const least = 10 ** (Math.floor(Math.log10(high - low)) - 1), end = (v) => String(digits(Math.round(v / least) * least)).replaceAll("-", "−");
+      c.textAlign = "right"; c.fillText(constant || `${end(low)} to ${end(high)}`, width - 32, 12);
+      c.fillText(`${last.toFixed(0)} s`, width - 8, height - 4);
+      c.textAlign = "left"; c.fillText(`${from.toFixed(0)} s`, 8, height - 4);
     }
   }
 
@@ -308,24 +322,32 @@
     return `${lines.join("\n")}\n`;
   }
 
-  function keep(name, text) {
-    const address = URL.createObjectURL(new Blob([text], { type: "text/plain" })), link = element("a", { href: address, download: name });
+  function netcdf() {
+    const signals = about.columns.flatMap((names, x) => names.map((name) => ({ name, kind: about.kinds[x], unit: about.signals[name]?.unit ?? "", text: about.signals[name]?.text ?? "", values: live.raw.get(name).values })));
+    const { description = "", system, step_size } = about.scenario;
+    const clock = { name: "time", kind: "Real", unit: "s", text: "time", values: live.time.values };
+    return netcdfOf({ description, system, step_size, saved_scenario: scenario() }, [clock, ...signals]);
+  }
+
+  function keep(name, content) {
+    const file = new Blob([content], { type: content.type || "text/plain" }), address = URL.createObjectURL(file), link = element("a", { href: address, download: name });
     link.click();
-    told = `Saved as ${name}, ${(text.length / 1e6).toFixed(text.length > 1e6 ? 0 : 3)} MB.`;
+    told = `Saved as ${name}, ${(file.size / 1e6).toFixed(file.size > 1e6 ? 0 : 3)} MB.`;
     setTimeout(() => URL.revokeObjectURL(address), 1000);
   }
   // Who leaves the page with something done that is not saved is asked first.
   let unsaved = false;
   addEventListener("live-acted", () => { unsaved = true; });
   addEventListener("beforeunload", (event) => { if (unsaved && navigator.userActivation?.hasBeenActive) event.preventDefault(); });
-  save.addEventListener("click", () => { keep("live.toml", scenario()); unsaved = false; });
+  save.addEventListener("click", () => { keep("live.toml", scenario()); told += " “shipcosim run live.toml” repeats this run."; unsaved = false; });
+  result.addEventListener("click", () => { keep("result.nc", netcdf()); unsaved = false; });  // the scenario stands in it
   table.addEventListener("click", () => keep("live.csv", csv()));
-  Object.assign(window.desk, { scenario, csv });
+  Object.assign(window.desk, { scenario, csv, netcdf });
 
   // ---- go
 
   // Marks at what was done, on a time line that grows.
   const marked = () => scene.mark([...new Set(live.done.map(([step]) => live.engine.seconds(step)))].filter((t) => t <= scene.end));
-  scene.writes(() => { look(); tell(); draw(); marked(); for (const write of rows.values()) write(); });
+  scene.writes(() => { look(); tell(); draw(); marked(); for (const write of rows) write(); });
   changed();
 })();

@@ -1,6 +1,6 @@
-// What comes of each loss, by simulation of this very system in a worker, again and again.
+// What comes of each loss, by simulation of this very system in a worker or by the server, again and again.
 (() => {
-  const { live } = report, { about } = live, { element, present } = window.desk, section = document.getElementById("losses"), body = section.querySelector("tbody"), said = document.getElementById("losses-said");
+  const { live } = report, { about } = live, { element, present, isBus, busOf } = window.desk, section = document.getElementById("losses"), body = section.querySelector("tbody"), said = document.getElementById("losses-said");
   const ahead = 120, run = report.data.scene[0], vessel = run.vessels[0], aim = vessel && (vessel.aims.reference || vessel.aims["set point"]);
   const name = (column) => run.recipes[column]?.signal, real = about.kinds.indexOf("Real");
   const columns = aim ? [...vessel.pose, ...aim].map((column) => about.columns[real].indexOf(name(column))) : [];
@@ -8,31 +8,51 @@
   // Losses: a unit that has a switch "failed", and a bus without power.
   const losses = Object.entries(about.signals).filter(([, signal]) => signal.free).flatMap(([signal, { kind }]) => {
     if (kind === "Boolean" && /\.failed$/.test(signal)) return [{ name: signal.slice(0, signal.lastIndexOf(".")), changes: [["override", signal, true]] }];
-    if (kind === "Real" && /bus\w*_power$/.test(signal)) return [{ name: signal.slice(signal.lastIndexOf(".") + 1).replace(/_power$/, "").replaceAll("_", " "), changes: [["override", signal, 0]] }];
+    if (isBus([signal, { kind }])) return [{ name: busOf(signal), changes: [["override", signal, 0]] }];
     return [];
   });
-  if (about.server) {
-    said.textContent = "Not with a server: a forecast needs copies of the run, and the server has one. Save the scenario, add the loss to it, and use shipcosim run.";
-    section.querySelector("table").hidden = true;
-    return;
-  }
   if (!losses.length || columns.length < 6 || columns.some((column) => column < 0)) { section.hidden = true; return; }
 
   const limits = { distance: run.watch.position || 5, heading: run.watch.heading || 10 };
   const assumed = [run.watch.position ? "" : "5 m", run.watch.heading ? "" : "10°"].filter(Boolean).join(" and ");
-  const address = URL.createObjectURL(new Blob([document.getElementById("worker").textContent], { type: "text/javascript" }));
-  const worker = new Worker(address);
-  worker.postMessage({ module: live.module, about });
+  const begin = about.server ? askServer() : askWorker();
   let busy = false, asked = null, changes = 0;
   const shown = { answers: [], milliseconds: NaN, time: NaN };
 
   function ask() {
     const present = `${live.now()} ${changes}`;
-    if (busy || live.stopped || present === asked || document.hidden) return;
+    if (busy || live.stopped || present === asked || document.hidden || live.engine.steers === false || live.engine.noWayBack) return;
     busy = true;
     asked = present;
-    const steps = Math.round((ahead * about.step[1]) / about.step[0]);
-    worker.postMessage({ state: live.engine.state(), coming: live.coming(steps), losses, steps, time: live.time.last, watch: { x: real, columns, ...limits } });
+    begin(Math.round((ahead * about.step[1]) / about.step[0]));
+  }
+
+  // Each of these returns a function that asks for so many steps; the answer goes to `take`.
+  function askWorker() {
+    const address = URL.createObjectURL(new Blob([document.getElementById("worker").textContent], { type: "text/javascript" }));
+    const worker = new Worker(address);
+    worker.postMessage({ module: live.module, about });
+    worker.onmessage = ({ data }) => take(data);
+    worker.onerror = (event) => stop(event.message);
+    return (steps) => worker.postMessage({ state: live.engine.state(), coming: live.coming(steps), losses, steps, time: live.time.last, watch: { x: real, columns, ...limits } });
+  }
+
+  function askServer() {
+    const watched = columns.map((column) => about.columns[real][column]), spacing = live.engine.seconds(about.steps_per_row);
+    const tellWhy = () => {
+      section.querySelector("table").hidden = Boolean(live.engine.noWayBack);
+      if (live.engine.noWayBack) said.textContent = `Not possible here: a forecast starts from a copy of the state. ${live.engine.noWayBack}`;
+    };
+    tellWhy();
+    addEventListener("live-arrived", tellWhy);
+    addEventListener("live-forecast", ({ detail: { error, step, milliseconds, answers } }) => {
+      if (error === "") { busy = false; asked = null; return; }  // another run has begun
+      if (error) { stop(error); return; }
+      take({ time: live.engine.seconds(step - 1), milliseconds, answers: answers.map((one, k) => ({ name: losses[k].name, ...(one.error ? one : outcomeOf(one.rows, limits, spacing)) })) });
+    });
+    // What was done in a pause goes to the server with the next steps only, so each loss brings it.
+    const pending = () => live.pending.filter(([, , , , byHand]) => byHand).map((change) => change.slice(1, 4));
+    return (steps) => live.engine.forecast({ steps, watched, losses: losses.map(({ changes }) => [...pending(), ...changes]) });
   }
 
   // A unit that is lost already is no further loss.
@@ -105,18 +125,19 @@
     return [{ what: "future", of: chosen, places, at: end }];
   });
 
-  worker.onmessage = ({ data }) => {
+  function take(data) {
     busy = false;
     Object.assign(shown, data);
-    said.textContent = `As of ${data.time.toFixed(1)} s, two minutes ahead, computed in ${data.milliseconds.toFixed(0)} ms. Limits: ${+limits.distance.toPrecision(3)} m and ${+limits.heading.toPrecision(3)}° off the ${vessel.aims.reference ? "reference" : "set point"}${assumed ? ` (${assumed} assumed)` : ""}.`;
+    said.textContent = `As of ${data.time.toFixed(1)} s, two minutes ahead, computed in ${data.milliseconds < 1000 ? `${data.milliseconds.toFixed(0)} ms` : `${(data.milliseconds / 1000).toFixed(1)} s`}. Limits: ${+limits.distance.toPrecision(3)} m and ${+limits.heading.toPrecision(3)}° off the ${vessel.aims.reference ? "reference" : "set point"}${assumed ? ` (${assumed} assumed)` : ""}.`;
     for (const one of data.answers) {
       const { row, cells } = rowOf(one.name), far = one.error ? ["–", "–"] : [`${one.distance.toFixed(1)} m`, `${one.heading.toFixed(1)}°`];
       row.className = one.crossed || one.error ? "leaves" : "holds";
       [outcome(one), ...far].forEach((text, k) => { cells[k].textContent = text; });
     }
     follow();
-  };
-  worker.onerror = (event) => { busy = false; said.textContent = `The forecast stopped: ${event.message}`; };
+  }
+  function stop(why) { busy = false; said.textContent = `The forecast stopped: ${why}`; }
+
   // What one does changes the forecast, also while the run pauses.
   for (const event of ["live-acted", "live-cut"]) addEventListener(event, () => { changes += 1; setTimeout(ask); });
   setInterval(ask, 3000);

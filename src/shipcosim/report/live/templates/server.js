@@ -5,16 +5,22 @@ function connectEngine(about, record) {
   const LOOK = 50, AHEAD = 0.2;  // ms of steps that are asked for at once, s of the clock that rows may take to come: assumed
   const signals = about.starts.map(([, name]) => name), step = about.step[0] / about.step[1];
   let asked = 0, arrived = 0, waits = true, run = null, seen = performance.now(), pace = 20;  // steps of a ms
-  const tell = (words) => { notice.hidden = false; notice.textContent = words; };
+  const takeOver = Object.assign(document.createElement("button"), { type: "button", textContent: "Take over", title: "Steer this run in this page" });
+  takeOver.addEventListener("click", () => socket.send(JSON.stringify({ do: "steer" })));
+  const tell = (words) => { notice.hidden = !words; notice.textContent = words; };
   const ask = (what) => { if (engine.steers && socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(what)); };
 
-  // Who only reads can look at everything, and save it.
-  function read() {
-    tell("Another page steers this run; this one shows it. Once that one is closed, load this one again to steer.");
-    for (const id of ["inputs", "failures", "starts"]) document.getElementById(id).inert = true;
-    for (const button of document.querySelectorAll("#scene button.plain")) if (!button.textContent.startsWith("Save")) button.disabled = true;
-    document.getElementById("scene-play").disabled = true;
+  // Who only reads can look at everything, and save it; once nobody steers, a click takes over.
+  let isOpen = false;
+  function permit() {
+    if (!isOpen) return;
+    for (const id of ["inputs", "failures", "starts"]) document.getElementById(id).inert = !engine.steers;
+    for (const button of document.querySelectorAll("#scene button.plain")) if (!/^(Save|−60)/.test(button.textContent)) button.disabled = !engine.steers;
+    document.getElementById("scene-play").disabled = !engine.steers;
+    tell(engine.steers ? "" : "Another page steers this run; this one shows it. Once that one is closed, this one can take over.");
+    scene.refresh();
   }
+  addEventListener("live-opened", () => { isOpen = true; permit(); }, { once: true });
 
   function rowsOf(numbers) {  // for each exchange a view of its numbers, row by row
     let at = 2;
@@ -34,6 +40,7 @@ function connectEngine(about, record) {
       asked = to;
     },
     start(starts) { waits = true; ask({ do: "start", values: Object.fromEntries(Object.entries(starts).map(([place, value]) => [signals[place], value])) }); },
+    forecast(question) { ask({ do: "forecast", ...question }); },
     back(to) { waits = true; ask({ do: "back", to }); },
   };
   engine.opened = new Promise((resolve, reject) => {
@@ -42,13 +49,15 @@ function connectEngine(about, record) {
       if (told.run) {  // the whole run: its rows come next
         run = told.run;
         engine.noWayBack = run.noWayBack;
-      } else if ("steers" in told) engine.steers = told.steers;
+      } else if ("steers" in told) { engine.steers = told.steers; permit(); }
       else if (told.failed) {
         waits = false;
         asked = arrived = told.step;
         record.fail(told.failed);
       } else if (told.acted) { if (!engine.steers) record.acted(told.acted); }
-      else if (told.left) { if (!engine.steers) tell("The page that steered was closed: the run pauses. Load this page again to steer."); }
+      else if (told.left) { if (!engine.steers) { tell("The page that steered was closed: the run pauses. "); notice.append(takeOver); } }
+      else if (told.forecast) dispatchEvent(new CustomEvent("live-forecast", { detail: told.forecast }));
+      else if (told.taken) permit();  // by this page, or by another one
       else {
         const numbers = new Float64Array(data), now = performance.now();
         if (now > seen && numbers[0] > arrived && !run) pace += 0.3 * ((numbers[0] - arrived) / (now - seen) - pace);
@@ -67,6 +76,5 @@ function connectEngine(about, record) {
     };
     socket.onclose = () => { record.fail("the server has gone, or refuses this page"); reject(new Error("The server does not answer.")); };
   });
-  engine.opened.then(() => { if (!engine.steers) addEventListener("live-opened", read, { once: true }); });
   return engine;
 }
