@@ -49,9 +49,10 @@ class RunOptions:
         ``max_gap`` is the longest time between two rows that is not taken for lost data. [s]
     progress : callable, optional
         Called with (steps done, steps in all) some ten times a second.
-    order : str
-        Order of the data exchange. ``"jacobi"``: every component steps with what the others had put out at the start
-        of the step, as in libcosim. ``"gauss-seidel"``: with what those before it have just put out.
+    order : str, optional
+        Order of the data exchange in place of the scenario's. ``"jacobi"``: every component steps with what the others
+        had put out at the start of the step, as in libcosim. ``"gauss-seidel"``: with what those before it have just
+        put out.
     start_time : float
         Time at the start, which the FMUs are told and the scenario's times are on. A run that continues has that of
         the run before. [s]
@@ -81,7 +82,7 @@ class RunOptions:
     engine: str = "auto"
     inputs: xarray.Dataset | None = None
     progress: CountProgress | None = None
-    order: str = "jacobi"
+    order: str | None = None
     start_time: float = 0.0
     until: float | None = None
     resume: Snapshot | str | os.PathLike[str] | None = None
@@ -116,7 +117,7 @@ class RunKeywords(TypedDict, total=False):
     engine: str
     inputs: xarray.Dataset | None
     progress: CountProgress | None
-    order: str
+    order: str | None
     until: float | str | None
     resume: Snapshot | str | os.PathLike[str] | None
     store: Callable[[Snapshot], object] | str | os.PathLike[str] | None

@@ -588,7 +588,7 @@ def changes(
     texts += [f"FMUs of folder {Path(path).name}" for path in listed(fmus)]
     if options.engine != RunOptions.engine:
         texts.append(f"engine {options.engine}")
-    if options.order != RunOptions.order:
+    if options.order is not None:
         texts.append(f"order {options.order}")
     if options.until is not None:
         texts.append(f"until {options.until:g} s")

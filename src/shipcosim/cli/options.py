@@ -130,6 +130,15 @@ Engine = Annotated[
         autocompletion=words_of(*ENGINES),
     ),
 ]
+Order = Annotated[
+    str | None,
+    typer.Option(
+        "--order",
+        help="Order of stepping: jacobi (all with what was put out before the step), or gauss-seidel (each with what "
+        "those before it have just put out). Default: the scenario's.",
+        autocompletion=words_of("jacobi", "gauss-seidel"),
+    ),
+]
 Record = Annotated[
     list[str] | None,
     typer.Option(

@@ -270,6 +270,11 @@ class Scenario(Part):
     output_interval: Seconds | None = Field(
         default=None, gt=0.0, description="s; every step where it is not given"
     )
+    order: Literal["jacobi", "gauss-seidel"] = Field(
+        default="jacobi",
+        description="jacobi: every component steps with what the others had put out before the step; gauss-seidel: "
+        "with what those before it have just put out",
+    )
     set: dict[str, Value] = Field(default={}, description="start values")
     events: list[Event] = []
     expect: list[Expectation] = []

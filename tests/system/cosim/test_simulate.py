@@ -38,6 +38,19 @@ def test_gauss_seidel_passes_values_on_within_the_step_whatever_order_they_are_l
     assert np.allclose(table["c.y"], h**3 * k * (k + 1) * (k + 2) / 6)
 
 
+def test_the_order_is_that_of_the_scenario_unless_an_option_says_another(
+    make_system, make_scenario
+):
+    system = make_system({"b": "integrator", "a": ("integrator", {"u": 1.0})}, ["a.y -> b.u"])
+    scenario = make_scenario(2.0, 0.1).model_copy(update={"order": "gauss-seidel"})
+    k, h = np.arange(21), 0.1
+    table = simulate(system, scenario)
+    assert table.attrs["order"] == "gauss-seidel"
+    assert np.allclose(table["b.y"], h**2 * k * (k + 1) / 2)
+    jacobi = simulate(system, scenario, RunOptions(order="jacobi"))
+    assert np.allclose(jacobi["b.y"], h**2 * k * (k - 1) / 2)
+
+
 def test_gauss_seidel_breaks_a_loop_where_the_system_lists_it_first(make_system, make_scenario):
     loop = {"first": ("integrator", {"y_start": 1.0}), "law": ("gain", {"factor": -1.0})}
     system = make_system(loop, ["first.y -> law.u", "law.y -> first.u"])

@@ -14,6 +14,7 @@ from shipcosim.cli.options import (
     From,
     Isolate,
     Junit,
+    Order,
     OspEvents,
     Out,
     Parameters,
@@ -75,6 +76,7 @@ def simulate(
     step_size: SystemsStepSize = None,
     out: Out = None,
     engine: Engine = "auto",
+    order: Order = None,
     parameters: Parameters = None,
     inputs: Inputs = None,
     interpolate: Interpolate = None,
@@ -112,7 +114,8 @@ def simulate(
 
     table = None if inputs is None else read_table(inputs)
     feeding = {"inputs": table, "interpolate": interpolate or (), "max_gap": max_gap}
-    carried_out = {"engine": engine, "until": until, "store": store, "resume": resume}
+    carried_out = {"engine": engine, "order": order, "until": until}
+    carried_out |= {"store": store, "resume": resume}
     carried_out |= {"realtime": realtime, "profile": profile, **isolation(isolate, timeout)}
     prepared = prepare_simulation(
         ssp,

@@ -86,9 +86,10 @@ class Job:
 
     def __init__(self, system: System, scenario: Scenario, options: RunOptions):
         # The other engines exchange all values at the same time, which is Jacobi's order.
-        if options.order != "jacobi":
+        order = options.order or scenario.order
+        if order != "jacobi":
             raise ShipcosimError(
-                f"Only the engine fmpy knows the order '{options.order}'; the others have jacobi."
+                f"Only the engine fmpy knows the order '{order}'; the others have jacobi."
             )
         self.system = system
         self.scenario = scenario

@@ -151,6 +151,9 @@ def _remarks(system, scenario):
                 yield Problem(
                     f"{name}.{variable}", message, "Run it where that is UTF-8.", "remark"
                 )
+    if scenario.order != "jacobi":
+        message = f"OSP has no order of stepping: {scenario.order} stays behind, and libcosim steps as jacobi."
+        yield Problem(scenario.name or "scenario", message, severity="remark")
     if scenario.expect:
         message = f"OSP has no expectations: {len(scenario.expect)} stay behind."
         yield Problem(scenario.name or "scenario", message, severity="remark")

@@ -146,7 +146,7 @@ class Simulation:
         repeated: bool = False,
         changeable: Collection[str] = (),
     ):
-        order = options.order
+        order = options.order or scenario.order
         inputs = options.inputs
         self._realtime = options.realtime
         self._profile = Profile() if options.profile else None

@@ -58,6 +58,9 @@ def make_module(plan: Plan, scenario: Scenario, progress: CountProgress | None =
         The compiler is missing or fails.
     """
     check_installed()
+    if scenario.order != "jacobi":
+        message = f"has the order {scenario.order}; the code of a page steps as jacobi."
+        raise NotForPages([Problem(scenario.name or "scenario", message, REMEDY)])
     texts = texts_of(plan.system, progress)
     # Components with the same text share its functions; a text has its GUID in it.
     prefixes = {text: f"fmu{n}_" for n, text in enumerate(dict.fromkeys(texts.values()))}

@@ -145,6 +145,7 @@ def _header(written: Scenario) -> JsonObject:
     """Keys of the scenario's file, for the one that the page saves."""
     keys = ("description", "system", "parameters", "components", "step_size", "output_interval")
     header = {key: getattr(written, key) for key in keys}
+    header["order"] = written.order if written.order != "jacobi" else ""
     return {key: value for key, value in header.items() if value} | {"set": written.set}
 
 

@@ -47,6 +47,10 @@ CASES = {
         ["run", "fill", "--component", "lag=lag", "--parameters", "fast.ssv", "--out", "out"],
         lambda: sc.run("fill", components={"lag": "lag"}, parameters=["fast.ssv"], out="out"),
     ),
+    "run in another order": (
+        ["run", "fill", "--order", "gauss-seidel", "--out", "out"],
+        lambda: sc.run("fill", order="gauss-seidel", out="out"),
+    ),
     "run native": (
         ["run", "fill", "--engine", "native", "--out", "out"],
         lambda: sc.run("fill", engine="native", out="out"),

@@ -305,6 +305,7 @@
     const rows = Math.ceil(now / about.steps_per_row) * about.steps_per_row;
     lines.push(`stop_time = ${seconds(live.engine.seconds(Math.max(rows, about.steps_per_row)))}`, `step_size = ${seconds(head.step_size)}`);
     if (head.output_interval) lines.push(`output_interval = ${seconds(head.output_interval)}`);
+    if (head.order) lines.push(`order = ${quoted(head.order)}`);
     const swapped = Object.entries(head.components || {});
     if (swapped.length) lines.push("", "[components]", ...swapped.map(([name, fmu]) => `${quoted(name)} = ${quoted(fmu)}`));
     lines.push("", "[set]", ...Object.entries(values).map(([name, value]) => `${quoted(name)} = ${written(value)}`));
