@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter, deque
 from collections.abc import Iterator
-from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
+from concurrent.futures import ALL_COMPLETED, FIRST_COMPLETED, CancelledError, Future, wait
 from itertools import islice
 
 from shipcosim.errors import error_at
@@ -16,6 +16,8 @@ AHEAD = 2
 """Chunks that each worker has or waits for."""
 MOST_RUNS = 1000
 """Of a chunk."""
+CHECKED = 5.0
+"""Time without an answer after which it is asked whether there are workers left. [s]"""
 ENDS = 2
 """Worker crashes of a single run before the run counts as failed."""
 ENDED = "Its worker process ended, more than once: the run crashes it, or needs more memory than there is."
@@ -57,10 +59,10 @@ class _Dispatch:
     def rows(self) -> Iterator[list[Row]]:
         """See `rows_of`."""
         while self._fill():
-            done, _ = wait(self._in_flight, return_when=FIRST_COMPLETED)
+            done = self._waited(FIRST_COMPLETED)
             # A pool breaks as a whole: if one process ends, all chunks under way are lost too.
             if any(self._is_lost(future) for future in done):
-                done, _ = wait(self._in_flight)  # where one process ends, those beside it do, too
+                done = self._waited(ALL_COMPLETED)
             lost = []
             for future in done:
                 numbers, was_alone = self._in_flight.pop(future)
@@ -70,6 +72,14 @@ class _Dispatch:
                     yield self._taken(future.result())
             if lost:
                 yield self._ended(lost)
+
+    def _waited(self, until: str) -> set[Future[Chunk]]:
+        """Chunks that are done, once the first or all are; raises ShipcosimError if no worker is left to do them."""
+        while True:
+            done, waiting = wait(self._in_flight, timeout=CHECKED, return_when=until)
+            if done and (until == FIRST_COMPLETED or not waiting):
+                return done
+            self._workers.check()
 
     def _is_lost(self, future: Future[Chunk]) -> bool:
         error = CancelledError() if future.cancelled() else future.exception()

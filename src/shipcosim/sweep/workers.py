@@ -11,14 +11,18 @@ from concurrent.futures import (
     Future,
 )
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
 from shipcosim.cosim.processes.pool import end_pool, new_pool, submitted
-from shipcosim.errors import error_at, imported
+from shipcosim.errors import ShipcosimError, error_at, imported
 from shipcosim.options import cores
 from shipcosim.sweep.plan import Plan, PlannedRun
 from shipcosim.sweep.work import Chunk, PackedJob, pack, run_chunk
 from shipcosim.temporary import temporary_folder
+
+PATIENCE = 20.0
+"""Time that a scheduler may be without a worker, as while one is started anew. [s]"""
 
 
 class Workers(ABC):
@@ -42,6 +46,10 @@ class Workers(ABC):
     @abstractmethod
     def submit(self, runs: Sequence[PlannedRun]) -> Future[Chunk]:
         """Have some runs run."""
+
+    @abstractmethod
+    def check(self) -> None:
+        """Raise ShipcosimError if no worker is left, and none has come for a while."""
 
     @abstractmethod
     def renew(self) -> None:
@@ -77,6 +85,9 @@ class Processes(Workers):
         """See `Workers`."""
         return submitted(self._executor, run_chunk, str(self._job), runs)
 
+    def check(self) -> None:
+        """See `Workers`. A pool of processes says by itself that one has ended."""
+
     def renew(self) -> None:
         """See `Workers`."""
         end_pool(self._executor)
@@ -105,6 +116,8 @@ class Cluster(Workers):
     """
 
     chunk_time = 5.0
+    _alone_since: float | None = None
+    """When it was found without a worker; None while it has some. [s]"""
 
     def __init__(self, plan: Plan, engine: str, address: str):
         with imported("--scheduler", "Dask is not installed.", "cluster"):
@@ -136,16 +149,29 @@ class Cluster(Workers):
 
     def submit(self, runs: Sequence[PlannedRun]) -> Future[Chunk]:
         """See `Workers`."""
+        self._alone_since = None
         return self._executor.submit(run_chunk, self._job, runs)
+
+    def check(self) -> None:
+        """See `Workers`. A scheduler without workers keeps what is to be done, and would wait for ever."""
+        now = monotonic()
+        if self._client.scheduler_info(n_workers=-1)["workers"]:
+            self._alone_since = None
+        elif self._alone_since is None:
+            self._alone_since = now
+        elif now > self._alone_since + PATIENCE:
+            raise self._gone(f"it has had no worker for {PATIENCE:g} s")
 
     def renew(self) -> None:
         """Send the job to the workers that there are now."""
         try:
             self._job: Any = self._client.scatter(self._packed, broadcast=True, hash=False)
         except OSError as error:
-            message = f"The cluster answers no more: {error}."
-            remedy = "Start it again, then the same command, which goes on."
-            raise error_at(self._where, message, remedy) from None
+            raise self._gone(str(error)) from None
+
+    def _gone(self, why: str) -> ShipcosimError:
+        remedy = "Start it again, then the same command, which goes on."
+        return error_at(self._where, f"The cluster answers no more: {why}.", remedy)
 
     def close(self) -> None:
         """See `Workers`."""

@@ -91,7 +91,7 @@ class SimulatedCluster(Workers):
         heappush(self._ends, (end, self.tasks, future))
         return future
 
-    def wait(self, futures, return_when=None):
+    def wait(self, futures, timeout=None, return_when=None):
         """In place of `concurrent.futures.wait`: the clock goes on until a chunk is done."""
         self.now = max(self.now, self._ends[0][0])
         done = set()
@@ -103,6 +103,9 @@ class SimulatedCluster(Workers):
     def _spend(self, seconds: float) -> None:
         self.now += seconds
         self.busy_here += seconds
+
+    def check(self):
+        """See `Workers`."""
 
     def renew(self):
         """See `Workers`."""

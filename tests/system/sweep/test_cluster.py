@@ -3,13 +3,16 @@
 import os
 import signal
 import sys
+from concurrent.futures import Future
 from pathlib import Path
+from types import SimpleNamespace
 
 import pandas
 import pytest
 
 import shipcosim
 from shipcosim.errors import ShipcosimError
+from shipcosim.sweep import dispatch, workers
 
 DASK = Path(__file__).resolve().parents[3] / ".venv" / "cluster"
 
@@ -100,6 +103,32 @@ def test_a_cluster_whose_workers_are_all_gone_is_said_and_what_is_done_stays(
         )
     assert killed
     assert len(shipcosim.sweep(path, out="lost", engine="fmpy", at_most=0).runs) >= 3
+
+
+def test_a_scheduler_that_keeps_what_is_to_be_done_but_has_no_worker_is_left(monkeypatch):
+    """Dask queues tasks for workers that may come: their futures never end, where the last worker has gone."""
+    monkeypatch.setattr(dispatch, "CHECKED", 0.01)
+    monkeypatch.setattr(workers, "PATIENCE", 0.05)
+    listed = {"tcp://a:1": {}}
+    cluster = object.__new__(workers.Cluster)
+    cluster.n, cluster.ends, cluster._where = 1, (ConnectionError,), "--scheduler tcp://b:2"
+    cluster._client = SimpleNamespace(scheduler_info=lambda n_workers: {"workers": listed})
+    cluster._executor = SimpleNamespace(submit=lambda *_: Future())
+    cluster._job = None
+    checks = []
+
+    def check():
+        # The worker leaves only after some checks: while it is there nothing is given up.
+        checks.append(len(listed))
+        if len(checks) == 20:
+            listed.clear()
+        workers.Cluster.check(cluster)
+
+    cluster.check = check
+    plan = SimpleNamespace(run=lambda number: number)
+    with pytest.raises(ShipcosimError, match="answers no more: it has had no worker for 0.05 s"):
+        list(dispatch.rows_of(plan, iter(range(3)), cluster))
+    assert len(checks) > 20
 
 
 def test_workers_of_this_machine_beside_a_scheduler_are_refused(project):
