@@ -88,16 +88,13 @@ def run(
     options = {
         "parameters": parameters or [],
         "fmus": fmus or [],
-        "strict": strict,
-        "engine": engine,
-        "order": order,
-        "resume": resume,
         "record": record or (),
-        "output_interval": every,
         "set": parsed_settings(settings or []),
         "components": parsed_components(components or ()),
     }
+    options |= {"strict": strict, "engine": engine, "order": order, "resume": resume}
     options |= {"stop_time": stop_time, "step_size": step_size, "until": until}
+    options["output_interval"] = every
     options |= {"realtime": realtime, "profile": profile, **isolation(isolate, timeout)}
     if files := library.scenarios(scenario):
         if store or resume:

@@ -114,7 +114,7 @@ def simulate(
 
     table = None if inputs is None else read_table(inputs)
     feeding = {"inputs": table, "interpolate": interpolate or (), "max_gap": max_gap}
-    carried_out = {"engine": engine, "order": order, "until": until}
+    carried_out = {"start_time": start_time, "engine": engine, "order": order, "until": until}
     carried_out |= {"store": store, "resume": resume}
     carried_out |= {"realtime": realtime, "profile": profile, **isolation(isolate, timeout)}
     prepared = prepare_simulation(
@@ -128,7 +128,6 @@ def simulate(
         parameters=parameters or [],
         components=parsed_components(components or ()),
         strict=strict,
-        start_time=start_time,
         **feeding,
         **carried_out,
     )
