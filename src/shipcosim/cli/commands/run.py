@@ -98,7 +98,7 @@ def run(
     options |= {"realtime": realtime, "profile": profile, **isolation(isolate, timeout)}
     if files := library.scenarios(scenario):
         if store or resume:
-            message = "A folder of scenarios has no one state to store or to go on from."
+            message = "This is a folder of scenarios, which has no one state to keep."
             raise error_at(scenario, message, "Name one scenario, or leave out --store and --from.")
         return run_folder(prepare_folder(files, options), Path(scenario).resolve().name, out, force)
     prepared = prepare_run(scenario, store=store, **options)
