@@ -244,12 +244,13 @@ def _with_right_input(explained, plain):
     for fault in suspected_inputs(plain.repaired, plain.problem)[:MOST_TRIED]:
         problem = _relabelled(plain, fault).problem
         candidates.append((at_first_sight(problem), fault, problem))
-    # In its rough segment a fault must beat the log as it is, once settled the best fit with causes.
-    least = at_first_sight(plain.problem) if candidates else 0.0
+    # The likeliest is settled in any case: a rough segment may hide it. Further ones must beat the best fit with causes
+    # in their rough segments.
+    least = -np.inf
     for score, fault, problem in sorted(candidates, key=lambda entry: -entry[0]):
         if score < least:
             return None
-        least = max(least, best.score)
+        least = best.score
         # Settle the segment, and learn the form of the ship from right channels, before the costly comparison with
         # all causes.
         fault, right = _with_settled_segment(replace(plain, problem=problem), fault)

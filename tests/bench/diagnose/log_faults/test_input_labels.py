@@ -49,3 +49,14 @@ def test_hardly_a_cause_of_the_ship_is_named_for_a_wrong_channel(name, tmp_path)
         of_ship += any(one.kind == "physics" for one in found.findings)
         right += any(set(one.channels) & set(roles) for one in found.findings)
     assert of_ship <= 1 and right >= 1
+
+
+def test_a_wind_in_knots_in_the_second_half_is_no_larger_wind_load(tmp_path):
+    """The rough segment of the label, the whole log, explains less than no label; the settled one gains 304 nats."""
+    log = draw("work", 92006, causes=0, minutes=30).log
+    (speed,) = (column for column in log.columns if column.startswith("wind_speed"))
+    log.loc[len(log) // 2 :, speed] *= 1.9438
+    log.to_csv(tmp_path / "log.csv", index=False)
+    (finding,) = find_causes(tmp_path / "log.csv", twin.system()).findings
+    assert finding.note == "wind_speed is in kn, not m/s"
+    assert finding.segments[0][0] == pytest.approx(900.0, abs=30.0)
