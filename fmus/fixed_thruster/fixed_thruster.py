@@ -2,7 +2,7 @@
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
 from shipcosim.models.core.maths import pi, where
-from shipcosim.models.propulsion.fixed import FixedParameters, fixed_loads
+from shipcosim.models.propulsion.fixed import FixedParameters, fixed_loads, shaft_speed
 
 
 class FixedThruster(Fmu):
@@ -16,6 +16,7 @@ class FixedThruster(Fmu):
     failed = Input("1", "without power: no thrust", start=False, optional=True)
 
     thrust = Output("N", "delivered thrust, positive in the thruster's direction")
+    rpm = Output("rpm", "speed of the shaft that gives this thrust in still water")
     tau_X = Output("N", "force on the ship, forward")
     tau_Y = Output("N", "force on the ship, to starboard")
     tau_N = Output("N.m", "yaw moment on the ship")
@@ -33,5 +34,6 @@ class FixedThruster(Fmu):
         force = where(self.failed, 0.0, self.thrust_in)
         speed = where(self.failed, 0.0, self.rpm_in) * pi / 30.0
         loads = fixed_loads(force, speed, self.u_r, self.v_r, self.r, thruster=self.thruster)
+        self.rpm = shaft_speed(force, speed, thruster=self.thruster) * 30.0 / pi
         self.available = not self.failed
         self.thrust, _, self.tau_X, self.tau_Y, self.tau_N = loads

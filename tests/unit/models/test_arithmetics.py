@@ -617,6 +617,11 @@ CASES = [
         ],
         constants=dict(thruster=SIDE),
     ),
+    Case(
+        fixed.shaft_speed,
+        [(30.0, 0.0), (-20.0, 0.0), (0.0, 60.0), (10.0, -50.0), (0.0, 0.0)],
+        constants=dict(thruster=SIDE),
+    ),
     Case(extreme_learning.at_rest, REQUESTS, lambda *row: (row,), dict(parameters=LEARNED)),
     Case(
         extreme_learning.step,

@@ -36,6 +36,7 @@ from shipcosim.diagnose.inference.fitting import (
     bounded,
     deviations,
     fitted,
+    fitted_beside,
     own_columns,
     prepared,
     theta_of,
@@ -119,16 +120,13 @@ def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
     steady = given.fits[0].score - _cost(given)
     # The same search with other noise or form, as the result must not hang on these.
     sought = [(log, _clear_tries(log)) for log in (given, *_otherwise(given, plain))]
-    enough = [pair for pair in sought if _worth(pair) >= steady + COURSE_GAIN]
+    enough = [pair for pair in sought if _is_better(*pair, given)]
     chosen, tries = max(sought, key=_worth)
     if tries and not enough and max(identification.problem.noise.walk[:2]) > EXPLAINED_WALK:
         # Noise that was tuned without the course hides it: each side is weighed beside its own noise.
         tuned = _with_noise(chosen, tuned_noise(chosen.identification.problem, tries[0]))
-        first = given.fits[0]
-        rival = _with_noise(
-            given, tuned_noise(identification.problem, first)
-        ).identification.problem
-        again = fitted(rival, first.hypotheses, first.values)
+        noise = tuned_noise(identification.problem, given.fits[0])
+        again = fitted_beside(noise, given.fits[0], identification.problem)
         steady = max(steady, again.score - _cost(given))
         pair = tuned, _clear_tries(tuned)
         enough = [pair] if _worth(pair) >= steady + COURSE_GAIN else []
@@ -155,6 +153,21 @@ def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
         unmodelled_gains(problem, best),
     )
     return _of_its_rows(explained, best.of, course)
+
+
+def _is_better(explained: ExplainedLog, tries: Sequence[_Fitted], given: ExplainedLog) -> bool:
+    """Whether a course explains a log far better than steady causes that are no more, and better than all sets of them.
+
+    A second steady cause may stand for what the course of the first one leaves.
+    """
+    best = given.fits[0].score + APART
+    for attempt in tries:
+        causes = len(attempt.of.base.hypotheses) + 1
+        no_more = max(fit.score for fit in given.fits if len(fit.hypotheses) <= causes)
+        to_beat = max(no_more + COURSE_GAIN, best) - _cost(given)
+        if attempt.score - _cost(explained) >= to_beat:
+            return True
+    return False
 
 
 def _worth(pair: tuple[ExplainedLog, list[_Fitted]]) -> float:

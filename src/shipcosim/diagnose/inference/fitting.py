@@ -226,6 +226,12 @@ def fitted(
     return problem.fits[key]
 
 
+def fitted_beside(noise: Noise, fit: Fit, problem: IdentificationProblem) -> Fit:
+    """The causes of a fit fitted again beside another noise, as scores beside different noises do not compare."""
+    beside_it = prepared(replace(problem, noise=noise), rounds=1)
+    return fitted(beside_it, fit.hypotheses, fit.values)
+
+
 def _fitted(problem, hypotheses, values, rounds):
     """A fit, made again."""
     # Start from finite values within their bounds.

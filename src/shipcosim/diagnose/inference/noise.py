@@ -71,6 +71,8 @@ def tuned(
     *,
     most_walk: np.ndarray,
     most_white: np.ndarray | float = np.inf,
+    least_white: np.ndarray | float = 0.0,
+    least_jolt: np.ndarray | float = 0.0,
     rounds: int = 4,
 ) -> Noise:
     """The noise under which what is left of a log is likeliest.
@@ -87,6 +89,8 @@ def tuned(
         No unexplained force may walk faster, or it would swallow every cause.
     most_white : (6,) array, optional
         No channel may be noisier: what position and velocity agree upon, or a wrong model would pass as noise.
+    least_white, least_jolt : (6,) and (3,) array, optional
+        No channel and no acceleration may be less noisy: a simulated log without noise shows the error of its own step.
     rounds : int
 
     Returns
@@ -118,7 +122,8 @@ def tuned(
         tries = replace(
             tries,
             walk=np.minimum(tries.walk, most_walk),
-            white=np.minimum(tries.white, most_white),
+            white=np.clip(tries.white, least_white, most_white),
+            jolt=np.maximum(tries.jolt, least_jolt),
             wave_frequency=frequency,
         )
         scores = log_likelihoods(left, tries, record)

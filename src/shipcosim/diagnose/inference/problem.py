@@ -14,6 +14,8 @@ from shipcosim.diagnose.inference.noise import first_noise, tuned
 from shipcosim.diagnose.inference.screening import screened
 from shipcosim.diagnose.inference.thresholds import (
     GUST_FACTOR,
+    LEAST_JOLT,
+    LEAST_WHITE,
     LENGTHS_PER_GYRADIUS,
     MOST_WALK,
     TUNED_BESIDE,
@@ -112,11 +114,19 @@ def tuned_noise(problem: IdentificationProblem, fit: Fit | None = None) -> Noise
     """Noise of maximum likelihood beside a fit, or beside the cause that explains most at first sight."""
     # Bounds on random walk and channel noise stop the noise from explaining what a cause should.
     fit = fit or beside_likeliest(problem)
-    most = MOST_WALK * np.array([1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.length])
+    axes = np.array([1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.length])
+    most = MOST_WALK * axes
     most *= 1.0 if problem.record.wind is not None else GUST_FACTOR
     white = np.maximum(most_white(problem.record), problem.noise.white)
     return tuned(
-        problem.noise, fit.linear, problem.record, fit.left, most_walk=most, most_white=white
+        problem.noise,
+        fit.linear,
+        problem.record,
+        fit.left,
+        most_walk=most,
+        most_white=white,
+        least_white=LEAST_WHITE,
+        least_jolt=LEAST_JOLT * axes,
     )
 
 

@@ -124,6 +124,12 @@ TUNED_BESIDE = 3.0
 EXPLAINED_WALK = 1e-5
 """Random walk of the unexplained acceleration, below which a ship is explained. [m/s2.5] On developing logs (seeds 700 to
 714) eight right ones reached 9e-6; five in which a wrong channel was explained by something else had 1e-5 to 3e-5."""
+LEAST_WHITE = np.array([1e-3, 1e-3, 1e-4, 5e-4, 5e-4, 2e-5])
+"""Least white noise of a channel. [m, m, rad, m/s, m/s, rad/s] A tenth or less of what good instruments of ships have. Set
+on a run without instruments of a ship of 60 m: her averaged rows are off by more than the 3e-6 rad/s of the fit."""
+LEAST_JOLT = 1e-4
+"""Least white acceleration. [m/s1.5] Set on such a run of a ship of 12 m, whose thrusters move between rows of 0.5 s: below
+it her fits went to and fro by fifty tolerances."""
 NOISE_MARGIN = 1.5
 """Factor on the noise that position and velocity leave room for. Assumed."""
 NOISE_WIDTHS = (2.0, 4.0, 8.0)

@@ -13,6 +13,7 @@ from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.explanation.search import ExplainedLog, at_first_sight, explain
 from shipcosim.diagnose.explanation.unmodelled import is_healthy, unmodelled_gains
 from shipcosim.diagnose.finding import Finding
+from shipcosim.diagnose.inference.fitting import fitted_beside
 from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.inference.thresholds import EXPLAINED_WALK, MOST_CAUSES, UNMODELLED
 from shipcosim.diagnose.log.checks.samples import LIFELESS
@@ -260,9 +261,10 @@ def _with_right_input(explained, plain):
         shows &= max(right.problem.noise.walk[:2]) < EXPLAINED_WALK
         if at_first_sight(right.problem) < best.score or not shows:
             continue
-        # Fit causes beside the fault. It must gain over the best fit without it.
+        # Fit causes beside the fault. It must gain over the best fit without it, beside the noise of either.
         fits = tuple(explain(right.problem))
-        enough = best.score + _least_gain(fault, best)
+        beside_it = fitted_beside(right.problem.noise, best, explained.identification.problem)
+        enough = max(best.score, beside_it.score) + _least_gain(fault, best)
         # Whether no unmodelled error stands out beside a fit.
         if any(
             fit.score > enough

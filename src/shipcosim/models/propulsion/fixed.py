@@ -2,10 +2,13 @@
 
 from dataclasses import dataclass
 
-from shipcosim.models.core.maths import Arithmetic, where
+from shipcosim.models.core.maths import Arithmetic, maximum, sqrt, where
 from shipcosim.models.core.parameters import quantity, required
 from shipcosim.models.propulsion.mapped import mapped_loads
 from shipcosim.models.propulsion.thruster import LOSS, Loads
+
+_LEAST_COEFFICIENT = 1e-9  # N.s2/rad2, only to divide by
+_LEAST_THRUST = 1e-9  # N, below which the shaft stands
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,10 +100,44 @@ def fixed_loads(
     >>> fixed_loads(10.0, 0.0, 0.0, 0.0, 0.0, thruster=boat)
     Loads(thrust=10.0, side_force=0.0, tau_X=10.0, tau_Y=0.0, tau_N=-3.0)
     """
-    p = thruster
+    thrust = _static_thrust(force, speed, thruster)
+    return mapped_loads(thrust, u_r, v_r, r, thruster=thruster)
+
+
+def shaft_speed(force: Arithmetic, speed: Arithmetic, *, thruster: FixedParameters) -> Arithmetic:
+    """Speed of the shaft that gives the thrust of `fixed_loads` in still water, as a log of the thruster has it.
+
+    Parameters
+    ----------
+    force : float or (...) array or tensor
+        Commanded force, positive in the thruster's direction. [N]
+    speed : like force
+        Speed that is commanded besides. [rad/s]
+    thruster : FixedParameters
+        Without coefficients a force says nothing of a speed, and the commanded one is given.
+
+    Returns
+    -------
+    like force
+        [rad/s]
+
+    References
+    ----------
+    The quadratic law of `fixed_loads`, solved for ω.
+    """
+    thrust = _static_thrust(force, speed, thruster)
+    coefficient = where(thrust < 0.0, thruster.coefficient_astern, thruster.coefficient_ahead)
+    # The square root has no slope at 0, where a thrust is kept away from it.
+    size = sqrt(maximum(abs(thrust), _LEAST_THRUST) / maximum(coefficient, _LEAST_COEFFICIENT))
+    of_thrust = where(abs(thrust) < _LEAST_THRUST, 0.0, where(thrust < 0.0, -size, size))
+    return where(coefficient > 0.0, of_thrust, speed)
+
+
+def _static_thrust(force, speed, thruster):
+    """Thrust without loss by advance. [N]"""
     # Ahead and astern have their own gains and coefficients.
+    p = thruster
     thrust = force * where(force < 0.0, p.gain_astern, p.gain_ahead)
-    thrust = thrust + speed * abs(speed) * where(
+    return thrust + speed * abs(speed) * where(
         speed < 0.0, p.coefficient_astern, p.coefficient_ahead
     )
-    return mapped_loads(thrust, u_r, v_r, r, thruster=thruster)

@@ -6,7 +6,7 @@ from math import pi
 import pytest
 from ships import parameters
 
-from shipcosim.models.propulsion.fixed import FixedParameters, fixed_loads
+from shipcosim.models.propulsion.fixed import FixedParameters, fixed_loads, shaft_speed
 
 OTTER = parameters(FixedParameters, "otter")
 BLUE = parameters(FixedParameters, "blueboat")
@@ -24,6 +24,18 @@ def test_a_force_is_given_as_commanded_with_its_gains_ahead_and_astern():
     unequal = replace(BLUE, gain_ahead=0.9, gain_astern=0.6)
     assert fixed_loads(50.0, 0.0, *STILL, thruster=unequal).thrust == pytest.approx(45.0)
     assert fixed_loads(-50.0, 0.0, *STILL, thruster=unequal).thrust == pytest.approx(-30.0)
+
+
+@pytest.mark.parametrize("force", [-100.0, -1.0, 0.0, 1.0, 100.0])
+@pytest.mark.parametrize("speed", [-40.0, 0.0, 90.0])
+def test_the_speed_of_the_shaft_gives_the_same_thrust_as_force_and_speed_together(force, speed):
+    turning = shaft_speed(force, speed, thruster=OTTER)
+    by_both = fixed_loads(force, speed, *STILL, thruster=OTTER).thrust
+    assert fixed_loads(0.0, turning, *STILL, thruster=OTTER).thrust == pytest.approx(by_both)
+
+
+def test_without_coefficients_the_speed_of_the_shaft_is_the_commanded_one():
+    assert shaft_speed(50.0, 7.0, thruster=BLUE) == 7.0
 
 
 def test_a_thruster_that_points_to_starboard_pushes_to_starboard_at_its_place():
