@@ -1,5 +1,6 @@
 """At night: a cause that is there for one spell, and one that looks like exchanged labels until it begins."""
 
+import numpy as np
 import pytest
 from diagnose import twin
 from diagnose.test_courses import (
@@ -9,7 +10,7 @@ from diagnose.test_courses import (
     test_the_size_over_time_has_the_truth_within_its_band,
 )
 
-from shipcosim.diagnose.explanation.course import SPELL
+from shipcosim.diagnose.explanation.course import RAMP, SPELL
 from shipcosim.diagnose.pipeline import find_causes
 from truth import draw
 
@@ -26,3 +27,13 @@ def test_a_cause_that_begins_is_not_taken_for_exchanged_labels_before_it(tmp_pat
     (finding,) = find_causes(str(log), twin.system()).findings
     assert finding.label == "thruster_interaction"
     assert finding.segments[0][0] == pytest.approx(1086.0, abs=60.0)
+
+
+def test_a_growing_loss_is_not_a_steady_one_and_a_varying_current(tmp_path):
+    """The shaft turns slower than logged, by more and more. The course alone gains 16 nats over both steady causes."""
+    log = draw("hold", 93002, causes=0, minutes=30).log
+    (speed,) = (column for column in log.columns if column.startswith("port_rpm"))
+    log[speed] *= np.linspace(1.0, 1.3, len(log))
+    log.to_csv(tmp_path / "log.csv", index=False)
+    (finding,) = find_causes(tmp_path / "log.csv", twin.system()).findings
+    assert finding.label == "thrust_loss of port" and finding.course == RAMP

@@ -76,6 +76,13 @@ def test_an_unexplained_force_is_kept_from_swallowing_causes(problem):
     assert (found.walk <= most).all()
 
 
+def test_no_channel_and_no_acceleration_is_less_noisy_than_the_least(problem):
+    record, linear = problem
+    least = dict(least_white=2.0 * TRUTH.white, least_jolt=2.0 * TRUTH.jolt)
+    found = tuned(TRUTH, linear, record, np.zeros(0), most_walk=NO_LIMIT, **least)
+    assert (found.white >= 2.0 * TRUTH.white).all() and (found.jolt >= 2.0 * TRUTH.jolt).all()
+
+
 def test_what_is_explained_is_taken_out():
     """A problem whose log is twice its second column is left with nothing."""
     record = record_of(twin.logs()["healthy"], twin.model())
