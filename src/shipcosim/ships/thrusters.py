@@ -1,10 +1,11 @@
 """The thrusters of a ship file as parameters of their FMUs, and as the DP sees them."""
 
 from dataclasses import dataclass
-from math import cos, pi, sin, sqrt
+from math import pi, sqrt
 from pathlib import Path
 
 from shipcosim.errors import Problem
+from shipcosim.models.allocation.units import unit_effect
 from shipcosim.models.propulsion.mapped import MapParameters, within_map
 from shipcosim.ships.entries import Quantity
 from shipcosim.ships.estimates.estimate import EstimatedNumber, within
@@ -75,10 +76,7 @@ class ShipThruster:
     @property
     def effect(self) -> tuple[float, float, float]:
         """Load of one newton: X, Y, N. [1, 1, m]"""
-        # Effect of one newton at its place: (cos a, sin a, x sin a - y cos a).
-        c = cos(self.direction)
-        s = sin(self.direction)
-        return c, s, self.x * s - self.y * c
+        return unit_effect(self.x, self.y, self.direction)
 
     @property
     def azimuth_rate(self) -> float:

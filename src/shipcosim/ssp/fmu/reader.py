@@ -16,7 +16,6 @@ from shipcosim.ssp.fmu.variables import read_variables
 from shipcosim.ssp.xml.archive import entries, read_entry
 from shipcosim.ssp.xml.definitions import noted_units
 from shipcosim.ssp.xml.document import (
-    LARGEST_FILE,
     AnyPath,
     Document,
     Findings,
@@ -99,7 +98,7 @@ def _kept(
 def _described(path: AnyPath, findings: Findings, shown: str) -> FmuDescription | None:
     # The archive, and the description in it.
     try:
-        data = read_entry(path, "modelDescription.xml", LARGEST_FILE, shown)
+        data = read_entry(path, "modelDescription.xml", shown)
         names = entries(path, shown)
     except ShipcosimError as error:
         findings.problems += error.problems
