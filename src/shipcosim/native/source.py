@@ -137,10 +137,7 @@ class Writer:
 
     def text(self) -> str:
         # Constant tables stand before the function.
-        tables = [
-            f"static const double table_{number}[] = {{{', '.join(map(literal, table.tolist()))}}};"
-            for number, table in enumerate(self.recording.tables)
-        ]
+        tables = self._tables()
         self._block(self.step.root, 1, self._finish)
         parameters = "double *restrict m, double *restrict k, Call call, void *host"
         body = "\n".join(self.lines)
@@ -148,6 +145,13 @@ class Writer:
         return "\n".join(
             [HEAD, *tables, "", f"EXPORT int step({parameters}) {{", unused, body, "}", ""]
         )
+
+    def _tables(self, indent: str = "") -> list[str]:
+        """Constant tables, a line each."""
+        return [
+            f"{indent}static const double table_{number}[] = {{{', '.join(map(literal, table.tolist()))}}};"
+            for number, table in enumerate(self.recording.tables)
+        ]
 
     def _put(self, depth, line):
         self.lines.append("    " * depth + line)
