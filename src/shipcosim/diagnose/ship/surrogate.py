@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from shipcosim.diagnose.numerics import between, places
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Load
 
@@ -139,14 +140,9 @@ class Surrogate:
         interpolated = self.met.get(key)
         if interpolated is None:
             at = (without_holes(self.rows, time) - self.time[0]) / (self.time[1] - self.time[0])
-            at = np.clip(at, 0.0, self.time.size - 1.0)
-            low = np.minimum(np.asarray(at).astype(int), self.time.size - 2)
-            share = at - low
-            about = [v[low] * (1.0 - share) + v[low + 1] * share for v in self.about.values()]
-            interpolated = (
-                about,
-                self.rest[..., low] * (1.0 - share) + self.rest[..., low + 1] * share,
-            )
+            at = places(at, self.time.size)
+            about = [between(values, *at) for values in self.about.values()]
+            interpolated = (about, between(self.rest, *at))
             if len(self.met) >= _MET:
                 self.met.clear()
             self.met[key] = interpolated

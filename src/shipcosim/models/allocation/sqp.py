@@ -344,7 +344,8 @@ def _commanded(state, tau, around, thrusts, turned, forces, marginal, h, design)
             moving = moving | (abs(angle - at.azimuth) > 0.999 * at.unit.azimuth_rate * h)
     # Saturated: the load is missed although no unit is still on its way.
     missed = is_missed(unmet, design.yaw_lever)
-    load = tuple(asked - left for asked, left in zip(tau, unmet, strict=True))
+    X, Y, N = unmet
+    load = (tau[0] - X, tau[1] - Y, tau[2] - N)
     return Turned(tuple(all_thrusts), tuple(azimuths), *load, missed & (moving == False), marginal)  # noqa: E712
 
 

@@ -271,6 +271,10 @@ def is_missed(unmet: Load, yaw_lever: Arithmetic) -> Any:
     -------
     bool or (...) array or tensor of bool
         [1]
+
+    References
+    ----------
+    Definition.
     """
     X, Y, N = unmet
     return X * X + Y * Y + (N / yaw_lever) ** 2 > 1.0

@@ -43,7 +43,7 @@ class State(NamedTuple):
     aboard : Aboard
         Inputs of the predictor now.
     own : Own
-        Our law's record; None for the others.
+        Our law's record, of type `Own`; None for the others. [1]
     memory : tuple of tuples of Memory
         Of networks. [1]
     """

@@ -316,7 +316,7 @@ def blend(alone: Sequence, learned: Sequence, share: Arithmetic) -> tuple:
     Returns
     -------
     tuple, like alone
-        The blend.
+        The blend. [as alone]
     """
     away = [b - a for a, b in zip(alone, learned, strict=True)]
     # Headings blend along the shorter arc.
