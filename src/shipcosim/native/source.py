@@ -307,7 +307,7 @@ class Writer:
         terms = tuple(
             operand if isinstance(operand, Term) else self.term(operand) for operand in operands
         )
-        return Statement(_name(symbol), _type(symbol), template, terms)
+        return Statement(_name(symbol), "int" if symbol.kind == "b" else "double", template, terms)
 
     def _expression(self, symbol: Symbol) -> tuple[str, Sequence[Any]]:
         """C text of a value with a pair of braces for each operand, and the operands."""
@@ -438,10 +438,6 @@ def _of(block: Block | None) -> Block:
 
 def _name(symbol):
     return f"v{symbol.number}"
-
-
-def _type(symbol):
-    return "int" if symbol.kind == "b" else "double"
 
 
 def _declared(statement: Statement) -> str:

@@ -436,18 +436,14 @@ def averaged(series: np.ndarray) -> np.ndarray:
 
     So the noise of a channel does not get less, and the log likelier, when the channel is taken half a row later.
     """
+    # Missing values are interpolated linearly.
+    whole = np.isfinite(series)
+    filled = np.zeros_like(series)
+    if whole.any():
+        filled = np.interp(np.arange(series.size), np.flatnonzero(whole), series[whole])
     # Weights 1/4, 1/2, 1/4: interpolation half a row later then changes the noise little.
-    filled = _filled(series)
     ends = np.concatenate([filled[:1], filled, filled[-1:]])
     return 0.25 * ends[:-2] + 0.5 * ends[1:-1] + 0.25 * ends[2:]
-
-
-def _filled(series: np.ndarray) -> np.ndarray:
-    """The series with missing values interpolated linearly."""
-    whole = np.isfinite(series)
-    if not whole.any():
-        return np.zeros_like(series)
-    return np.interp(np.arange(series.size), np.flatnonzero(whole), series[whole])
 
 
 def first_motion(record: Record, smooth: float = 4.0) -> Motion:

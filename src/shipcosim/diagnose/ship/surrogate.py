@@ -11,6 +11,8 @@ from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Load
 
 _MET = 4  # sets of times whose loads are kept: a few MB each
+_OFFSETS = (("rpm", "rpm_offset", -1.0), ("azimuth", "azimuth_offset", 1.0))
+"""Offsets of the inputs: quantity, number of the part, sign."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +116,8 @@ class Surrogate:
         # Offsets are errors of the log: correct the inputs that were given.
         inputs = {
             name: given[name] + sign * getattr(part, off)
-            for name, off, sign in _offsets(given, part)
+            for name, off, sign in _OFFSETS
+            if name in given and hasattr(part, off)
         }
         given = {**given, **inputs}
         # Linear expansion about the inputs and parameters of the co-simulation.
@@ -147,12 +150,6 @@ class Surrogate:
                 self.met.clear()
             self.met[key] = interpolated
         return interpolated
-
-
-def _offsets(given: Mapping[str, Arithmetic], part: ThirdPartyPart) -> list[tuple[str, str, float]]:
-    """Offsets of the inputs: quantity, number of the part, sign."""
-    wrong = (("rpm", "rpm_offset", -1.0), ("azimuth", "azimuth_offset", 1.0))
-    return [offset for offset in wrong if offset[0] in given and hasattr(part, offset[1])]
 
 
 def without_holes(rows: np.ndarray, time: np.ndarray) -> np.ndarray:

@@ -28,6 +28,7 @@ from shipcosim.ssp.xml.validation import validate
 
 MOST_KEPT = 64
 """FMUs whose descriptions are kept: systems are read again and again while they are edited."""
+INTERFACES = ("CoSimulation", "ModelExchange", "ScheduledExecution")
 
 
 def read_fmu(path: AnyPath) -> FmuDescription:
@@ -154,6 +155,11 @@ def _description(
     # FMI 3.0 lists its event indicators.
     listed = [local(part) for part in parts_of(root, "ModelStructure")]
     n_indicators = listed.count("EventIndicator")
+    interfaces = (
+        interfaces_of(root)
+        if version == "1.0"
+        else {local(part): dict(part.attrib) for part in root if local(part) in INTERFACES}
+    )
     given = next((dict(part.attrib) for part in parts_in(root, "DefaultExperiment")), {})
     experiment = _experiment(document, given, findings)
     return FmuDescription(
@@ -164,7 +170,7 @@ def _description(
         variables=read_variables(document, findings),
         description=root.get("description", ""),
         generation_tool=root.get("generationTool", ""),
-        interfaces=interfaces_of(root) if version == "1.0" else _interfaces(root),
+        interfaces=interfaces,
         units=noted_units(document, parts_of(root, "UnitDefinitions"), findings),
         platforms=tuple(sorted(platforms)),
         experiment=experiment,
@@ -190,8 +196,3 @@ def _experiment(document: Document, given: dict[str, str], findings: Findings) -
         )
         del numbers[name]
     return numbers
-
-
-def _interfaces(root: etree._Element) -> dict[str, dict[str, str]]:
-    interfaces = ("CoSimulation", "ModelExchange", "ScheduledExecution")
-    return {local(part): dict(part.attrib) for part in root if local(part) in interfaces}
