@@ -223,10 +223,7 @@ class Master:
                 k, meeting = between(k)
             # Events act on the step that starts now, before its row is recorded.
             if k in actions:
-                for action in actions[k]:
-                    action()
-                for exchange in self._all_exchanges:
-                    exchange.refresh()
+                self._act(actions[k])
             # The row at time t holds the values at t, before the step.
             if k % steps_per_row == 0:
                 recorders.record()
@@ -250,6 +247,12 @@ class Master:
 
     def take_back(self) -> None:
         """Go on from the state of the FMUs, which has been restored."""
+
+    def _act(self, actions):
+        for action in actions:
+            action()
+        for exchange in self._all_exchanges:
+            exchange.refresh()
 
     def _step(self, k, clock):
         """Step all components; with Jacobi, those in other processes step in parallel."""

@@ -102,12 +102,15 @@ class Slave1(LibrarySlave):
             partial(self._function(verb + kind), self.component, *arguments),
         )
 
+    def _symbol(self, function):
+        return f"{self._identifier}_fmi{function}"
+
     def _instantiate(self):
         from fmpy import calloc, fmi1, free
 
         # FMPy 0.3.32 takes the status of these for a text.
         for name in ("InitializeSlave", "DoStep") if self._form == "Slave" else ():
-            getattr(self._fmu.dll, f"{self._identifier}_fmi{name}").restype = c_int
+            getattr(self._fmu.dll, self._symbol(name)).restype = c_int
         callbacks = fmi1.fmi1CallbackFunctions()
         callbacks.allocateMemory = fmi1.fmi1CallbackAllocateMemoryTYPE(calloc)
         callbacks.freeMemory = fmi1.fmi1CallbackFreeMemoryTYPE(free)
