@@ -175,7 +175,8 @@ class _Runs:
         error = ""
         slaves.last = None
         try:
-            system, scenario = self._varied(variation)
+            system = with_values(self._system, variation.values, "variation")
+            scenario = with_numbers(variation.scenario, self._unit_of)
             # If only numbers differ, rewind; otherwise plan a new run.
             if simulation is None or not simulation.rewind(system, scenario):
                 grid = time_grid_of(scenario, self._options.start_time)
@@ -189,10 +190,6 @@ class _Runs:
         assert simulation is not None
         slaves.last = None if error else simulation
         return self._kept(simulation, error)
-
-    def _varied(self, variation):
-        system = with_values(self._system, variation.values, "variation")
-        return system, with_numbers(variation.scenario, self._unit_of)
 
     def _kept(self, simulation, error):
         columns = simulation.columns(lambda names: self._choose(tuple(names)))

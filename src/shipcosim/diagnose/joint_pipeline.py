@@ -31,7 +31,6 @@ from shipcosim.diagnose.explanation.form import of_scale, with_learnt_form
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.extension.extended_system import extended_by
 from shipcosim.diagnose.finding import Finding, ParameterEstimate, label_of
-from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.log.runs import LogSource
 from shipcosim.diagnose.log_faults.corrections import corrected
@@ -346,11 +345,22 @@ def _stated(joint: JointDiagnosis, basis: JointBasis) -> JointDiagnosis:
     labels = {hypothesis.label: hypothesis for hypothesis in logs.hypotheses}
     sizes = _sizes(basis, crude, causes)
     design = None if is_split else _prescription(basis)
-    # Findings of the data, the common ratio, and causes by all logs.
+    # Findings of the data, the common ratio, and causes by all logs that can show them.
+    put_right = joint.relabelled.items()
     findings = (
-        *(_with_relabelled(finding, joint.relabelled) for finding in joint.findings),
+        *(
+            replace(
+                finding, put_right=tuple(name for name, faults in put_right if finding in faults)
+            )
+            for finding in joint.findings
+        ),
         *(replace(finding, logs=tuple(ratios.each)) for finding in crude),
-        *(replace(cause, logs=_telling(logs, labels[cause.label])) for cause in causes),
+        *(
+            replace(
+                cause, logs=tuple(n for n in logs.problems if logs.within(n, labels[cause.label]))
+            )
+            for cause in causes
+        ),
     )
     seen = {finding.label for finding in (*judgement.candidates, *causes)} | {
         finding.cause for finding in crude
@@ -398,17 +408,6 @@ def _sizes(basis: JointBasis, crude: Sequence[Finding], causes: Sequence[Finding
     labels = {cause.label for cause in causes}
     named = [hypothesis for hypothesis in fit.hypotheses if hypothesis.label in labels]
     return sizes | sizes_by_log(basis.verdict.logs, named, fit.values)
-
-
-def _with_relabelled(finding: Finding, relabelled: Mapping[str, Sequence[Finding]]) -> Finding:
-    return replace(
-        finding, put_right=tuple(name for name, faults in relabelled.items() if finding in faults)
-    )
-
-
-def _telling(logs: SeveralLogs, hypothesis: Hypothesis) -> tuple[str, ...]:
-    """Logs that can show a cause."""
-    return tuple(name for name in logs.problems if logs.within(name, hypothesis) is not None)
 
 
 def _prescription(basis: JointBasis) -> ExperimentDesign | None:

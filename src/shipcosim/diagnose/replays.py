@@ -5,11 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from shipcosim.diagnose.checked_log import checked
+from shipcosim.diagnose.extension.extend import signals_of
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.remarks import handled
 from shipcosim.diagnose.log.runs import LogSource
 from shipcosim.diagnose.pipeline import read_measurements
-from shipcosim.diagnose.ship.inputs import CHANNELS, record_of
+from shipcosim.diagnose.ship.inputs import record_of
 from shipcosim.diagnose.ship.instruments import Instruments
 from shipcosim.diagnose.validation.cosimulation import Replayed
 from shipcosim.diagnose.validation.tracks import (
@@ -31,7 +32,6 @@ _DRIFTED = 1.5
 """Error of the position over the time of a prediction, which no current that is left out makes. [m/s] Assumed."""
 _FEWEST = 3
 """Predictions by which a log is judged. Assumed."""
-_SHOWN = dict(zip(CHANNELS, ("x", "y", "psi", "u", "v", "r"), strict=True))
 
 
 @dataclass(frozen=True)
@@ -124,8 +124,4 @@ def _signals(system: System) -> dict[str, str] | None:
         (name for name, part in system.components.items() if needed <= set(part.variables)),
         None,
     )
-    return (
-        None
-        if inserted is None
-        else {role: f"{inserted}.{name}_meas" for role, name in _SHOWN.items()}
-    )
+    return None if inserted is None else signals_of(inserted, "_meas")

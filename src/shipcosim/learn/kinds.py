@@ -47,26 +47,20 @@ ALLOCATORS: Mapping[str, Kind] = {
 """Allocators by the name that `shipcosim train allocator --kind NAME` takes; the first is the default."""
 
 DRIFT: Mapping[str, Kind] = {
-    "ours": Kind(drift.OURS.description, partial(drift.train, drift.ours, drift.OURS)),
-    "paper-iv": Kind(
-        drift.PAPER_IV.description, partial(drift.train, drift.as_paper_iv, drift.PAPER_IV)
-    ),
+    **_kinds({"ours": drift.OURS}, partial(drift.train, drift.ours)),
+    **_kinds({"paper-iv": drift.PAPER_IV}, partial(drift.train, drift.as_paper_iv)),
 }
 """Drift predictors by the name that `shipcosim train drift --kind NAME` takes; the first is the default."""
 
 DEAD_RECKONING: Mapping[str, Kind] = {
-    name: Kind(*entry) for name, entry in dead_reckoning.KINDS.items()
+    name: Kind(description, partial(dead_reckoning.train, name))
+    for name, description in dead_reckoning.KINDS.items()
 }
 """Dead reckoning by the name that `shipcosim train dead-reckoning --kind NAME` takes; the first is the default."""
 
 DOCKING: Mapping[str, Kind] = {
-    "ours": Kind(
-        docking.OURS.description, partial(docking.train, docking.learn_ours, docking.OURS)
-    ),
-    "paper-iii": Kind(
-        docking.PAPER_III.description,
-        partial(docking.train, docking.learn_paper_iii, docking.PAPER_III),
-    ),
+    **_kinds({"ours": docking.OURS}, partial(docking.train, docking.learn_ours)),
+    **_kinds({"paper-iii": docking.PAPER_III}, partial(docking.train, docking.learn_paper_iii)),
 }
 """Predictors of dockings by the name that `shipcosim train docking --kind NAME` takes; the first is the default."""
 COMPONENTS: Mapping[str, Mapping[str, Kind]] = {

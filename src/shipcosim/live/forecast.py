@@ -14,9 +14,6 @@ from shipcosim.cosim.master.algorithm import Ended, Failure, Master
 from shipcosim.cosim.master.run import Simulation
 from shipcosim.cosim.master.time_grid import TimeGrid
 from shipcosim.cosim.processes.pool import end_pool, new_pool, submitted
-from shipcosim.cosim.processes.remote_slave import IsolatedInstances
-from shipcosim.cosim.slaves.instances import Instances
-from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.live.simulation import (
     Change,
@@ -24,9 +21,9 @@ from shipcosim.live.simulation import (
     apply_changes,
     endless_grid,
     endless_simulation,
+    instances_of,
     restore,
 )
-from shipcosim.options import TIMEOUT
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System
 from shipcosim.temporary import temporary_folder
@@ -97,9 +94,8 @@ def _prepare(system: System, scenario: Scenario) -> None:
         os.nice(NICENESS)
     grid = endless_grid(scenario)
     simulation = endless_simulation(system, scenario, grid)
-    apart = module_clashes(system, late_alone=True)
-    instances = IsolatedInstances(system, TIMEOUT) if apart else Instances()
-    _prepared.append((simulation, simulation.begin(instances.__enter__(), lambda: None), grid))
+    master = simulation.begin(instances_of(system).__enter__(), lambda: None)
+    _prepared.append((simulation, master, grid))
 
 
 def _answer(question: Question) -> dict[str, Any]:

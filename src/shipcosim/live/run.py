@@ -18,9 +18,6 @@ from shipcosim.cosim.master.events import changes, modifiers_of
 from shipcosim.cosim.master.interrupt import delayed_interrupt
 from shipcosim.cosim.master.plan import label
 from shipcosim.cosim.master.restore import check_storable
-from shipcosim.cosim.processes.remote_slave import IsolatedInstances
-from shipcosim.cosim.slaves.instances import Instances
-from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import ShipcosimError
 from shipcosim.live.forecast import Forecaster, Question
@@ -30,10 +27,10 @@ from shipcosim.live.simulation import (
     apply_changes,
     endless_grid,
     endless_simulation,
+    instances_of,
     restore,
     state_of,
 )
-from shipcosim.options import TIMEOUT
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System, with_values
 
@@ -110,8 +107,7 @@ class LiveRun:
         """Run until Ctrl-C: KeyboardInterrupt."""
         with delayed_interrupt() as self._check_interrupt:
             system = self._first_system
-            apart = module_clashes(system, late_alone=True)
-            with IsolatedInstances(system, TIMEOUT) if apart else Instances() as instances:
+            with instances_of(system) as instances:
                 while True:
                     started = with_values(system, self._starts, "the page")
                     with suppress(_Again), Forecaster(started, self._scenario) as self._forecaster:

@@ -14,7 +14,10 @@ from shipcosim.cosim.master.events import modifiers_of
 from shipcosim.cosim.master.run import Simulation
 from shipcosim.cosim.master.signals import Exchange, Modifiers
 from shipcosim.cosim.master.time_grid import TimeGrid, time_grid_of
-from shipcosim.options import RunOptions
+from shipcosim.cosim.processes.remote_slave import IsolatedInstances
+from shipcosim.cosim.slaves.instances import Instances
+from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
+from shipcosim.options import TIMEOUT, RunOptions
 from shipcosim.scenario import Scenario, step_times
 from shipcosim.ssp import System
 
@@ -53,6 +56,12 @@ def endless_simulation(system: System, scenario: Scenario, grid: TimeGrid) -> Si
     names = list(dict.fromkeys([*changeable_inputs(system), *named]))
     quiet = scenario.model_copy(update={"events": []})
     return Simulation(system, quiet, grid, RunOptions(engine="native"), changeable=names)
+
+
+def instances_of(system: System) -> Instances | IsolatedInstances:
+    """Instances of a system's FMUs: processes of their own where two bring other Python modules of one name."""
+    apart = module_clashes(system, late_alone=True)
+    return IsolatedInstances(system, TIMEOUT) if apart else Instances()
 
 
 def apply_changes(simulation: Simulation, step: int, due: Sequence[Change]) -> None:

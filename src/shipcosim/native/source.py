@@ -137,10 +137,7 @@ class Writer:
 
     def text(self) -> str:
         # Constant tables stand before the function.
-        tables = [
-            f"static const double table_{number}[] = {{{', '.join(map(literal, table.tolist()))}}};"
-            for number, table in enumerate(self.recording.tables)
-        ]
+        tables = self._tables()
         self._block(self.step.root, 1, self._finish)
         parameters = "double *restrict m, double *restrict k, Call call, void *host"
         body = "\n".join(self.lines)
@@ -148,6 +145,13 @@ class Writer:
         return "\n".join(
             [HEAD, *tables, "", f"EXPORT int step({parameters}) {{", unused, body, "}", ""]
         )
+
+    def _tables(self, indent: str = "") -> list[str]:
+        """Constant tables, a line each."""
+        return [
+            f"{indent}static const double table_{number}[] = {{{', '.join(map(literal, table.tolist()))}}};"
+            for number, table in enumerate(self.recording.tables)
+        ]
 
     def _put(self, depth, line):
         self.lines.append("    " * depth + line)
@@ -303,7 +307,7 @@ class Writer:
         terms = tuple(
             operand if isinstance(operand, Term) else self.term(operand) for operand in operands
         )
-        return Statement(_name(symbol), _type(symbol), template, terms)
+        return Statement(_name(symbol), "int" if symbol.kind == "b" else "double", template, terms)
 
     def _expression(self, symbol: Symbol) -> tuple[str, Sequence[Any]]:
         """C text of a value with a pair of braces for each operand, and the operands."""
@@ -434,10 +438,6 @@ def _of(block: Block | None) -> Block:
 
 def _name(symbol):
     return f"v{symbol.number}"
-
-
-def _type(symbol):
-    return "int" if symbol.kind == "b" else "double"
 
 
 def _declared(statement: Statement) -> str:

@@ -6,7 +6,6 @@ The room can be called: ``shipcosim.report(a, b)`` is the function of this name 
 import sys
 
 from shipcosim import CallableRoom
-from shipcosim.report.run.comparison import write_comparison
 from shipcosim.report.run.overview import ScenarioRow, overview_outcome, write_overview
 from shipcosim.report.run.page import digest, write_report
 
@@ -14,7 +13,6 @@ __all__ = [
     "ScenarioRow",
     "digest",
     "overview_outcome",
-    "write_comparison",
     "write_overview",
     "write_report",
 ]

@@ -346,21 +346,15 @@ def _event_complaint(
             return f"'{signal}' is a {variable.variability} {variable.causality}.", remedy
     # An amount with a unit must be convertible; any other value must fit the type.
     if kind == "Real" and is_amount(value):
-        return _unit_complaint(system, verb, signal, value, (component, name))
+        try:
+            number_in(value, system.unit_of(component, name), difference=verb == "bias")
+        except UnitError as error:
+            return f"{verb} of '{signal}': {error.found}", error.remedy
+        return None
     if verb != "reset" and not _fits(value, kind, items, verb):
         listed = f" Its items are {', '.join(items)}." if items else ""
         message = f"{verb} of '{signal}' with {value!r}: the signal is {kind or None}."
         return message, f"{_WANTED.get(kind, 'It cannot be changed.')}{listed}"
-    return None
-
-
-def _unit_complaint(
-    system: System, verb: str, signal: str, value: str, end: tuple[str | None, str]
-) -> tuple[str, str] | None:
-    try:
-        number_in(value, system.unit_of(*end), difference=verb == "bias")
-    except UnitError as error:
-        return f"{verb} of '{signal}': {error.found}", error.remedy
     return None
 
 

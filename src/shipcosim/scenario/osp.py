@@ -85,10 +85,11 @@ def read_osp_scenario(
     remarks += _doubts(path, due, end, step_size)
     # At the end everything returns to its source.
     due += _taken_back(due, end, step_size, stop_time - start_time)
-    events = [
-        _event(start_time + count * step_size, action, signal, value)
-        for count, action, signal, value in due
-    ]
+    events = []
+    for count, action, signal, value in due:
+        change = [signal] if action == "reset" else {signal: value}
+        time = start_time + count * step_size
+        events.append(Event.model_validate({"time": time, action: change}))
     return OspScenario(str(content.get("description") or ""), events, remarks)
 
 
@@ -260,12 +261,6 @@ def _typed(text: str) -> Value:
         except ValueError:
             continue
     return text
-
-
-def _event(time: float, action: str, signal: str, value: Value | None) -> Event:
-    return Event.model_validate(
-        {"time": time, action: [signal] if action == "reset" else {signal: value}}
-    )
 
 
 def _doubts(

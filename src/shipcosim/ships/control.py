@@ -2,11 +2,9 @@
 
 from dataclasses import replace
 from math import pi, sqrt
-from pathlib import Path
 
 import numpy as np
 
-from shipcosim.errors import Problem
 from shipcosim.models.allocation.fixed_angles import UNITS
 from shipcosim.ships.described import Described
 from shipcosim.ships.entries import Quantity
@@ -97,7 +95,10 @@ def dp_entries(ship: Described) -> dict[str, dict[str, Quantity]]:
     used = units_for_dp(ship)
     loop = _loop(ship, used)
     length = ship.form.length
-    by_component = {name: _numbers(fmu, ship.path) for name, fmu in COMPONENTS.items()}
+    where = f"{ship.path}: control"
+    by_component = {
+        name: Numbers(fmu, where, ship.path.parent, "", []) for name, fmu in COMPONENTS.items()
+    }
     by_component["sensors"].estimates(control.sensors(length))
     by_component["reference"].estimates(control.reference(loop))
     # Frequencies and limits that the user gives override the rule.
@@ -113,11 +114,6 @@ def dp_entries(ship: Described) -> dict[str, dict[str, Quantity]]:
     by_component["allocator"].estimates(allocation)
     by_component["consequences"].estimates(_consequences(used, allocation))
     return {name: numbers.entries for name, numbers in by_component.items()}
-
-
-def _numbers(fmu: str, path: Path) -> Numbers:
-    problems: list[Problem] = []
-    return Numbers(fmu, f"{path}: control", path.parent, "", problems)
 
 
 def _loop(ship: Described, used: list[ShipThruster]) -> control.ControlledShip:

@@ -9,27 +9,28 @@ from shipcosim.models.allocation.consequences import GROUPS
 from shipcosim.ships.estimates.weather import BLENDERMANN
 from shipcosim.ships.given import Given, reader
 
-Length = Annotated[Given | None, reader("m", least=0.0)]
-Block = Annotated[Given | None, reader("1", least=0.0, most=1.0)]
-Mass = Annotated[Given | None, reader("kg", least=0.0)]
-Speed = Annotated[Given | None, reader("m/s", least=0.0)]
-Density = Annotated[Given | None, reader("kg/m3", least=900.0, most=1100.0)]
-Place = Annotated[Given | None, reader("m")]
-YawInertia = Annotated[Given | None, reader("kg.m2", least=0.0)]
-AddedMass = Annotated[Given | None, reader("kg")]
-MassLever = Annotated[Given | None, reader("kg.m")]
-AddedInertia = Annotated[Given | None, reader("kg.m2")]
-Force = Annotated[Given | None, reader("N", least=0.0)]
-Area = Annotated[Given | None, reader("m2", least=0.0)]
-Factor = Annotated[Given | None, reader("1", least=1.0, most=3.0)]
-DragCoefficient = Annotated[Given | None, reader("1", least=0.0, most=4.0)]
-Ratio = Annotated[Given | None, reader("1", least=0.0)]
-Rate = Annotated[Given | None, reader("rad/s", least=0.0)]
-Angle = Annotated[Given | None, reader("rad")]
-Power = Annotated[Given | None, reader("W", least=0.0)]
-Rpm = Annotated[Given | None, reader("rpm", least=0.0)]
-Seconds = Annotated[Given | None, reader("s", least=0.0)]
-PerSpeed = Annotated[Given | None, reader("s/m")]
+Number = Given | None
+Length = Annotated[Number, reader("m", least=0.0)]
+Block = Annotated[Number, reader("1", least=0.0, most=1.0)]
+Mass = Annotated[Number, reader("kg", least=0.0)]
+Speed = Annotated[Number, reader("m/s", least=0.0)]
+Density = Annotated[Number, reader("kg/m3", least=900.0, most=1100.0)]
+Place = Annotated[Number, reader("m")]
+YawInertia = Annotated[Number, reader("kg.m2", least=0.0)]
+AddedMass = Annotated[Number, reader("kg")]
+MassLever = Annotated[Number, reader("kg.m")]
+AddedInertia = Annotated[Number, reader("kg.m2")]
+Force = Annotated[Number, reader("N", least=0.0)]
+Area = Annotated[Number, reader("m2", least=0.0)]
+Factor = Annotated[Number, reader("1", least=1.0, most=3.0)]
+DragCoefficient = Annotated[Number, reader("1", least=0.0, most=4.0)]
+Ratio = Annotated[Number, reader("1", least=0.0)]
+Rate = Annotated[Number, reader("rad/s", least=0.0)]
+Angle = Annotated[Number, reader("rad")]
+Power = Annotated[Number, reader("W", least=0.0)]
+Rpm = Annotated[Number, reader("rpm", least=0.0)]
+Seconds = Annotated[Number, reader("s", least=0.0)]
+PerSpeed = Annotated[Number, reader("s/m")]
 Coefficients = dict[str, Any]
 
 
@@ -118,41 +119,38 @@ class _Thruster(_Part):
     coefficients: Coefficients = {}
 
 
-class FixedPropeller(_Thruster):
+class Propeller(_Thruster):
+    """A propeller and its largest power, speed and thrust."""
+
+    diameter: Length = None
+    power: Power = None
+    rpm: Rpm = None
+    thrust: Force = None
+
+
+class FixedPropeller(Propeller):
     """A propeller on a fixed shaft, or a thruster with a commanded force."""
 
     kind: Literal["fixed"]
     command: Literal["rpm", "thrust"] = "rpm"
     direction: Angle = None
-    diameter: Length = None
-    power: Power = None
-    rpm: Rpm = None
-    thrust: Force = None
     thrust_astern: Force = None
 
 
-class Azimuth(_Thruster):
+class Azimuth(Propeller):
     """A thruster that turns, with its drive."""
 
     kind: Literal["azimuth"]
-    diameter: Length = None
-    power: Power = None
-    rpm: Rpm = None
-    thrust: Force = None
     thrust_astern: Force = None
     ducted: bool = False
     rise_time: Seconds = None
     turning_rate: Rate = None
 
 
-class Tunnel(_Thruster):
+class Tunnel(Propeller):
     """A tunnel thruster, with its drive."""
 
     kind: Literal["tunnel"]
-    diameter: Length = None
-    power: Power = None
-    rpm: Rpm = None
-    thrust: Force = None
     rise_time: Seconds = None
 
 
@@ -170,14 +168,10 @@ class ThrustMap(_Thruster):
     speed_loss: PerSpeed = None
 
 
-class PropellerWithRudder(_Thruster):
+class PropellerWithRudder(Propeller):
     """A propeller and the rudder behind it."""
 
     kind: Literal["rudder"]
-    diameter: Length = None
-    power: Power = None
-    rpm: Rpm = None
-    thrust: Force = None
     rudder_x: Place = None
     rudder_area: Area = None
     rudder_span: Length = None

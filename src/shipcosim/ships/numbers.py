@@ -41,16 +41,15 @@ class Numbers:
     problems: list[Problem]
     entries: dict[str, Quantity] = field(default_factory=dict)
 
-    def give(self, name: str, given: Given | None) -> bool:
-        """Take a number from the file; return True if it has one."""
+    def give(self, name: str, given: Given | None) -> None:
+        """Take a number from the file, if it has one."""
         if given is None:
-            return False
+            return
         # Origin: the number's own, else that of the file.
         origin = given.origin or self.source or PLAIN
         unit = metadata_of(self.fmu)[name]["unit"]
         more = given.tolerance or 0.0, origin, (), f"{self.where}: {name}", given.uncertainty
         self.entries[name] = Quantity(given.value, unit, *more)
-        return True
 
     def estimate(self, name: str, estimate: EstimatedNumber) -> None:
         """Take an estimate where no value is given."""

@@ -1,10 +1,11 @@
 """The thrusters of a ship file as parameters of their FMUs, and as the DP sees them."""
 
 from dataclasses import dataclass
-from math import cos, pi, sin, sqrt
+from math import pi, sqrt
 from pathlib import Path
 
 from shipcosim.errors import Problem
+from shipcosim.models.allocation.units import unit_effect
 from shipcosim.models.propulsion.mapped import MapParameters, within_map
 from shipcosim.ships.entries import Quantity
 from shipcosim.ships.estimates.estimate import EstimatedNumber, within
@@ -23,6 +24,7 @@ from shipcosim.ships.estimates.rudder import propeller_and_rudder, rudder_area
 from shipcosim.ships.file import (
     Azimuth,
     FixedPropeller,
+    Propeller,
     PropellerWithRudder,
     Thruster,
     ThrustMap,
@@ -74,10 +76,7 @@ class ShipThruster:
     @property
     def effect(self) -> tuple[float, float, float]:
         """Load of one newton: X, Y, N. [1, 1, m]"""
-        # Effect of one newton at its place: (cos a, sin a, x sin a - y cos a).
-        c = cos(self.direction)
-        s = sin(self.direction)
-        return c, s, self.x * s - self.y * c
+        return unit_effect(self.x, self.y, self.direction)
 
     @property
     def azimuth_rate(self) -> float:
@@ -184,7 +183,7 @@ def _unit(
 
 
 def _screw(
-    thruster: FixedPropeller | Azimuth | Tunnel | PropellerWithRudder,
+    thruster: Propeller,
     numbers: Numbers,
     form: HullDimensions,
     kind: str,
@@ -210,7 +209,7 @@ def _screw(
     return Screw(kind=kind, diameter=D, power=power, thrust=thrust, rpm=rpm, density=density)
 
 
-def _estimated_parts(thruster: FixedPropeller | Azimuth | Tunnel) -> str:
+def _estimated_parts(thruster: Propeller) -> str:
     """Names the parts of a propeller's thrust and speed that are estimated."""
     parts = [] if thruster.thrust else ["thrust by DNV-ST-0111"]
     parts += [] if thruster.rpm else ["speed by a usual thrust coefficient"]
@@ -218,7 +217,7 @@ def _estimated_parts(thruster: FixedPropeller | Azimuth | Tunnel) -> str:
     return ", ".join(parts)
 
 
-def _share(thruster: FixedPropeller | Azimuth | Tunnel) -> float:
+def _share(thruster: Propeller) -> float:
     """Relative tolerance of the thrust at a shaft speed, larger for estimates."""
     return 0.05 + (0.0 if thruster.thrust else 0.15) + (0.0 if thruster.rpm else 0.15)
 
@@ -272,8 +271,8 @@ def _azimuth(thruster: Azimuth, numbers: Numbers, form: HullDimensions) -> ShipT
         "water_density", EstimatedNumber(form.density, 0.0, "that of the ship's water")
     )
     least = -number(thruster.thrust_astern, ASTERN[kind] * screw.thrust)
-    if not numbers.give("thrust_max", thruster.thrust):
-        numbers.estimate("thrust_max", within(screw.thrust, 0.15, "DNV-ST-0111"))
+    numbers.give("thrust_max", thruster.thrust)
+    numbers.estimate("thrust_max", within(screw.thrust, 0.15, "DNV-ST-0111"))
     numbers.estimate(
         "thrust_min",
         within(least, 0.15, "as given" if thruster.thrust_astern else f"{ASTERN[kind]} of ahead"),
@@ -289,8 +288,8 @@ def _azimuth(thruster: Azimuth, numbers: Numbers, form: HullDimensions) -> ShipT
             f"1; {_estimated_parts(thruster) or 'the curve through the bollard point'}",
         ),
     )
-    if not numbers.give("azimuth_rate", thruster.turning_rate):
-        numbers.estimate("azimuth_rate", EstimatedNumber(TURNING, 0.0, "10 deg/s; assumed"))
+    numbers.give("azimuth_rate", thruster.turning_rate)
+    numbers.estimate("azimuth_rate", EstimatedNumber(TURNING, 0.0, "10 deg/s; assumed"))
     numbers.estimate(
         "side_force_coefficient",
         EstimatedNumber(0.8, 0.3, "momentum drag of a ducted unit; assumed for others"),
@@ -394,25 +393,19 @@ def _rudder(
             ),
         )
     # Area by DNV's rule; span from a usual aspect ratio of 1.8.
-    area = (
-        rudder_area(form)
-        if thruster.rudder_area is None
-        else EstimatedNumber(thruster.rudder_area.value, 0.0, "")
-    )
-    if not numbers.give("rudder_area", thruster.rudder_area):
-        numbers.estimate("rudder_area", area)
-    span = number(thruster.rudder_span, sqrt(1.8 * float(area.value)))
+    numbers.give("rudder_area", thruster.rudder_area)
+    usual = rudder_area(form)
+    numbers.estimate("rudder_area", usual)
+    area = number(thruster.rudder_area, float(usual.value))
+    span = number(thruster.rudder_span, sqrt(1.8 * area))
     # The rudder stands half a diameter behind the propeller.
-    if not numbers.give("rudder_x", thruster.rudder_x):
-        numbers.estimate(
-            "rudder_x",
-            EstimatedNumber(x - 0.5 * D, 0.1 * D, "half a diameter behind the propeller"),
-        )
+    numbers.give("rudder_x", thruster.rudder_x)
+    numbers.estimate(
+        "rudder_x", EstimatedNumber(x - 0.5 * D, 0.1 * D, "half a diameter behind the propeller")
+    )
     # Wake, deduction and interaction with the hull, by regressions.
     numbers.estimates(
-        propeller_and_rudder(
-            form, single=alone, span=span, area=float(area.value), covered=D / span
-        )
+        propeller_and_rudder(form, single=alone, span=span, area=area, covered=D / span)
     )
     # The DP does not use it: there is no thrust command. Its power says at which speeds the shaft can turn.
     screw = _screw(thruster, numbers, form, "open") if thruster.power or thruster.thrust else None

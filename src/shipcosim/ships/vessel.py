@@ -118,27 +118,21 @@ def vessel_of(
 def _inertia(numbers: Numbers, m: Inertia, p: Particulars, form: HullDimensions) -> None:
     """Mass, inertia, added mass."""
     # Mass: given, or from the displaced volume.
-    if not numbers.give("mass", m.mass or p.displacement):
-        numbers.estimate("mass", EstimatedNumber(form.mass, 0.05 * form.mass, "rho C_B L B T"))
+    numbers.give("mass", m.mass or p.displacement)
+    numbers.estimate("mass", EstimatedNumber(form.mass, 0.05 * form.mass, "rho C_B L B T"))
     mass = float(numbers.entries["mass"].value)
     numbers.give("centre_of_gravity_x", m.centre_of_gravity_x)
     centre = number(m.centre_of_gravity_x)
     # Inertia: given, from a gyration radius, or by the rule of a quarter length.
-    if not numbers.give("inertia_yaw", m.inertia_yaw):
-        gyradius = m.yaw_gyradius
-        if gyradius is not None:
-            # Tolerance of m k^2: 2 m k times that of k.
-            tolerance = (
-                None
-                if gyradius.tolerance is None
-                else 2.0 * mass * gyradius.value * gyradius.tolerance
-            )
-            # Steiner's theorem moves it from the centre of gravity to midships.
-            value = mass * (gyradius.value**2 + centre**2)
-            numbers.give("inertia_yaw", Given(value, tolerance, gyradius.origin or numbers.source))
-        else:
-            breadth = number(p.breadth)
-            numbers.estimate("inertia_yaw", inertia_yaw(mass, form.length, breadth, centre))
+    gyradius = m.yaw_gyradius
+    if gyradius is not None:
+        # Tolerance of m k^2: 2 m k times that of k.
+        tolerance = 2.0 * mass * gyradius.value * (gyradius.tolerance or 0.0)
+        # Steiner's theorem moves it from the centre of gravity to midships.
+        value = mass * (gyradius.value**2 + centre**2)
+        numbers.give("inertia_yaw", Given(value, tolerance, gyradius.origin))
+    numbers.give("inertia_yaw", m.inertia_yaw)
+    numbers.estimate("inertia_yaw", inertia_yaw(mass, form.length, number(p.breadth), centre))
     # Added mass: as given, else by formulae.
     numbers.give("A11", m.added_surge)
     numbers.give("A22", m.added_sway)
@@ -155,9 +149,8 @@ def _resistance(numbers: Numbers, ship: ShipFile, form: HullDimensions) -> None:
         return
     # One point of a speed trial gives the quadratic damping.
     if stated.resistance is not None and stated.speed is not None:
-        tolerance = stated.resistance.tolerance
         square = stated.speed.value**2
-        share = None if tolerance is None else tolerance / square
+        share = (stated.resistance.tolerance or 0.0) / square
         numbers.give(
             "X_uu", Given(-stated.resistance.value / square, share, stated.resistance.origin)
         )

@@ -134,23 +134,18 @@ class Plan:
             stop_time = level.stop_time if level.stop_time is not None else stop_time
         if self.samples is not None:
             columns["sample"] = places[-1]
-            self._take_sample(self.samples, places[-1], columns, values, events)
+            at_fork = {}
+            # A sampled value acts from the start, or together with all others in one event at the fork.
+            sampled = self.samples.values(places[-1])
+            for column, value in zip(self.samples.columns, sampled, strict=True):
+                columns[column.name] = value
+                target = at_fork if column.at_fork else values
+                target.update(dict.fromkeys(column.signals, value))
+            if at_fork:
+                events.append(Event(time=self.study.fork_at or 0.0, override=at_fork))
         return PlannedRun(
             number, columns, values, tuple(events), tuple(sorted(swapped.items())), stop_time
         )
-
-    def _take_sample(
-        self, samples: Samples, number: int, columns: dict, values: dict, events: list[Event]
-    ) -> None:
-        """Add the changes that a sample makes."""
-        at_fork = {}
-        # A sampled value acts from the start, or together with all others in one event at the fork.
-        for column, value in zip(samples.columns, samples.values(number), strict=True):
-            columns[column.name] = value
-            target = at_fork if column.at_fork else values
-            target.update(dict.fromkeys(column.signals, value))
-        if at_fork:
-            events.append(Event(time=self.study.fork_at or 0.0, override=at_fork))
 
     def scenario_of(self, run: PlannedRun) -> Scenario:
         """The scenario of a run, without its start values."""

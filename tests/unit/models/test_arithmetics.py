@@ -504,6 +504,8 @@ CASES = [
     Case(kinematics.to_ned, [(0.4, 1.0, -2.0), (-2.0, 0.3, 0.1)]),
     Case(kinematics.to_body, [(0.4, 1.0, -2.0), (-2.0, 0.3, 0.1)]),
     Case(kinematics.eta_dot, [(0.4, 1.0, -2.0, 0.1), (-2.0, 0.3, 0.1, 0.0)]),
+    Case(kinematics.moved, [(3.0, -3.0, 0.1), (0.1, 0.3, 0.5), (-3.0, 3.0, 0.1)]),
+    Case(kinematics.turned, [(3.0, -3.0, 0.1), (0.1, 0.3, 0.5), (-3.0, 3.0, 0.1)]),
     Case(kinematics.velocity_at, [(-14.0, 2.0, 1.0, 0.2, 0.1), (13.0, 0.0, 1.0, 0.2, -0.1)]),
     Case(kinematics.load_at, [(-14.0, 2.0, 1e3, 2e3), (13.0, 0.0, 1e3, -2e3)]),
     *(Case(hull.hull_loads, WATER, constants=dict(hull=ship)) for ship in (LONG, SHORT, TANKER)),
@@ -891,7 +893,6 @@ CASES = [
         Case(function, SHIP, constants=ERRORS)
         for function in (instruments.readings, instruments.true_motion)
     ),
-    Case(azimuth.turned, [(3.0, -3.0, 0.1), (0.1, 0.3, 0.5), (-3.0, 3.0, 0.1)]),
 ]
 
 
@@ -964,7 +965,7 @@ def test_every_function_that_promises_tensors_is_among_the_cases():
     covered |= {propeller.loads_at}  # by propeller_loads
     # By the steps of the allocators.
     covered |= {allocation.solved, allocation.missing_units, allocation.within_limits}
-    covered |= {box_qp.multipliers_of}
+    covered |= {box_qp.multipliers_of, maths.where_all, units.is_missed}
     covered |= {sinusoids.column, sinusoids.total, sinusoids.tensors_if_any}
     missing = [
         f"{name}.{function.__name__}" for name, function in promising() if function not in covered

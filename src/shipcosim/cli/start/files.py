@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from importlib.metadata import PackageNotFoundError, distribution
 from importlib.resources import files
@@ -217,6 +217,11 @@ def scenario_files(name: str, system: str | None) -> Files:
     text = _filled("scenario.toml", name=name, description=HELD, system=system, parameters="")
     if not _fits(text, read):
         experiment = read.experiment
+        outputs = (
+            f"{component.name}.{variable.name}"
+            for component, variable in read.all_variables()
+            if variable.causality == "output"
+        )
         text = _filled(
             "plain_scenario.toml",
             name=name,
@@ -224,7 +229,7 @@ def scenario_files(name: str, system: str | None) -> Files:
             stop_time=experiment.stop_time or 60.0,
             step_size=experiment.step_size or 0.05,
             input=next(iter(read.inputs), "component.input"),
-            output=next(_outputs(read), "component.output"),
+            output=next(outputs, "component.output"),
         )
     return {f"scenarios/{name}.toml": text}
 
@@ -264,12 +269,6 @@ def _fits(text: str, system: "System") -> bool:
     except ShipcosimError:
         return False
     return not any(problem.is_error for problem in check_scenario(scenario, system))
-
-
-def _outputs(system: "System") -> Iterator[str]:
-    for component, variable in system.all_variables():
-        if variable.causality == "output":
-            yield f"{component.name}.{variable.name}"
 
 
 def _own_system() -> str | None:

@@ -96,7 +96,8 @@ def _connectors(system, problems):
             problems.append(Problem(system.name, message, severity="remark"))
             continue
         # Type and bounds come from the first variable that the connector leads to.
-        variable = _variable(system, ends[0])
+        component, name = ends[0]
+        variable = system.components[component].fmu.variables[name]
         # FMI wants a start value for inputs and parameters; without one, the components' values
         # must agree.
         start = signal.start
@@ -170,10 +171,6 @@ def _is_shown(entry, system, problems, severity):
     message += "; it is left out." if severity == "remark" else "."
     problems.append(Problem(system.name, message, severity=severity))
     return False
-
-
-def _variable(system, end):
-    return system.components[end[0]].fmu.variables[end[1]]
 
 
 def is_structured(name: str) -> bool:

@@ -93,17 +93,14 @@ def osp_events(job: Job) -> list[dict[str, object]]:
     return [event_of(job, change) for change in sorted(events, key=lambda change: change.step)]
 
 
-def _as_typed(value, kind):
-    return {"Real": float, "Boolean": bool}.get(kind, int)(value)
-
-
 def _initial_values(job, name):
     variables = job.system.components[name].variables
     starts = {
         variable: (variables[variable].kind, value) for variable, value in job.starts(name).items()
     }
+    types = {"Real": float, "Boolean": bool}
     return {
-        v: (kind, _as_typed(value, kind) if kind in KINDS else value)
+        v: (kind, types.get(kind, int)(value) if kind in KINDS else value)
         for v, (kind, value) in starts.items()
     }
 

@@ -9,6 +9,11 @@ from shipcosim.cosim.slaves.model_exchange import ModelExchange
 from shipcosim.cosim.slaves.slave import OK
 from shipcosim.ssp import Connection
 
+WIRED_OTHERWISE = (
+    "the connection adds up in its input, goes through a mapping, or back into its own component"
+)
+"""Why a connection is not carried that nothing else keeps a common solver from."""
+
 
 def inner_connections(plan: Plan) -> list[Connection]:
     """Connections that a common solver carries: Real to Real between model-exchange components.
@@ -26,24 +31,10 @@ def inner_connections(plan: Plan) -> list[Connection]:
 
 def _is_inner(connection: Connection, plan: Plan) -> bool:
     # Excluded: parameters, mappings, and connections with the outermost system.
-    ends = (connection.source, connection.target)
-    if (
-        connection.initial
-        or connection.mapping
-        or None in (connection.source[0], connection.target[0])
-    ):
+    outermost = None in (connection.source[0], connection.target[0])
+    if connection.initial or connection.mapping or outermost:
         return False
-    components = [plan.system.components[name or ""] for name, _ in ends]
-    # A common solver steps with the base step, and it cannot see events that change the ends.
-    is_free = plan.modified.isdisjoint(ends) and all(
-        plan.multiples[component.name] == 1 for component in components
-    )
-    # State events would need one event search for the whole group, which is not done.
-    smooth = all(
-        interface_type_of(component) == "ModelExchange" and component.fmu.n_event_indicators == 0
-        for component in components
-    )
-    return is_free and smooth and all(plan.variable(end).kind == "Real" for end in ends)
+    return _is_of_models(connection, plan) and not _why_apart(connection, plan)
 
 
 def exchanged_at_steps(
@@ -80,7 +71,7 @@ def exchanged_at_steps(
             if len(pair) > 1
             else "runs in model exchange, wired to itself"
         )
-        why = how or _why_apart(c, plan)
+        why = how or _why_apart(c, plan) or WIRED_OTHERWISE
         by_pair[pair] = (
             f"{' and '.join(pair)} {what}, but not as one system: {why}. What they exchange is held for "
             f"{step_size:g} s: an error of first order in the step."
@@ -98,18 +89,20 @@ def _is_of_models(connection: Connection, plan: Plan) -> bool:
 
 
 def _why_apart(connection: Connection, plan: Plan) -> str:
-    """Why a common solver cannot carry a connection between model-exchange components."""
+    """What keeps a common solver from a connection between model-exchange components; empty where nothing does."""
     ends = (connection.source, connection.target)
     components = {name: plan.system.components[name or ""] for name, _ in ends}
+    # State events would need one event search for the whole group, which is not done.
     if eventful := [
         str(name) for name, component in components.items() if component.fmu.n_event_indicators
     ]:
         return f"{' and '.join(eventful)} can have events of state (event indicators)"
+    # A common solver steps with the base step, and it cannot see events that change the ends.
     if slow := [str(name) for name in components if plan.multiples[name or ""] != 1]:
         return f"{' and '.join(slow)} steps with a step of its own"
     if changed := [label(end) for end in ends if end in plan.modified]:
         return f"the run itself changes {' and '.join(changed)}"
-    return "the connection adds up in its input, goes through a mapping, or back into its own component"
+    return ""
 
 
 def groups_of(connections: Sequence[Connection]) -> list[set[str]]:

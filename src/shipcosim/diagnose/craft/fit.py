@@ -64,7 +64,16 @@ def normal_about(
 ) -> Normal:
     """Normal equations of logs about some coordinates; what these leave is the noise."""
     pairs = [log.slopes(numbers, about) for log in logs]
-    variance, apart = _noise(logs, [left for left, _ in pairs])
+    # Variance of what is left on each axis: residuals of all logs together, the largest 5 % left out; 1.3
+    # makes up for the part of the variance they carry.
+    joined = np.concatenate(
+        [left[:, log.measured.usable] for log, (left, _) in zip(logs, pairs, strict=True)], axis=1
+    )
+    sound = np.sort(np.abs(joined), axis=1)[:, : int(0.95 * joined.shape[1])]
+    variance = (sound**2).mean(1) * 1.3 + 1e-18
+    # Rows from one independent residual to the next.
+    block = max(4 * logs[0].measured.kernel.reach, logs[0].counts[-1])
+    apart = np.array([rows_per_independent(axis, block) for axis in joined])
     count = 1 + max(int(log.parts[-1]) for log in logs)
     matrix = np.zeros((count + 1, about.size, about.size))
     right = np.zeros((count + 1, about.size))
@@ -80,19 +89,6 @@ def normal_about(
             matrix[part] += np.einsum("iaj,kaj->ik", heavy, slopes[:, :, rows])
             right[part] += np.einsum("iaj,aj->i", heavy, left[:, rows])
     return Normal(numbers, about, matrix, right)
-
-
-def _noise(logs: Sequence[CraftLog], left: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Variance of what is left on each axis, and rows from one independent residual to the next; (3,) arrays."""
-    # Residuals of all logs together, the largest 5 % left out; 1.3 makes up for the part of the
-    # variance they carry.
-    joined = np.concatenate(
-        [residual[:, log.measured.usable] for log, residual in zip(logs, left, strict=True)], axis=1
-    )
-    size = np.sort(np.abs(joined), axis=1)[:, : int(0.95 * joined.shape[1])]
-    block = max(4 * logs[0].measured.kernel.reach, logs[0].counts[-1])
-    apart = np.array([rows_per_independent(axis, block) for axis in joined])
-    return (size**2).mean(1) * 1.3 + 1e-18, apart
 
 
 def fitted(

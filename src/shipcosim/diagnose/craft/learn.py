@@ -31,8 +31,12 @@ class _HeldOut:
 
     def gain(self, craft: int, other: int) -> tuple[float, float]:
         """Natural logarithm by which the error of one craft is above another's, and its standard error."""
+        # Logarithm of the error, mean over position and heading and horizons: without each part, and of all parts.
+        sums = self.squares * self.counts
+        total = sums.sum(-1, keepdims=True)
+        squares = np.concatenate([total - sums, total], axis=-1)
+        without = 0.5 * np.log(np.maximum(squares, 1e-18)).mean(1)
         # Jackknife: the error without each part, of both crafts; the variance of their difference.
-        without = _logs(self.squares, self.counts)
         each = without[craft] - without[other]
         return float(each[-1]), float(_jackknife(each[:-1]))
 
@@ -43,15 +47,6 @@ def _jackknife(without: np.ndarray) -> np.ndarray:
     return np.sqrt((parts - 1) / parts * ((without - without.mean(0)) ** 2).sum(0))
 
 
-def _logs(squares: np.ndarray, counts: np.ndarray) -> np.ndarray:
-    """Logarithm of the error, mean over position and heading and horizons: without each part, and of all parts."""
-    # Total less each part, and the total.
-    sums = squares * counts
-    total = sums.sum(-1, keepdims=True)
-    without = np.concatenate([total - sums, total], axis=-1)
-    return 0.5 * np.log(np.maximum(without, 1e-18)).mean(1)
-
-
 def learn(logs: Sequence[CraftLog]) -> LearnedCraft | None:
     """Learn a craft from logs; None if no ship can have the best-fitting numbers.
 
@@ -59,7 +54,13 @@ def learn(logs: Sequence[CraftLog]) -> LearnedCraft | None:
     that were held out, then those given back to the file without which the error is no larger.
     """
     model = logs[0].model
-    typical = _typical(logs)
+    # Typical motions and loads of what every log has.
+    each = [log.typical() for log in logs]
+    typical = {
+        name: np.sqrt(np.mean([np.square(rms[name]) for rms in each], axis=0))
+        for name in each[0]
+        if all(name in rms for rms in each)
+    }
     # Forward selection: add the number that lowers the held-out error most, until none does so
     # surely.
     numbers = numbers_of(model, typical)
@@ -79,15 +80,6 @@ def learn(logs: Sequence[CraftLog]) -> LearnedCraft | None:
     free = _without_idle(logs, normal, free)
     normal = fitted(logs, numbers, free, near)
     return None if _drives(logs, normal, free) else _stated(logs, normal, free)
-
-
-def _typical(logs: Sequence[CraftLog]) -> dict[str, np.ndarray]:
-    each = [log.typical() for log in logs]
-    return {
-        name: np.sqrt(np.mean([np.square(rms[name]) for rms in each], axis=0))
-        for name in each[0]
-        if all(name in rms for rms in each)
-    }
 
 
 def _held_out(logs: Sequence[CraftLog], normal: Normal, tries: Sequence[Sequence[int]]) -> _HeldOut:

@@ -175,14 +175,14 @@ def _sweeps(model, T, azimuths, force):
     for name in azimuths:
         # The neighbour whose inflow this thruster's slipstream disturbs.
         here = model.parts[name]
+        x = here.neighbour_x
+        y = here.neighbour_y
         near = next(
-            (o for o in azimuths if _is_at(model.parts[o], here.neighbour_x, here.neighbour_y)),
+            (o for o in azimuths if np.hypot(model.parts[o].x - x, model.parts[o].y - y) < 1e-6),
             None,
         )
         if near not in (None, name):
-            at = np.arctan2(
-                here.y - here.neighbour_y, here.x - here.neighbour_x
-            )  # away from the neighbour
+            at = np.arctan2(here.y - y, here.x - x)  # away from the neighbour
             ahead = (
                 0.0 if len(pushes) % 4 == 0 else np.pi
             )  # and astern the next time: the ship comes to rest
@@ -196,10 +196,6 @@ def _sweeps(model, T, azimuths, force):
             "sweep of each azimuth thruster's slipstream across its neighbour", legs, tuple(pushes)
         )
     ][: len(pushes)]
-
-
-def _is_at(unit, x, y):
-    return np.hypot(unit.x - x, unit.y - y) < 1e-6
 
 
 def step_for(model: ShipModel) -> float:

@@ -89,7 +89,7 @@ def extend(
     ShipcosimError
         If the system has errors or no ship, an FMU to insert is not there, or something cannot be written.
     """
-    structure = system.copy() if isinstance(system, SystemStructure) else read(system)
+    structure = structure_of(system)
     draft = ExtensionDraft(structure, _ship(structure), log_attributes or {})
     catalogue = catalogue or read_catalogue()
     findings = [finding for finding in findings if finding.kind == "physics"]
@@ -115,6 +115,11 @@ def extend(
         draft.lag,
         tuple(draft.remarks),
     )
+
+
+def structure_of(system: str | Path | SystemStructure) -> SystemStructure:
+    """A structure to change: a copy of the given one, or that in a file."""
+    return system.copy() if isinstance(system, SystemStructure) else read(system)
 
 
 def written(

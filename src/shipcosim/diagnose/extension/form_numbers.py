@@ -6,12 +6,17 @@ from pathlib import Path
 import numpy as np
 
 from shipcosim.diagnose.explanation.identification import Identification
-from shipcosim.diagnose.extension.extend import Extension, signals_of, written
+from shipcosim.diagnose.extension.extend import (
+    Extension,
+    signals_of,
+    structure_of,
+    written,
+)
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem, with_extension
 from shipcosim.diagnose.finding import ParameterEstimate
 from shipcosim.diagnose.inference.fitting import Fit
 from shipcosim.diagnose.ship.model import ShipModel
-from shipcosim.ssp import AnyPath, System, SystemStructure, parameter, read
+from shipcosim.ssp import AnyPath, System, parameter
 
 
 def form_numbers(fit: Fit, system: System) -> dict[str, ParameterEstimate]:
@@ -88,8 +93,7 @@ def with_form_numbers(
 
 
 def _extension(given, numbers, log, folder) -> Extension:
-    source = given.source
-    structure = source.copy() if isinstance(source, SystemStructure) else read(source)
+    structure = structure_of(given.source)
     name = Path(log.log.encoding.get("source", "log")).name
     values = {}
     for path, of in numbers.items():

@@ -135,18 +135,8 @@ def add_current(
         draft.remark(
             finding, f"the log's span is not known; it varies from {span[0]:g} to {span[1]:g} s"
         )
+    # A component that varies the current between its ends over that time.
     ends = {"end": end} if start is None else {"start": start, "end": end}
-    _add_varying(draft, finding, source, ends, span)
-
-
-def _add_varying(
-    draft: ExtensionDraft,
-    finding: Finding,
-    source: str,
-    ends: dict[str, _Vector],
-    span: tuple[float, float],
-) -> None:
-    """Insert a current that varies between its ends over a span of time."""
     name = draft.insert("varying_current", "varying_current")
     for output in ("current_speed", "current_to"):
         draft.release(f"{source}.{output}")

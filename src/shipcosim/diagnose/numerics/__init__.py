@@ -10,17 +10,19 @@ from shipcosim.diagnose.numerics.finite import finite, usual_rise
 from shipcosim.diagnose.numerics.least_squares import least_squares
 from shipcosim.diagnose.numerics.quantiles import quantile
 from shipcosim.diagnose.numerics.root_mean_square import root_mean_square
-from shipcosim.diagnose.numerics.sequences import running_sums, runs
+from shipcosim.diagnose.numerics.sequences import between, places, running_sums, runs
 from shipcosim.diagnose.numerics.splines import spline_integral
 from shipcosim.diagnose.numerics.tridiagonal import solve_tridiagonal
 
 __all__ = [
     "Bands",
+    "between",
     "finite",
     "gaussian_filter",
     "least_squares",
     "log_survival",
     "moving_average",
+    "places",
     "quantile",
     "root_mean_square",
     "running_sums",

@@ -25,3 +25,28 @@ def runs(flags: np.ndarray) -> np.ndarray:
     # Edges of runs are where the flags change, with 0 before and after.
     edges = np.flatnonzero(np.diff(np.r_[0, np.asarray(flags, np.int8), 0]))
     return edges.reshape(-1, 2)
+
+
+def places(at: np.ndarray, rows: int) -> tuple[np.ndarray, np.ndarray]:
+    """Fractional rows of a series, limited to its first and last: the row before, and the share of the step after it.
+
+    Examples
+    --------
+    >>> low, share = places(np.array([-1.0, 0.25, 2.0, 9.0]), 3)
+    >>> low.tolist(), share.tolist()
+    ([0, 0, 1, 1], [0.0, 0.25, 1.0, 1.0])
+    """
+    at = np.clip(at, 0.0, rows - 1.0)
+    low = np.minimum(at.astype(int), rows - 2)
+    return low, at - low
+
+
+def between(series: np.ndarray, low: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """A series at `places` along its last axis, linear between rows.
+
+    Examples
+    --------
+    >>> between(np.array([2.0, 4.0, 10.0]), *places(np.array([0.5, 2.0]), 3)).tolist()
+    [3.0, 10.0]
+    """
+    return series[..., low] * (1.0 - share) + series[..., low + 1] * share

@@ -15,7 +15,6 @@ from shipcosim.diagnose.explanation.verdict import admissible
 from shipcosim.diagnose.hypotheses.catalogue import paths_of
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.linearisation import Regressor
-from shipcosim.diagnose.inference.screening import Gain
 from shipcosim.diagnose.inference.thresholds import ENOUGH, FORM_COST
 from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly, screened_jointly
 from shipcosim.diagnose.reference.reference import (
@@ -153,19 +152,17 @@ def causes_beside(calibration: Calibration) -> dict[str, float]:
             if scale == calibration.scale
             else fit(every, calibration.fit.hypotheses, calibration.fit.values)
         )
-        for _, hypothesis, values in _most_likely(every, without):
+        # Look closer at the causes in the ship that gain most at first sight.
+        gains = [gain for gain in screened_jointly(every, without) if not is_in_one_log(gain[1])]
+        for at_first_sight, hypothesis, values in gains[:MOST_SUSPECTS]:
+            if at_first_sight <= WEATHER_GAIN:
+                continue
             # Fit the cause jointly; it must gain enough over the calibrated ship to be a suspect.
             again = fit(every, (*without.hypotheses, hypothesis), without.values | values)
             gain = again.score - calibration.fit.score
             if gain > ENOUGH + WEATHER_GAIN and admissible(again, [without, again], {}):
                 suspects[hypothesis.label] = max(gain, suspects.get(hypothesis.label, 0.0))
     return suspects
-
-
-def _most_likely(logs: SeveralLogs, fit: JointFit) -> list[Gain]:
-    """The causes in the ship that gain most beside a fit at first sight, where that is enough to look closer."""
-    gains = [gain for gain in screened_jointly(logs, fit) if not is_in_one_log(gain[1])]
-    return [gain for gain in gains[:MOST_SUSPECTS] if gain[0] > WEATHER_GAIN]
 
 
 def likeliest_scale(fit: JointFit, scale: float = 1.0) -> float:

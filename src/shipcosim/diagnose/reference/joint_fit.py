@@ -88,7 +88,10 @@ def fitted_jointly(
     }
     # Columns of each log: its known numbers, the ship's with scaled tolerances, and its causes.
     columns = {
-        name: [_scaled(column, scale) for column in problem.ship_columns(by_log[name])]
+        name: [
+            column if column.is_of_day else replace(column, prior=scale * column.prior)
+            for column in problem.ship_columns(by_log[name])
+        ]
         + own_columns(problem, by_log[name])
         for name, problem in logs.problems.items()
     }
@@ -120,11 +123,6 @@ def fitted_jointly(
             break
         last = fit
     return fit
-
-
-def _scaled(column: Regressor, scale: float) -> Regressor:
-    """Column of a known number, with its tolerance scaled if the number is the ship's."""
-    return column if column.is_of_day else replace(column, prior=scale * column.prior)
 
 
 def _layout(

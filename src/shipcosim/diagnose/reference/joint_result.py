@@ -85,18 +85,15 @@ class JointDiagnosis(Diagnosis):
         content = super().as_json()
         # The form of the loads, and healthy ships, are judged of one log alone.
         del content["form"], content["healthy_errors"]
+        # A cause of the day has its log by name, instead of a component.
         for key in ("findings", "candidates", "indistinguishable"):
-            content[key] = [self._entry(entry) for entry in content[key]]
+            for entry in content[key]:
+                if entry["component"] in self.logs:
+                    entry |= {"component": None, "log": entry["component"]}
         return content | {
             "remarks": list(self.remarks),
             "logs": [self._log(name) for name in self.logs],
         }
-
-    def _entry(self, entry: dict[str, Any]) -> dict[str, Any]:
-        """An entry in which a cause of the day has its log by name, instead of a component."""
-        if entry["component"] in self.logs:
-            return entry | {"component": None, "log": entry["component"]}
-        return entry
 
     def _log(self, name: str) -> dict[str, Any]:
         """The entry of one log."""

@@ -2,9 +2,10 @@
 
 from pathlib import Path
 
+from shipcosim.diagnose.extension.extend import structure_of
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem
 from shipcosim.diagnose.reference.reference import KnownNumber, Reference, is_same
-from shipcosim.ssp import AnyPath, System, SystemStructure, parameter, read, write_ssv
+from shipcosim.ssp import AnyPath, System, parameter, write_ssv
 
 FILE = "calibrated.ssv"
 """Name of the set in the folder that a calibration leaves."""
@@ -78,8 +79,7 @@ def with_calibrated_numbers(
     -------
     ExtendedSystem
     """
-    source = given.source
-    structure = source.copy() if isinstance(source, SystemStructure) else read(source)
+    structure = structure_of(given.source)
     write_parameter_set(given.given, reference, Path(folder) / FILE)
     structure.bind(Path(folder) / FILE)
     return ExtendedSystem(structure.checked(), structure)

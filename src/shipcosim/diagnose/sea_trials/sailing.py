@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from shipcosim.diagnose.numerics import places
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.windows import SeaTrial
 from shipcosim.diagnose.ship.dynamics import motion_rates
@@ -11,6 +12,7 @@ from shipcosim.diagnose.ship.inputs import Inputs, ThrusterSeries
 from shipcosim.diagnose.ship.measured_motion import readings, true_motion
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.models.core.constants import GRAVITY
+from shipcosim.models.core.integrate import rk4
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.propulsion.azimuth import AzimuthParameters, turned
 
@@ -205,9 +207,7 @@ def _followed(actual, units, k, ships, h):
     followed = {}
     (count, trials) = next(iter(units.values()))[0].shape
     # Row and share of a row at which orders act after the delay; by ship where this is an array.
-    at = np.clip(k - ships.parts["instruments"].order_lag / h, 0.0, count - 1.0)
-    low = np.minimum(at.astype(int), count - 2)
-    share = at - low
+    low, share = places(k - ships.parts["instruments"].order_lag / h, count)
     trial = np.arange(trials)
 
     def late(series):
@@ -231,23 +231,14 @@ def _followed(actual, units, k, ships, h):
 def _stepped(state, before, after, ships, h):
     """A Runge-Kutta step of fourth order."""
 
-    def rates(motion, share):
+    def rates(*motion_and_share):
+        *motion, share = motion_and_share
         units = {
             name: tuple(
                 (1.0 - share) * a + share * b for a, b in zip(pair, after[name], strict=True)
             )
             for name, pair in before.items()
         }
-        return motion_rates(motion, Inputs(0.0, units, None, None), ships)
+        return motion_rates(Motion(*motion), Inputs(0.0, units, None, None), ships)
 
-    def moved(by, seconds):
-        return Motion(*(value + seconds * rate for value, rate in zip(state, by, strict=True)))
-
-    k1 = rates(state, 0.0)
-    k2 = rates(moved(k1, 0.5 * h), 0.5)
-    k3 = rates(moved(k2, 0.5 * h), 0.5)
-    k4 = rates(moved(k3, h), 1.0)
-    mean = Motion(
-        *((a + 2.0 * b + 2.0 * c + d) / 6.0 for a, b, c, d in zip(k1, k2, k3, k4, strict=True))
-    )
-    return moved(mean, h)
+    return Motion(*rk4(rates, state, h, ((0.0,), (0.5,), (1.0,))))

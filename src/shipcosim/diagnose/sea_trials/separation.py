@@ -25,7 +25,6 @@ from shipcosim.diagnose.sea_trials.features import (
     is_logarithm,
 )
 from shipcosim.diagnose.sea_trials.manoeuvres import as_trials, catalogue
-from shipcosim.diagnose.sea_trials.windows import SeaTrial
 from shipcosim.diagnose.ship.model import ShipModel
 
 _PART = 0.3  # of a standard deviation, by which known numbers are moved
@@ -53,9 +52,12 @@ def separations(evidence: TrialEvidence, sets: Sequence[SetOfCauses]) -> list[Se
     # Sail each manoeuvre with the best set's ship, then simulate all sets on the same orders.
     sets = list(sets)[:MOST_SETS]
     model = evidence.model
-    planned = as_trials(
-        catalogue(model), model, _shafts(evidence.trials, model), changes_of(sets[0])
-    )
+    # Largest shaft speed of each thruster in the trials, as the median of a trial. [rev/s]
+    shafts = {
+        name: max(float(np.median(abs(trial.units[name][0]))) for trial in evidence.trials)
+        for name in model.thrusters
+    }
+    planned = as_trials(catalogue(model), model, shafts, changes_of(sets[0]))
     trials = [trial for _, pair in planned for trial in pair]
     there = slopes_of(trials, model, sets)
     # Numbers that stay uncertain: known ones, and causes that the trials said nothing of.
@@ -124,14 +126,6 @@ def _untold(evidence, sets):
 def _approach(trial, model):
     """Time of the straight run before a manoeuvre. [s]"""
     return thresholds.SETTLED * model.length / np.hypot(*trial.measured[0, 3:5])
-
-
-def _shafts(trials: Sequence[SeaTrial], model: ShipModel) -> dict[str, float]:
-    """Largest shaft speed of each thruster in the trials, as the median of a trial. [rev/s]"""
-    return {
-        name: max(float(np.median(abs(trial.units[name][0]))) for trial in trials)
-        for name in model.thrusters
-    }
 
 
 def _prediction(evidence, at_trials, here, ship_slopes, of_day, spread):

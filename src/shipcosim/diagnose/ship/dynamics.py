@@ -94,7 +94,12 @@ def loads(
     same = _equal_loads(model, *like) if like else {}
 
     def kept(name, load):
-        return _kept_at_hull(name, load, u_r, inputs, model)
+        """What is left at a hull that takes more of the thrust than modelled."""
+        form = parts.get(form_of(name))
+        if form is None or not form.acts:
+            return load
+        share = thrust_kept(*inputs.units[name], u_r, model.length, form)
+        return tuple(share * axis for axis in load)
 
     # Thrusters of this project, then third-party FMUs by
     # their surrogates. Loads of equal parts are taken over.
@@ -149,15 +154,6 @@ def _same_current(model: ShipModel, other: ShipModel) -> bool:
     first = model.parts["water"]
     two = other.parts["water"]
     return first is two or all(getattr(first, name) == getattr(two, name) for name in _CURRENT)
-
-
-def _kept_at_hull(name: str, load: Load, u_r: Arithmetic, inputs: Inputs, model: ShipModel) -> Load:
-    """What is left of the load of a thruster at a hull that takes more of its thrust than modelled."""
-    form = model.parts.get(form_of(name))
-    if form is None or not form.acts:
-        return load
-    kept = thrust_kept(*inputs.units[name], u_r, model.length, form)
-    return tuple(kept * axis for axis in load)
 
 
 def _third_party_loads(

@@ -11,7 +11,7 @@ import numpy as np
 import xarray
 
 from shipcosim.angles import unwrap_series
-from shipcosim.diagnose.numerics import gaussian_filter
+from shipcosim.diagnose.numerics import between, gaussian_filter, places
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.stretches import rows_averaged, stretches_of
 from shipcosim.diagnose.ship.third_party_fmu import ThirdPartyFmu
@@ -59,10 +59,7 @@ class Inputs(NamedTuple):
 
     def at(self, rows: Any) -> Inputs:
         """Inputs at some of the rows, the last axis of the arrays."""
-        units = {
-            name: (drive[..., rows], direction[..., rows])
-            for name, (drive, direction) in self.units.items()
-        }
+        units = part_of(self.units, (..., rows))
         wind = (
             None if series is None else series[..., rows]
             for series in (self.wind_speed, self.wind_from)
@@ -148,28 +145,20 @@ class Record:
         behind = self._places(late + lags.thruster_lag, steps)
         late_wind = self._places(late + lags.wind_lag, steps)
         units = {
-            name: (_between(pair[0], *behind), _between(pair[1], *behind))
+            name: (between(pair[0], *behind), between(pair[1], *behind))
             for name, pair in self.units.items()
         }
         wind = (
             (None, None)
             if self.wind is None
-            else (_between(series, *late_wind) for series in self.wind)
+            else (between(series, *late_wind) for series in self.wind)
         )
         return Inputs(self.time[:-1][steps] + share * self.step, units, *wind)
 
     def _places(self, seconds: float, steps: slice) -> tuple[np.ndarray, np.ndarray]:
         """Rows that much later: the row before, and the share of the step after it."""
         rows = self.time.size
-        # Fractional row, limited to the log, as the row before and a share.
-        at = np.clip(np.arange(rows - 1)[steps] + seconds / self.step, 0.0, rows - 1.0)
-        low = np.minimum(at.astype(int), rows - 2)
-        return low, at - low
-
-
-def _between(series: np.ndarray, low: np.ndarray, share: np.ndarray) -> np.ndarray:
-    """A series linear between rows."""
-    return series[..., low] * (1.0 - share) + series[..., low + 1] * share
+        return places(np.arange(rows - 1)[steps] + seconds / self.step, rows)
 
 
 def part_of(units: Mapping[str, tuple], rows: Any) -> dict[str, tuple]:
@@ -447,18 +436,14 @@ def averaged(series: np.ndarray) -> np.ndarray:
 
     So the noise of a channel does not get less, and the log likelier, when the channel is taken half a row later.
     """
+    # Missing values are interpolated linearly.
+    whole = np.isfinite(series)
+    filled = np.zeros_like(series)
+    if whole.any():
+        filled = np.interp(np.arange(series.size), np.flatnonzero(whole), series[whole])
     # Weights 1/4, 1/2, 1/4: interpolation half a row later then changes the noise little.
-    filled = _filled(series)
     ends = np.concatenate([filled[:1], filled, filled[-1:]])
     return 0.25 * ends[:-2] + 0.5 * ends[1:-1] + 0.25 * ends[2:]
-
-
-def _filled(series: np.ndarray) -> np.ndarray:
-    """The series with missing values interpolated linearly."""
-    whole = np.isfinite(series)
-    if not whole.any():
-        return np.zeros_like(series)
-    return np.interp(np.arange(series.size), np.flatnonzero(whole), series[whole])
 
 
 def first_motion(record: Record, smooth: float = 4.0) -> Motion:

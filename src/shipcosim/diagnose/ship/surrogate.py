@@ -6,10 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from shipcosim.diagnose.numerics import between, places
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Load
 
 _MET = 4  # sets of times whose loads are kept: a few MB each
+_OFFSETS = (("rpm", "rpm_offset", -1.0), ("azimuth", "azimuth_offset", 1.0))
+"""Offsets of the inputs: quantity, number of the part, sign."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +116,8 @@ class Surrogate:
         # Offsets are errors of the log: correct the inputs that were given.
         inputs = {
             name: given[name] + sign * getattr(part, off)
-            for name, off, sign in _offsets(given, part)
+            for name, off, sign in _OFFSETS
+            if name in given and hasattr(part, off)
         }
         given = {**given, **inputs}
         # Linear expansion about the inputs and parameters of the co-simulation.
@@ -139,24 +143,13 @@ class Surrogate:
         interpolated = self.met.get(key)
         if interpolated is None:
             at = (without_holes(self.rows, time) - self.time[0]) / (self.time[1] - self.time[0])
-            at = np.clip(at, 0.0, self.time.size - 1.0)
-            low = np.minimum(np.asarray(at).astype(int), self.time.size - 2)
-            share = at - low
-            about = [v[low] * (1.0 - share) + v[low + 1] * share for v in self.about.values()]
-            interpolated = (
-                about,
-                self.rest[..., low] * (1.0 - share) + self.rest[..., low + 1] * share,
-            )
+            at = places(at, self.time.size)
+            about = [between(values, *at) for values in self.about.values()]
+            interpolated = (about, between(self.rest, *at))
             if len(self.met) >= _MET:
                 self.met.clear()
             self.met[key] = interpolated
         return interpolated
-
-
-def _offsets(given: Mapping[str, Arithmetic], part: ThirdPartyPart) -> list[tuple[str, str, float]]:
-    """Offsets of the inputs: quantity, number of the part, sign."""
-    wrong = (("rpm", "rpm_offset", -1.0), ("azimuth", "azimuth_offset", 1.0))
-    return [offset for offset in wrong if offset[0] in given and hasattr(part, offset[1])]
 
 
 def without_holes(rows: np.ndarray, time: np.ndarray) -> np.ndarray:

@@ -240,4 +240,4 @@ def with_thrust(model: ShipModel, ratio: float, std: float) -> ShipModel:
     paths = thrust_numbers(model)
     values = {path: 1.0 - ratio * (1.0 - model.get(path)) for path in paths}
     tolerances = {path: float(np.hypot(model.tolerances.get(path, 0.0), std)) for path in paths}
-    return replace(model.with_values(values), tolerances=model.tolerances | tolerances)
+    return model.with_values(values).with_tolerances(tolerances)

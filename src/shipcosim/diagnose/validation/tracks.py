@@ -265,8 +265,9 @@ def errors_of(tracks: Tracks, shares: tuple[float, ...] = (1.0 / 6.0, 0.5, 1.0))
     }
     for i, name in enumerate(names):
         for j, end in enumerate(after):
-            for channel, value in _missed(tracks, tracks.predicted[name], end).items():
-                errors[channel][i, j] = value
+            for channel, off in _misses(tracks, tracks.predicted[name], end).items():
+                if np.isfinite(off).any():
+                    errors[channel][i, j] = np.sqrt(np.nanmean(off**2))
     units = {"position": "m"} | {role: ROLES[role].unit for role in CHANNELS[2:]}
     return xarray.Dataset(
         {
@@ -287,15 +288,6 @@ def misses_at_end(tracks: Tracks, name: str) -> tuple[np.ndarray, np.ndarray]:
     """
     predicted = tracks.predicted[name]
     return predicted["start_time"].values, _misses(tracks, predicted, tracks.horizon)["position"]
-
-
-def _missed(tracks: Tracks, predicted: xarray.Dataset, end: float) -> dict[str, float]:
-    """Root mean squares over the predictions of one simulation."""
-    whole = _misses(tracks, predicted, end)
-    return {
-        name: float(np.sqrt(np.nanmean(v**2))) if np.isfinite(v).any() else np.nan
-        for name, v in whole.items()
-    }
 
 
 def _misses(tracks: Tracks, predicted: xarray.Dataset, end: float) -> dict[str, np.ndarray]:

@@ -70,7 +70,9 @@ def bundle(script: Path) -> Bundle:
     """
     # All modules that the script needs, and its trained weights.
     modules = _collect(script)
-    weights = _weights(script.parent)
+    kept = script.parent / WEIGHTS
+    files = sorted(file for kind in ("npz", "toml") for file in kept.glob(f"*.{kind}"))
+    weights = {f"{WEIGHTS}/{file.name}": file.read_bytes() for file in files}
     # The hash in the package name keeps versions of an FMU apart in one process.
     digest = hashlib.sha256()
     contents = {module.archive_path: module.source for module in modules.values()} | weights
@@ -131,12 +133,6 @@ def entry_module(bundled: Bundle, cls: str) -> bytes:
         cls=cls,
     )
     return text.encode()
-
-
-def _weights(folder: Path) -> dict[str, bytes]:
-    """Files of trained weights next to a script, by path."""
-    files = [file for kind in ("npz", "toml") for file in (folder / WEIGHTS).glob(f"*.{kind}")]
-    return {f"{WEIGHTS}/{file.name}": file.read_bytes() for file in sorted(files)}
 
 
 def _collect(script: Path) -> dict[str, Module]:

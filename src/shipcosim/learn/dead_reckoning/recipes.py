@@ -1,8 +1,7 @@
 """What can be trained for dead reckoning, from records to weights and report."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -196,12 +195,6 @@ def _arrays(design: FilterNumbers) -> Arrays:
     return {name: np.array(float(number)) for name, number in design._asdict().items()}
 
 
-KINDS: dict[str, tuple[str, Callable[[Progress], Trained]]] = {
-    name: (about, partial(train, name))
-    for name, about in (
-        (FILTER, DESCRIPTION),
-        *((name, recipe.description) for name, recipe in paper_ii.RECIPES.items()),
-        *UNLEARNED.items(),
-    )
-}
-"""Kinds by name: one line for users, and the function that trains it."""
+KINDS = {FILTER: DESCRIPTION}
+KINDS |= {name: recipe.description for name, recipe in paper_ii.RECIPES.items()} | UNLEARNED
+"""Kinds by name, with one line for users."""

@@ -11,7 +11,7 @@ Plain floats have an implementation of their own, some ten times as fast; a test
 
 from typing import NamedTuple
 
-from shipcosim.models.core.maths import Arithmetic, clip, maximum, minimum, repeat, where
+from shipcosim.models.core.maths import Arithmetic, clip, maximum, minimum, repeat, where, where_all
 
 ROUNDS = 30
 """Most steps of the active-set method; each adds a bound or drops one. Of twelve commands few need more than ten."""
@@ -252,9 +252,7 @@ def _round(request, commands, slack, zero, count, x, side, freed, done, multipli
         moved = where(hit & ~again, bound, old + share * (new - old))
         after.append((where(done, old, moved), where(done | again, at, kept), drop))
     x, side, freed = zip(*after, strict=True)
-    multipliers = tuple(
-        where(done, old, new) for old, new in zip(multipliers, at_active, strict=True)
-    )
+    multipliers = where_all(done, multipliers, at_active)
     # A whole step without a loss is the optimum.
     done = done | again | (whole & (worst <= 0.0))
     return count + 1.0, x, side, freed, done, multipliers

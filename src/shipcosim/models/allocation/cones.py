@@ -31,6 +31,7 @@ from shipcosim.models.core.maths import (
     sincos,
     sqrt,
     where,
+    where_all,
 )
 from shipcosim.models.core.motion import Load
 
@@ -296,8 +297,7 @@ def _decided(memory, state, available, h, design):
     misses = (present - least > _LOSS * design.dearest * choice.missed_most) & free
     missed = where(misses, memory.missed + h, zero)
     gives = misses & (missed > choice.wait_missed)
-    rows = zip(giving, cheaper, memory.wanted, strict=True)
-    wanted = tuple(where(gives, a, where(saves, b, old)) for a, b, old in rows)
+    wanted = where_all(gives, giving, where_all(saves, cheaper, memory.wanted))
     # A change that was needed is not soon undone to save power.
     waited = where(gives, zero - choice.average, where(saves, zero, waited))
     return memory._replace(wanted=wanted, waited=waited, missed=where(gives, zero, missed))
@@ -313,7 +313,7 @@ def _cheapest(memory, costs):
         present = where(_differ(cones, memory.wanted), present, cost)
         less = cost < least
         least = where(less, cost, least)
-        best = tuple(where(less, cone, old) for cone, old in zip(cones, best, strict=True))
+        best = where_all(less, cones, best)
     return best, least, present
 
 
@@ -329,10 +329,8 @@ def _aimed(memory):
     thrusts = aimed.thrusts
     for cones, plan in zip(memory.cones, memory.plans, strict=True):
         other = _differ(cones, memory.wanted)
-        rows = zip(azimuths, plan.azimuths, strict=True)
-        azimuths = tuple(where(other, old, new) for old, new in rows)
-        rows = zip(thrusts, plan.thrusts, strict=True)
-        thrusts = tuple(where(other, old, new) for old, new in rows)
+        azimuths = where_all(other, azimuths, plan.azimuths)
+        thrusts = where_all(other, thrusts, plan.thrusts)
     return aimed._replace(thrusts=thrusts, azimuths=azimuths)
 
 

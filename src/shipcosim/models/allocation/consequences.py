@@ -32,6 +32,7 @@ from shipcosim.models.core.maths import (
     sqrt,
     times,
     where,
+    where_all,
 )
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import UNITS, acts, numbered_units, quantity
@@ -256,9 +257,9 @@ def held_share(
         second = (of_a >= 0.0) & (of_c <= 0.0)
         third = (of_b >= 0.0) & (of_a <= 0.0)
         return (
-            _either(first, p, a),
-            _either(first, b, _either(second, p, b)),
-            _either(first | second, c, _either(third, p, c)),
+            where_all(first, p, a),
+            where_all(first, b, where_all(second, p, b)),
+            where_all(first | second, c, where_all(third, p, c)),
         )
 
     a, b, c = times(rounds, further, (a, b, c))
@@ -339,7 +340,3 @@ def _cross(a, b):
 
 def _minus(a, b):
     return tuple(first - other for first, other in zip(a, b, strict=True))
-
-
-def _either(condition, a, b):
-    return tuple(where(condition, first, other) for first, other in zip(a, b, strict=True))

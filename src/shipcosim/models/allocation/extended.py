@@ -10,14 +10,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.angles import wrap
 from shipcosim.models.allocation.pseudo_inverse import (
     AllocationParameters,
     inverses_of,
     missing_units,
     solved,
 )
-from shipcosim.models.allocation.units import Allocated, load, missed, no_thrust
+from shipcosim.models.allocation.units import Allocated, is_missed, load, missed, no_thrust
+from shipcosim.models.core.kinematics import moved, turned
 from shipcosim.models.core.maths import atan2, clip, cos, hypot, minimum, pi, sin, where
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import quantity
@@ -168,9 +168,7 @@ def step(
     # Forces within the limits of thrust, then the load that they miss.
     reach = parameters.thrust_rate_max * h
     forces = _within_limits(tau, available, shares, parameters=p, design=design)
-    X, Y, N = missed(tau, forces, design.effect)
-    # More than 1 N, or its moment at the yaw lever, counts as missed.
-    saturated = X**2 + Y**2 + (N / p.yaw_lever) ** 2 > 1.0
+    saturated = is_missed(missed(tau, forces, design.effect), p.yaw_lever)
     # Turn each azimuth towards its force; until it has turned, it gives the part of the force along its angle.
     angles = []
     wanted = []
@@ -182,7 +180,7 @@ def step(
     # The tunnel cannot turn. Thrusts move at their rate; any excess over the power limit is removed at once.
     units = zip(state.thrusts, (*wanted, forces[4]), shares, p.limits, available, strict=True)
     thrusts = tuple(
-        where(on, clip(old + clip(new - old, -reach, reach), share * low, share * high), 0.0 * new)
+        where(on, clip(moved(old, new, reach), share * low, share * high), 0.0 * new)
         for old, new, share, (low, high), on in units
     )
     # Load of these commands; components of the azimuths in body axes, as the columns of the matrix.
@@ -200,7 +198,7 @@ def _turned(old, X, Y, usable, h, *, parameters):
     wanted = atan2(where(far, Y, sin(old)), where(far, X, cos(old)))
     # Turn the short way round, at most as fast as the thruster can.
     reach = parameters.azimuth_rate_max * h
-    return wrap(old + clip(wrap(wanted - old), -reach, reach))
+    return turned(old, wanted, reach)
 
 
 def _within_limits(tau, available, shares, *, parameters, design):

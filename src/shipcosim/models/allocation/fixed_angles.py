@@ -5,22 +5,23 @@ without thrust does not exist. As in `pseudo_inverse`, free units take over what
 give.
 """
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.models.allocation.pseudo_inverse import within_limits
+from shipcosim.models.allocation.pseudo_inverse import inverses_of, solved, within_limits
 from shipcosim.models.allocation.units import (
     Allocated,
+    is_missed,
     load,
     missed,
     no_thrust,
     unit_effect,
     unit_fields,
 )
-from shipcosim.models.core.maths import clip, is_single, row_of, where
+from shipcosim.models.core.kinematics import moved
+from shipcosim.models.core.maths import where
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import UNITS, numbered_units, quantity, required
 
@@ -54,14 +55,14 @@ class Layout(NamedTuple):
     ----------
     effect : tuple of six tuples
         Load of one newton of each unit: X, Y, N. [1, 1, m]
-    inverses : (64, 6, 3) array
+    inverses : tuple of 64 tuples of six tuples
         Generalised inverse for each set of free units: set k holds unit i where bit i of k is set. [1, 1, 1/m]
     least, most, rate : tuple of six floats
         Limits. [N, N, N/s]
     """
 
     effect: tuple
-    inverses: np.ndarray
+    inverses: tuple
     least: tuple
     most: tuple
     rate: tuple
@@ -97,14 +98,7 @@ def design(parameters: FixedAngleParameters) -> Layout:
     most = p.of_units("thrust_max")
     size = np.array([max(high, -low) for low, high in zip(least, most, strict=True)])
     size = size / max(size.max(), 1.0)
-    # A missed moment counts as a missed force at the yaw lever.
-    scale = np.array([1.0, 1.0, 1.0 / p.yaw_lever])
-    weighted = scale[:, None] * np.array(effect).T * size
-    # For every set of free units: W^-1/2 (S B W^-1/2)^+ S.
-    inverses = np.zeros((1 << UNITS, UNITS, 3))
-    for k in range(1, 1 << UNITS):
-        free = np.array([(k >> unit) & 1 for unit in range(UNITS)])
-        inverses[k] = size[:, None] * np.linalg.pinv(weighted * free, rcond=1e-6) * scale
+    inverses = inverses_of(effect, size, (p.yaw_lever,), tuple(range(UNITS)))
     return Layout(effect, inverses, tuple(least), tuple(most), tuple(p.of_units("thrust_rate")))
 
 
@@ -171,37 +165,13 @@ def step(
         available,
         list(zip(design.least, design.most, strict=True)),
         design.effect,
-        lambda left, free: _solve(left, free, design.inverses),
+        lambda left, free: solved(left, free, 0.0, design.inverses),
         1e-9,
     )
-    X, Y, N = missed(tau, wanted, design.effect)
-    # More than 1 N, or its moment at the yaw lever, counts as missed.
-    squared = X * X + Y * Y + (N / parameters.yaw_lever) ** 2
+    saturated = is_missed(missed(tau, wanted, design.effect), parameters.yaw_lever)
     # Move each thrust at its largest rate; a missing unit gives nothing.
     limits = zip(state.thrusts, wanted, available, design.rate, strict=True)
     thrusts = tuple(
-        where(on, old + clip(new - old, -rate * h, rate * h), 0.0 * new)
-        for old, new, on, rate in limits
+        where(on, moved(old, new, rate * h), 0.0 * new) for old, new, on, rate in limits
     )
-    return Allocated(thrusts, state.azimuths, *load(thrusts, design.effect), squared > 1.0)
-
-
-def _solve(tau, free, inverses):
-    """Thrusts of the free units for a load, 0 for the others."""
-    # Number of the set of free units: bit i stands for unit i.
-    chosen = sum(2.0**unit * is_free for unit, is_free in enumerate(free))
-    # One number: pick the inverse of this set.
-    if is_single(chosen):
-        return [
-            a * tau[0] + b * tau[1] + c * tau[2]
-            for a, b, c in row_of(inverses, math.floor(chosen)).tolist()
-        ]
-    # Many numbers: elements may have different sets, so try them all.
-    thrusts = [0.0 * tau[0]] * UNITS
-    for k in range(1, 1 << UNITS):
-        rows = inverses[k].tolist()
-        thrusts = [
-            where(chosen == k, a * tau[0] + b * tau[1] + c * tau[2], old)
-            for (a, b, c), old in zip(rows, thrusts, strict=True)
-        ]
-    return thrusts
+    return Allocated(thrusts, state.azimuths, *load(thrusts, design.effect), saturated)

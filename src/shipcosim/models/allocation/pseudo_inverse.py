@@ -16,11 +16,13 @@ import numpy as np
 from shipcosim.models.allocation.units import (
     Allocated,
     NamedUnits,
+    is_missed,
     load,
     missed,
     no_thrust,
     unit_effect,
 )
+from shipcosim.models.core.kinematics import moved
 from shipcosim.models.core.maths import Arithmetic, clip, is_single, repeat, row_of, where
 from shipcosim.models.core.memoize import kept
 from shipcosim.models.core.motion import Load
@@ -115,15 +117,15 @@ def inverses_of(effect: tuple, price: np.ndarray, levers: tuple, unit_of: tuple)
         Load of one newton of each force component. [1, 1, m]
     price : (..., n) array
         Of the components, as W^-1/2. [1]
-    levers : tuple of two
+    levers : tuple
         A missed yaw moment weighs as a missed force at this distance. [m]
     unit_of : tuple of n int
         Unit of each component. [1]
 
     Returns
     -------
-    tuple of sixteen tuples
-        As of `ThrusterInverses`. [1, 1, 1/m]
+    tuple of tuples
+        A set of inverses for each lever, as of `ThrusterInverses`. [1, 1, 1/m]
 
     References
     ----------
@@ -133,7 +135,7 @@ def inverses_of(effect: tuple, price: np.ndarray, levers: tuple, unit_of: tuple)
     inverses = []
     for lever in levers:
         scale = _vector(1.0, 1.0, 1.0 / lever)
-        for k in range(8):
+        for k in range(1 << max(unit_of) + 1):
             # W^-1/2 (S B W^-1/2)^+ S, with S for the yaw lever and only the free units' columns.
             free = np.array([(k >> unit) & 1 for unit in unit_of])
             weighted = scale[..., :, None] * matrix * (price * free)[..., None, :]
@@ -176,11 +178,11 @@ def solved(tau: Load, free: list, missing: Arithmetic, inverses: tuple) -> list:
     ----------
     tau : tuple of three
         Load. [N, N, N.m]
-    free : list of three floats or (...) arrays or tensors
+    free : list of floats or (...) arrays or tensors
         1 for a free unit, 0 for any other. [1]
     missing : like free
-        8 where a unit is missing, else 0: the number of the first inverse for that. [1]
-    inverses : tuple of sixteen tuples
+        Number of the first inverse for this yaw lever, as of `missing_units`. [1]
+    inverses : tuple of tuples
         As of `inverses_of`. [1, 1, 1/m]
 
     Returns
@@ -193,11 +195,11 @@ def solved(tau: Load, free: list, missing: Arithmetic, inverses: tuple) -> list:
     As `design`.
     """
     X, Y, N = tau
-    # Number of the set of free units; for one number its inverse is known.
-    chosen = free[0] + 2.0 * free[1] + 4.0 * free[2] + missing
+    # Number of the set of free units, bit i for unit i; for one number its inverse is known.
+    chosen = sum((2.0**unit * is_free for unit, is_free in enumerate(free)), missing)
     if is_single(chosen):
         return [a * X + b * Y + c * N for a, b, c in row_of(inverses, math.floor(chosen))]
-    # Many numbers: elements may have different sets, so try all sixteen.
+    # Many numbers: elements may have different sets, so try them all.
     forces = [0.0 * X] * len(inverses[0])
     for number, rows in enumerate(inverses):
         here = chosen == number
@@ -283,17 +285,15 @@ def step(
         design.effect,
         lambda left, free: solved(left, free, missing, design.inverses),
     )
-    X, Y, N = missed(tau, wanted, design.effect)
-    # More than 1 N, or its moment at the yaw lever, counts as missed.
-    squared = X * X + Y * Y + (N / parameters.yaw_lever) ** 2
+    saturated = is_missed(missed(tau, wanted, design.effect), parameters.yaw_lever)
     # Move each thrust at its largest rate; excess over the power limit is removed at once.
     reach = parameters.thrust_rate_max * h
     port, starboard, tunnel = [
-        where(usable, clip(old + clip(new - old, -reach, reach), *limit), 0.0)
+        where(usable, clip(moved(old, new, reach), *limit), 0.0)
         for usable, old, new, limit in zip(available, state.thrusts, wanted, limits, strict=True)
     ]
     thrusts = (port, starboard, tunnel)
-    return Allocated(thrusts, state.azimuths, *load(thrusts, design.effect), squared > 1.0)
+    return Allocated(thrusts, state.azimuths, *load(thrusts, design.effect), saturated)
 
 
 def within_limits(

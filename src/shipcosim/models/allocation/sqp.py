@@ -18,7 +18,7 @@ not push the other way in time.
 from typing import Any, NamedTuple
 
 from shipcosim.models.allocation.box_qp import Command, solve
-from shipcosim.models.allocation.units import no_thrust
+from shipcosim.models.allocation.units import is_missed, no_thrust
 from shipcosim.models.core.maths import (
     Arithmetic,
     clip,
@@ -343,8 +343,8 @@ def _commanded(state, tau, around, thrusts, turned, forces, marginal, h, design)
         if at.unit.kind == "turning":
             moving = moving | (abs(angle - at.azimuth) > 0.999 * at.unit.azimuth_rate * h)
     # Saturated: the load is missed although no unit is still on its way.
+    missed = is_missed(unmet, design.yaw_lever)
     X, Y, N = unmet
-    missed = X * X + Y * Y + (N / design.yaw_lever) ** 2 > 1.0
     load = (tau[0] - X, tau[1] - Y, tau[2] - N)
     return Turned(tuple(all_thrusts), tuple(azimuths), *load, missed & (moving == False), marginal)  # noqa: E712
 

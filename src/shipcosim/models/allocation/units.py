@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from shipcosim.models.core.maths import Arithmetic, cos, maximum, pi, sin, sqrt, where
 from shipcosim.models.core.motion import Load
@@ -255,6 +255,29 @@ def missed(tau: Load, thrusts: Sequence, effect: tuple) -> Load:
     """
     X, Y, N = load(thrusts, effect)
     return tau[0] - X, tau[1] - Y, tau[2] - N
+
+
+def is_missed(unmet: Load, yaw_lever: Arithmetic) -> Any:
+    """Whether a load that is left unmet counts: more than 1 N, or its moment at the yaw lever.
+
+    Parameters
+    ----------
+    unmet : tuple of three floats or (...) arrays or tensors
+        As of `missed`. [N, N, N.m]
+    yaw_lever : float
+        A missed yaw moment weighs as a missed force at this distance. [m]
+
+    Returns
+    -------
+    bool or (...) array or tensor of bool
+        [1]
+
+    References
+    ----------
+    Definition.
+    """
+    X, Y, N = unmet
+    return X * X + Y * Y + (N / yaw_lever) ** 2 > 1.0
 
 
 def slack(tau: Load, given: Load) -> Load:

@@ -5,7 +5,8 @@ References
 Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 2.
 """
 
-from shipcosim.models.core.maths import Arithmetic, sincos
+from shipcosim.angles import wrap
+from shipcosim.models.core.maths import Arithmetic, clip, sincos
 from shipcosim.models.core.motion import Load, Triple, Vector
 
 
@@ -117,3 +118,51 @@ def load_at(x: Arithmetic, y: Arithmetic, X: Arithmetic, Y: Arithmetic) -> Load:
         X, Y, N about the origin. [N, N, N.m]
     """
     return X, Y, x * Y - y * X
+
+
+def moved(value: Arithmetic, wanted: Arithmetic, most: Arithmetic) -> Arithmetic:
+    """Value after a step towards a wanted one.
+
+    Parameters
+    ----------
+    value, wanted : float or (...) array or tensor
+        Present and wanted value. [any unit]
+    most : like value
+        Largest step. [the unit of value]
+
+    Returns
+    -------
+    like value
+        [the unit of value]
+    """
+    return value + clip(wanted - value, -most, most)
+
+
+def turned(angle: Arithmetic, wanted: Arithmetic, most: Arithmetic) -> Arithmetic:
+    """Direction after turning towards a wanted one the shorter way.
+
+    Parameters
+    ----------
+    angle, wanted : float or (...) array or tensor
+        Present and wanted direction. [rad]
+    most : like angle
+        Largest turn. [rad]
+
+    Returns
+    -------
+    like angle
+        In [-π, π). [rad]
+
+    References
+    ----------
+    Definition.
+
+    Examples
+    --------
+    From 170 deg to -170 deg the way is 20 deg, not 340:
+
+    >>> import math
+    >>> round(math.degrees(turned(math.radians(170.0), math.radians(-170.0), math.radians(5.0))), 6)
+    175.0
+    """
+    return wrap(angle + clip(wrap(wanted - angle), -most, most))

@@ -238,6 +238,24 @@ def where(condition: Any, a: Arithmetic, b: Arithmetic) -> Arithmetic:
     return library.where(condition, *_tensors(library, a, b))
 
 
+def where_all(condition: Any, a: tuple, b: tuple) -> tuple:
+    """`where` for each pair of values of two tuples.
+
+    Parameters
+    ----------
+    condition : bool or (...) array or tensor of bool
+        The condition. [1]
+    a, b : tuples of n floats or (...) arrays or tensors
+        Values where it holds, values elsewhere. [any units, the same of both]
+
+    Returns
+    -------
+    tuple of n, like a and b
+        [the units of a]
+    """
+    return tuple(where(condition, first, other) for first, other in zip(a, b, strict=True))
+
+
 def minimum(a: Arithmetic, b: Arithmetic) -> Arithmetic:
     """The smaller of two values, element by element.
 

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.angles import wrap
-from shipcosim.models.core.maths import Arithmetic, clip, cos, is_single, sin
+from shipcosim.models.core.kinematics import moved, turned
+from shipcosim.models.core.maths import Arithmetic, cos, is_single, sin
 from shipcosim.models.core.motion import Vector
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.environment.gusts import gust
@@ -119,10 +119,10 @@ def step(
     1.46
     """
     return EnvironmentState(
-        _towards(state.wind_speed, wind_speed, parameters.wind_speed_rate * h),
-        _turned(state.wind_from, wind_from, parameters.wind_turn_rate * h),
-        _towards(state.current_speed, current_speed, parameters.current_speed_rate * h),
-        _turned(state.current_to, current_to, parameters.current_turn_rate * h),
+        moved(state.wind_speed, wind_speed, parameters.wind_speed_rate * h),
+        turned(state.wind_from, wind_from, parameters.wind_turn_rate * h),
+        moved(state.current_speed, current_speed, parameters.current_speed_rate * h),
+        turned(state.current_to, current_to, parameters.current_turn_rate * h),
     )
 
 
@@ -187,13 +187,3 @@ def water_velocity(state: EnvironmentState) -> Vector:
     Definition.
     """
     return state.current_speed * cos(state.current_to), state.current_speed * sin(state.current_to)
-
-
-def _towards(value, setpoint, furthest):
-    """A value moved towards its setpoint by at most `furthest`."""
-    return value + clip(setpoint - value, -furthest, furthest)
-
-
-def _turned(angle, setpoint, furthest):
-    """A direction turned towards its setpoint the shorter way, by at most `furthest`."""
-    return wrap(angle + clip(wrap(setpoint - angle), -furthest, furthest))

@@ -17,12 +17,12 @@ import numpy as np
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.kinematics import to_body, to_ned
-from shipcosim.models.core.maths import Arithmetic, cos, hypot, sin, where
+from shipcosim.models.core.maths import Arithmetic, cos, hypot, sin
 from shipcosim.models.core.motion import Load, Motion, Triple, Vector
 from shipcosim.models.core.networks import Memory, Network, evaluate_members, members_of
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction import helm
-from shipcosim.models.prediction.drift_off import trust
+from shipcosim.models.prediction.drift_off import blend, trust
 from shipcosim.models.prediction.helm import LONGEST, Aboard, HelmParameters
 from shipcosim.models.prediction.regions import RegionParameters, widening
 from shipcosim.models.ship.hull import HullParameters
@@ -392,15 +392,8 @@ def blended(kinetic: Sequence[Motion], learned: Sequence[tuple], share: Arithmet
     list of tuples of three
         North, east, heading, one a second. [m, m, rad]
     """
-    places = []
-    # Blend along the shorter arc of the heading. `where` keeps the kinetic value to the last bit.
-    for motion, other in zip(kinetic, learned, strict=True):
-        away = other[0] - motion.x, other[1] - motion.y, wrap(np.asarray(other[2] - motion.psi))
-        x, y, psi = (
-            where(share > 0.0, a + share * d, a) for a, d in zip(motion[:3], away, strict=True)
-        )
-        places.append((x, y, where(share > 0.0, wrap(np.asarray(psi)), motion.psi)))
-    return places
+    pairs = zip(kinetic, learned, strict=True)
+    return [blend(motion[:3], place, share) for motion, place in pairs]
 
 
 def regions(widths: np.ndarray, errors: Vector) -> tuple[list[Arithmetic], list[Arithmetic]]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction import docking, helm, paper_iii
-from shipcosim.models.prediction.docking import Own, Trained
+from shipcosim.models.prediction.docking import Trained
 from shipcosim.models.prediction.helm import Aboard, HelmParameters, Start
 from shipcosim.models.prediction.paper_iii import Ensemble
 from shipcosim.models.ship.hull import HullParameters
@@ -42,15 +42,15 @@ class State(NamedTuple):
         As `helm.remembered` gives them. [rad, m/s, m/s, rad/s]
     aboard : Aboard
         Inputs of the predictor now.
-    own : Own or None
-        Our law's record.
+    own : Own
+        Our law's record, of type `Own`; None for the others. [1]
     memory : tuple of tuples of Memory
         Of networks. [1]
     """
 
     latest: Start
     aboard: Aboard
-    own: Own | None = None
+    own: Any = None
     memory: tuple = ()
 
 
@@ -122,17 +122,13 @@ class Ours(Kinetic):
         return super().begin(aboard, model)._replace(own=estimate)
 
     def follow(self, state: State, aboard: Aboard, model: Model) -> State:
-        laws = {"hull": model.hull, "wind": model.wind, "helm_": model.helm}
         estimate = docking.follow(
-            state.own or docking.begin(state.aboard, model.helm.position_age),
-            state.aboard,
-            aboard,
-            **laws,
+            state.own, state.aboard, aboard, hull=model.hull, wind=model.wind, helm_=model.helm
         )
         return super().follow(state, aboard, model)._replace(own=estimate)
 
     def predict(self, state: State, model: Model) -> tuple[list[tuple], float, State]:
-        estimate = state.own or docking.begin(state.aboard, model.helm.position_age)
+        estimate = state.own
         # Equations of motion with the observed load, then the ensemble's correction on top.
         motions = helm.predict(
             state.aboard._replace(ship=estimate.ship), left=estimate.load, **model._asdict()

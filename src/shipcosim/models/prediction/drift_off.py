@@ -9,7 +9,7 @@ Definition. The spread of an ensemble as a sign of what was not learned: Lakshmi
 predictive uncertainty estimation using deep ensembles, NeurIPS, 2017.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -210,7 +210,7 @@ def predict(
     )
     mixed = (own_record.mixed(state.own, motion) for motion in motions)
     # The filters' predictions are averaged by their weights, then blended with the kinetic one.
-    return tuple(blended(a, b, share) for a, b in zip(alone, mixed, strict=True)), share
+    return tuple(Motion(*blend(a, b, share)) for a, b in zip(alone, mixed, strict=True)), share
 
 
 def _ahead(record, known, options):
@@ -303,24 +303,24 @@ def trust(numbers: np.ndarray, limits: np.ndarray) -> Arithmetic:
     return where(worst < OUT, clip((OUT - worst) / (OUT - 1.0), 0.0, 1.0), 0.0 * limits[0])
 
 
-def blended(alone: Motion, learned: Motion, share: Arithmetic) -> Motion:
+def blend(alone: Sequence, learned: Sequence, share: Arithmetic) -> tuple:
     """Blend of two predictions; with a share of 0 exactly the first.
 
     Parameters
     ----------
-    alone, learned : Motion
-        Without and with what is learned; floats or (...) arrays.
+    alone, learned : sequence of floats or (...) arrays
+        North, east, heading and what follows, without and with what is learned. [m, m, rad, ...]
     share : float or (...) array
         Of the second. [1]
 
     Returns
     -------
-    Motion
-        The blend.
+    tuple, like alone
+        The blend. [as alone]
     """
     away = [b - a for a, b in zip(alone, learned, strict=True)]
     # Headings blend along the shorter arc.
     away[2] = wrap(np.asarray(away[2]))
     moved = [where(share > 0.0, a + share * d, a) for a, d in zip(alone, away, strict=True)]
-    moved[2] = where(share > 0.0, wrap(np.asarray(moved[2])), alone.psi)
-    return Motion(*moved)
+    moved[2] = where(share > 0.0, wrap(np.asarray(moved[2])), alone[2])
+    return tuple(moved)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.integrate import midpoint_motion
-from shipcosim.models.core.kinematics import load_at, to_body, to_ned, velocity_at
+from shipcosim.models.core.kinematics import load_at, moved, to_body, to_ned, velocity_at
 from shipcosim.models.core.maths import Arithmetic, clip, cos, hypot, sin
 from shipcosim.models.core.motion import Load, Motion, Triple, Vector
 from shipcosim.models.core.parameters import quantity, required, required_table
@@ -266,7 +266,7 @@ def thruster_loads(
 
     def loads(t):
         # Thrusts move from their present values to the commands at their largest rates.
-        tunnel = _towards(tunnel_now, aboard.thrust_cmd[2], t * helm.tunnel_thrust_rate)
+        tunnel = moved(tunnel_now, aboard.thrust_cmd[2], t * helm.tunnel_thrust_rate)
         port, starboard = (unit(t) for unit in units)
 
         def at(u_r, v_r, r):
@@ -298,7 +298,7 @@ def _azimuth(aboard, k, y, water, helm):
     side_factor = -helm.side_force_coefficient * helm.propeller.water_density * D * D
 
     def load(t):
-        thrust = _towards(thrust_now, aboard.thrust_cmd[k], t * helm.thrust_rate)
+        thrust = moved(thrust_now, aboard.thrust_cmd[k], t * helm.thrust_rate)
         angle = azimuth + clip(turn, -t * helm.azimuth_rate, t * helm.azimuth_rate)
         # Side force F_s = -c ρ D² (V + |n| D) u_s: momentum drag of the water taken along.
         wash = D * abs(bollard_speed(thrust, propeller=helm.propeller) + beyond)
@@ -315,10 +315,6 @@ def _azimuth(aboard, k, y, water, helm):
         return at
 
     return load
-
-
-def _towards(now, commanded, most):
-    return now + clip(commanded - now, -most, most)
 
 
 def predict(

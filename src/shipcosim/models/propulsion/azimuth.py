@@ -6,9 +6,8 @@ Limits, drive and motor are in `drive`, the propeller in `propeller`; here is wh
 from dataclasses import dataclass
 from functools import cached_property
 
-from shipcosim.angles import wrap
-from shipcosim.models.core.kinematics import load_at, velocity_at
-from shipcosim.models.core.maths import Arithmetic, clip, hypot, pi, sincos, where
+from shipcosim.models.core.kinematics import load_at, turned, velocity_at
+from shipcosim.models.core.maths import Arithmetic, hypot, pi, sincos, where
 from shipcosim.models.core.parameters import acts, quantity, required
 from shipcosim.models.propulsion.drive import Thruster, at_rest, drive_step
 from shipcosim.models.propulsion.failures import Failures
@@ -306,36 +305,6 @@ def azimuth_loads(
     return Loads(
         thrust, side, *load_at(unit.x, unit.y, thrust * c - side * s, thrust * s + side * c)
     )
-
-
-def turned(azimuth: Arithmetic, azimuth_cmd: Arithmetic, most: Arithmetic) -> Arithmetic:
-    """Direction after turning towards the commanded one the shorter way.
-
-    Parameters
-    ----------
-    azimuth, azimuth_cmd : float or (...) array or tensor
-        Present and commanded direction. [rad]
-    most : like azimuth
-        Largest turn. [rad]
-
-    Returns
-    -------
-    like azimuth
-        In [-π, π). [rad]
-
-    References
-    ----------
-    Definition.
-
-    Examples
-    --------
-    From 170 deg to -170 deg the way is 20 deg, not 340:
-
-    >>> import math
-    >>> round(math.degrees(turned(math.radians(170.0), math.radians(-170.0), math.radians(5.0))), 6)
-    175.0
-    """
-    return wrap(azimuth + clip(wrap(azimuth_cmd - azimuth), -most, most))
 
 
 def _inflow(s, c, u_r, v_r, r, unit):

@@ -5,7 +5,7 @@ from functools import lru_cache
 from typing import Any
 
 from shipcosim.models.core.interpolation import interp
-from shipcosim.models.core.kinematics import load_at, velocity_at
+from shipcosim.models.core.kinematics import load_at, moved, velocity_at
 from shipcosim.models.core.maths import Arithmetic, clip, cos, exp, maximum, sin, where
 from shipcosim.models.core.parameters import quantity, required, required_table
 from shipcosim.models.core.tables import columns
@@ -163,7 +163,7 @@ def commanded(
         # A limit of zero means no limit.
         return wanted
     most = thruster.command_rate * h
-    return command + clip(wanted - command, -most, most)
+    return moved(command, wanted, most)
 
 
 def mapped_step(

@@ -167,12 +167,17 @@ class ModelWriter(Writer):
         # Without optimisation very long functions compile in seconds; they run seldom.
         much = "PLAIN " if len(self.lines) > MUCH else ""
         head = f"static {much}int {self.name}(double *restrict m, double *restrict k, Instance *o)"
-        tables = [
-            f"    static const double table_{number}[] = {{{', '.join(map(literal, table.tolist()))}}};"
-            for number, table in enumerate(self.recording.tables)
-        ]
         return "\n".join(
-            [*called, head, "{", *tables, "    (void)m, (void)k, (void)o;", *self.lines, "}", ""]
+            [
+                *called,
+                head,
+                "{",
+                *self._tables("    "),
+                "    (void)m, (void)k, (void)o;",
+                *self.lines,
+                "}",
+                "",
+            ]
         )
 
     def _place(self, place):

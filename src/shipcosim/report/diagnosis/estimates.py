@@ -4,7 +4,7 @@ import math
 
 from shipcosim.diagnose.finding import ParameterEstimate
 
-SHOWN = {"1": "", "": ""}
+SHOWN = {"1": "", "deg": "°"}
 LARGE = {"N": ("kN", 1e-3), "N.m": ("kN·m", 1e-3)}
 
 
@@ -52,7 +52,7 @@ def shown_unit(unit: str, size: float) -> tuple[str, float]:
     """The unit in which a number of this size is shown, and the factor to it."""
     if unit in LARGE and size >= 1000.0:
         return LARGE[unit]
-    return {"deg": "°"}.get(unit, SHOWN.get(unit, unit)), 1.0
+    return SHOWN.get(unit, unit), 1.0
 
 
 def vector(north: ParameterEstimate, east: ParameterEstimate) -> str:

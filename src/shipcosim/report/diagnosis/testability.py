@@ -41,7 +41,13 @@ def not_testable_rows(
     hidden : collection of str
         Causes that another form of the ship's loads hides.
     """
-    texts = _texts(facts)
+    # What the log has, with units; several logs have nothing of that.
+    texts: dict[str, str | None] = {}
+    if facts:
+        for name, unit in UNITS.items():
+            size = facts.get(name)
+            texts[name] = None if size is None else f"{plain(size, 2)} {unit}"
+        texts["astern_share"] = f"{100.0 * (facts.get('astern_share') or 0.0):.0f} %"
     rows = []
     # The most specific reason wins: of a fault's file, of the load form, of the cause's file.
     faults = read_faults()
@@ -90,18 +96,6 @@ def visible_rows(
         name = [visible.parameter.replace("_", " ")] if visible.parameter and several > 1 else []
         rows.setdefault(title(visible.cause), []).append(" ".join([*place, *name, size]))
     return [(cause, ", ".join(texts)) for cause, texts in rows.items()]
-
-
-def _texts(facts: Mapping[str, float | None]) -> dict[str, str | None]:
-    """Properties of a log with units; None for what it does not have. Nothing of several logs."""
-    if not facts:
-        return {}
-    sizes = {name: facts.get(name) for name in UNITS}
-    texts = {
-        name: None if size is None else f"{plain(size, 2)} {UNITS[name]}"
-        for name, size in sizes.items()
-    }
-    return texts | {"astern_share": f"{100.0 * (facts.get('astern_share') or 0.0):.0f} %"}
 
 
 def _reason(cause: Cause | None, facts: Mapping[str, str | None]) -> str:

@@ -53,14 +53,16 @@ def _over_time(tracks: Tracks, role: str, title: str, unit: str) -> Figure:
     for (name, prediction), colour in zip(tracks.predicted.items(), COLOURS, strict=False):
         # Absolute times of each prediction, with a gap between two predictions.
         time = prediction["start_time"].values[:, None] + prediction["time"].values
-        times = np.hstack([time, np.full((len(time), 1), np.nan)]).ravel()
-        traces.append(line(name, times, joined(prediction, role), colour, width=1.2))
+        traces.append(line(name, _with_gaps(time), joined(prediction, role), colour, width=1.2))
     return Figure(title, unit, tuple(traces), {"xaxis": TIME})
 
 
 def joined(prediction: Dataset, role: str) -> NDArray:
     """A channel of all predictions in sequence, with gaps between them."""
-    values = prediction[role].values
+    return _with_gaps(prediction[role].values)
+
+
+def _with_gaps(values: NDArray) -> NDArray:
     return np.hstack([values, np.full((len(values), 1), np.nan)]).ravel()
 
 

@@ -21,7 +21,7 @@ from shipcosim.report.theme.packing import packed_bytes
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import Fact, JsonObject, Outcome, Page, known_facts
 from shipcosim.scenario import Scenario
-from shipcosim.ssp import Variable
+from shipcosim.ssp import Signal, Variable
 
 PREDICTED = {"north": "x", "east": "y", "heading": "psi", "radius": "position_region"}
 """Outputs of a predictor for each part of a predicted track, as in `interfaces.MotionPredictor`."""
@@ -169,18 +169,20 @@ def _signals(plan: Plan) -> Iterator[tuple[str, JsonObject]]:
         for row, (end, start) in enumerate(layout.external.items(), start=first):
             if end[0] is None:
                 signal = plan.system.inputs[end[1]]
-                about = {"kind": kind, "unit": signal.unit or "", "text": signal.description or ""}
+                about = _about(signal, kind)
                 place = {"x": number, "side": 2, "row": row, "free": True, "start": start}
                 yield label(end), about | place
 
 
-def _about(variable: Variable, kind: str) -> dict[str, Any]:
+def _about(described: Variable | Signal, kind: str) -> dict[str, Any]:
     about: dict[str, Any] = {
         "kind": kind,
-        "unit": variable.unit or "",
-        "text": variable.description or "",
+        "unit": described.unit or "",
+        "text": described.description or "",
     }
-    for name, bound in (("min", variable.minimum), ("max", variable.maximum)):
+    # A variable of an FMU may have bounds, an input of the system has none.
+    for name in ("minimum", "maximum"):
+        bound = getattr(described, name, None)
         if bound is not None:
-            about[name] = bound
+            about[name[:3]] = bound
     return about

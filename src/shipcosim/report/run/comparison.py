@@ -20,10 +20,7 @@ from shipcosim.report.run.roles import Roles
 from shipcosim.report.run.scene import make_run
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.numbers import plain
-from shipcosim.report.theme.pages import render
 from shipcosim.report.theme.views import Fact, Outcome, Table
-from shipcosim.series import write_file
-from shipcosim.ssp import AnyPath
 
 COLOURS = (palette.BLUE, palette.PURPLE)
 THE_LINE = (
@@ -74,37 +71,6 @@ class Pair:
     shift: float
 
 
-def write_comparison(
-    tables: tuple[Dataset, Dataset], names: tuple[str, str], path: AnyPath
-) -> tuple[Outcome, list[Difference]]:
-    """Write the page of two runs.
-
-    Parameters
-    ----------
-    tables : (xarray.Dataset, xarray.Dataset)
-        Runs of any systems. They are laid over each other by their times; where these have nothing in common, the
-        second is moved to start with the first, and the page says so.
-    names : (str, str)
-        What they are called on the page.
-    path : path
-        HTML file; it is there completely or not at all.
-
-    Returns
-    -------
-    (Outcome, list of Difference)
-        What the page says first, and the differences: of pose, errors and thrust, then the largest over its signal's
-        range first.
-
-    Raises
-    ------
-    ShipcosimError
-        If a run has no rows, the two have no signal in common, or the file cannot be written.
-    """
-    comparison = compared(tables, names)
-    write_file(path, render("run/templates/run.html.jinja", comparison.page).encode())
-    return comparison.page.outcome, comparison.differences
-
-
 class Comparison(NamedTuple):
     """Two runs on common times, both with their names in one table, their differences, and what the page shows."""
 
@@ -116,7 +82,26 @@ class Comparison(NamedTuple):
 
 @np.errstate(over="ignore", invalid="ignore")
 def compared(tables: tuple[Dataset, Dataset], names: tuple[str, str]) -> Comparison:
-    """Put two runs on common times and compare them; arguments and errors as of `write_comparison`."""
+    """Put two runs on common times and compare them.
+
+    Parameters
+    ----------
+    tables : (xarray.Dataset, xarray.Dataset)
+        Runs of any systems. They are laid over each other by their times; where these have nothing in common, the
+        second is moved to start with the first, and the page says so.
+    names : (str, str)
+        What they are called on the page.
+
+    Returns
+    -------
+    Comparison
+        Differences of pose, errors and thrust first, then the largest over its signal's range.
+
+    Raises
+    ------
+    ShipcosimError
+        If a run has no rows, or the two have no signal in common.
+    """
     pair = lay_over(tables, names)
     differing = _ordered(pair, differences(pair))
     both = _merged(pair)

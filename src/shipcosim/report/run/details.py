@@ -1,7 +1,7 @@
 """Events, start values, versions and further attributes of a run, as tables to unfold."""
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -78,27 +78,19 @@ def _attributes(table: Dataset, system: System | None) -> list[tuple[str, dict[s
         name = str(key)
         content = parsed(value)
         if name == "start_values":
-            nested += _by_component(content, system)
+            by_component: dict[str, dict[str, Any]] = {}
+            for signal, start in content.items():
+                component, _, variable = signal.rpartition(".")
+                unit = _unit(system, component, variable) or ""
+                shown = start if unit in ("", "1") else f"{start} {unit}"
+                title = f"Start values: {component or 'the system'}"
+                by_component.setdefault(title, {})[variable] = shown
+            nested += by_component.items()
         elif isinstance(content, dict):
             nested.append((name, content))
         elif name not in SHOWN_ELSEWHERE:
             plain[name] = content
     return ([("run", plain)] if plain else []) + nested
-
-
-def _by_component(
-    values: Mapping[str, Any], system: System | None
-) -> list[tuple[str, dict[str, Any]]]:
-    """Start values with their units, a table for each component."""
-    groups: dict[str, dict[str, Any]] = {}
-    for signal, value in values.items():
-        component, _, name = signal.rpartition(".")
-        unit = _unit(system, component, name) or ""
-        groups.setdefault(component, {})[name] = value if unit in ("", "1") else f"{value} {unit}"
-    return [
-        (f"Start values: {component or 'the system'}", content)
-        for component, content in groups.items()
-    ]
 
 
 def _unit(system: System | None, component: str, name: str) -> str | None:

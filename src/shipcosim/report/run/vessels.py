@@ -1,6 +1,5 @@
 """Vessels of a table and their signals, found by the names of signals of any tool."""
 
-import json
 import re
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass
@@ -13,6 +12,7 @@ from xarray import Dataset
 
 from shipcosim.errors import ShipcosimError
 from shipcosim.models.core.tables import columns
+from shipcosim.report.run.details import parsed
 from shipcosim.report.run.roles import find_roles, join
 from shipcosim.report.theme.display import series_in
 from shipcosim.report.theme.numbers import finite
@@ -139,10 +139,7 @@ def find_vessels(table: Dataset) -> tuple[Vessel, ...]:
 
 def start_values(table: Dataset) -> dict[str, Any]:
     """Start values of the run, as the table's attribute holds them; empty where there are none."""
-    try:
-        starts = json.loads(table.attrs.get("start_values", "{}"))
-    except (TypeError, ValueError):
-        return {}
+    starts = parsed(table.attrs.get("start_values"))
     return starts if isinstance(starts, dict) else {}
 
 

@@ -12,9 +12,9 @@ from urllib.parse import quote
 
 import lxml.etree as etree
 
-from shipcosim.errors import Problem, ShipcosimError, raise_errors
+from shipcosim.errors import ShipcosimError, error_at, raise_errors
 from shipcosim.ssp.edit.parameter_sets import Sets
-from shipcosim.ssp.edit.write import relocated, write_file
+from shipcosim.ssp.edit.write import PREFIXES, files_in, relocated, write_file
 from shipcosim.ssp.flatten.assemble import assemble_package
 from shipcosim.ssp.flatten.hierarchy import Swapped
 from shipcosim.ssp.flatten.system import System
@@ -85,13 +85,9 @@ class Draft:
         """The parameter sets that it binds."""
         return Sets(self.package, self.document)
 
-    def problem(self, what: str, message: str, remedy: str = "") -> Problem:
-        """Problem with something in the SSD."""
-        return Problem(f"{self.package.show(self.path)}: {what}", message, remedy)
-
     def error(self, what: str, message: str, remedy: str = "") -> ShipcosimError:
         """Error about something in the SSD, to be raised."""
-        return ShipcosimError(self.problem(what, message, remedy))
+        return error_at(f"{self.package.show(self.path)}: {what}", message, remedy)
 
     # ---------------------------------------------------------------- reading
 
@@ -240,19 +236,9 @@ class Draft:
         self.assemble()
         folder = self.package.folder.resolve()
         files: dict[str, Path | bytes] = {}
-        if (
-            not self.file.partition("#")[0].lower().endswith(".ssd")
-        ):  # a single .ssd says nothing about its neighbours
-            contents = {
-                path.relative_to(folder): path
-                for path in sorted(folder.rglob("*"))
-                if path.is_file()
-            }
-            files = {
-                name.as_posix(): path
-                for name, path in contents.items()
-                if not any(part.startswith(".") for part in name.parts)
-            }
+        # A single .ssd says nothing about its neighbours.
+        if not self.file.partition("#")[0].lower().endswith(".ssd"):
+            files |= files_in(folder)
         # FMUs that were found elsewhere, then every changed file.
         files |= self.package.located
         for path, held in self.package.held.items():
@@ -265,9 +251,6 @@ class Draft:
             name for name in self._came_with - set(self.package.located) if name.endswith(".fmu")
         }
         return {name: file for name, file in files.items() if name not in gone}
-
-
-PREFIXES = {".ssd": ("ssd", "ssc", "ssv", "osp"), ".ssv": ("ssv", "ssc")}
 
 
 def _is_elsewhere(file: Path | bytes, folder: Path) -> bool:

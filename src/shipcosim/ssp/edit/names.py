@@ -172,10 +172,21 @@ def best_pair(
         if start[0] is end[0]
     ]
     # The most likely pair; what does not exist is explained by name.
+    where = f"{where}: {source} -> {target}"
     start, end = max(pairs, key=lambda pair: sum(_likely(reading, exists) for reading in pair))
     for signal, reading in ((source, start), (target, end)):
-        if not exists(reading):
-            _refuse_if_elsewhere(signal, reading, system, exists, f"{where}: {source} -> {target}")
+        if exists(reading):
+            continue
+        # The signal exists, but in another system.
+        if any(exists(other) for other in readings(signal, system)):
+            remedy = "A connection stays within one system: go through connectors of the systems between."
+            raise error_at(where, f"{signal} is in another system than the other end.", remedy)
+        # The first part of its name is no element here; the check finds all else.
+        if _names_an_element(reading):
+            names = [part.get("name", "") for part in parts(system)]
+            element = signal.partition(".")[0]
+            message = f"There is no element '{element}' in {system.get('name')}."
+            raise error_at(where, message, suggestion(element, names))
     return start, end
 
 
@@ -186,25 +197,3 @@ def _likely(reading: NameMatch, exists: Callable[[NameMatch], bool]) -> int:
 def _names_an_element(reading: NameMatch) -> bool:
     """True if a supposed connector's name looks like one of a component that does not exist."""
     return reading.element is None and "." in reading.connector
-
-
-def _refuse_if_elsewhere(
-    signal: str,
-    reading: NameMatch,
-    system: etree._Element,
-    exists: Callable[[NameMatch], bool],
-    where: str,
-) -> None:
-    """Raise if a signal is in another system, or of a missing element; the check finds all else."""
-    # The signal exists, but in another system.
-    if any(exists(other) for other in readings(signal, system)):
-        remedy = (
-            "A connection stays within one system: go through connectors of the systems between."
-        )
-        raise error_at(where, f"{signal} is in another system than the other end.", remedy)
-    # The first part of its name is no element here.
-    if _names_an_element(reading):
-        names = [part.get("name", "") for part in parts(system)]
-        element = signal.partition(".")[0]
-        message = f"There is no element '{element}' in {system.get('name')}."
-        raise error_at(where, message, suggestion(element, names))

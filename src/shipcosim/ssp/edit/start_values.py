@@ -58,7 +58,7 @@ class StartValues(MutableMapping[str, Value]):
                     if name in self
                     else ("The system does not set it.", suggestion(name, self))
                 )
-                raise ShipcosimError(self._draft.problem(name, message, remedy))
+                raise self._draft.error(name, message, remedy)
 
     def __iter__(self) -> Iterator[str]:
         system = self._system()
@@ -137,11 +137,10 @@ class StartValues(MutableMapping[str, Value]):
     def _kind(self, name: str, value: Value, kind: str | None) -> str:
         if type(value) not in KIND_OF:
             message = f"{value!r} is no value."
-            raise ShipcosimError(
-                self._draft.problem(name, message, "A value is a number, true or false, or a text.")
-            )
+            remedy = "A value is a number, true or false, or a text."
+            raise self._draft.error(name, message, remedy)
         if isinstance(value, float) and not isfinite(value):
-            raise ShipcosimError(self._draft.problem(name, f"{value} is not a finite number."))
+            raise self._draft.error(name, f"{value} is not a finite number.")
         own_kind = KIND_OF[type(value)]
         fits = (own_kind, kind) in (("Integer", "Real"), ("String", "Enumeration"))
         return kind if fits and kind else own_kind
@@ -159,7 +158,7 @@ class StartValues(MutableMapping[str, Value]):
             message = (
                 f"A value in {unit}, but {name} is in {own_unit.name if own_unit else 'no unit'}."
             )
-            raise ShipcosimError(self._draft.problem(name, message, "These cannot be converted."))
+            raise self._draft.error(name, message, "These cannot be converted.")
         factor, offset = conversion(given, own_unit)
         return factor * value + offset
 

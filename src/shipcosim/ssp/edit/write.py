@@ -20,6 +20,8 @@ from shipcosim.ssp.xml.values import Value
 from shipcosim.units import as_python, find_unit
 
 KIND_OF = {bool: "Boolean", int: "Integer", float: "Real", str: "String", bytes: "Binary"}
+PREFIXES = {".ssd": ("ssd", "ssc", "ssv", "osp"), ".ssv": ("ssv", "ssc")}
+"Namespace prefixes that a written file declares, by its ending."
 
 
 def parameter(
@@ -176,22 +178,23 @@ def pack(folder: AnyPath, fmus: Iterable[AnyPath], out: AnyPath) -> None:
         assemble_package(package, (), str(folder), findings)
     if package is None or findings.errors:
         raise ShipcosimError(list(dict.fromkeys(findings.errors)))
-    # Files in sorted order, without hidden ones: the same input gives the same bytes.
-    files = {
-        path.relative_to(folder).as_posix(): path.read_bytes()
-        for path in sorted(folder.rglob("*"))
-        if path.is_file()
-        and not any(part.startswith(".") for part in path.relative_to(folder).parts)
-    }
-    files |= {
-        name: path.read_bytes() for name, path in package.located.items() if name not in files
-    }
+    # Files of the folder come before FMUs of the same name from elsewhere.
+    paths = package.located | files_in(folder)
+    files = {name: path.read_bytes() for name, path in paths.items()}
     # Addresses of FMUs elsewhere become those within the package.
     if package.moved and (document := package.document(findings)) is not None:
-        files[package.ssd] = to_bytes(
-            relocated(document.root, package.moved), "ssd", "ssc", "ssv", "osp"
-        )
+        files[package.ssd] = to_bytes(relocated(document.root, package.moved), *PREFIXES[".ssd"])
     write_archive(out, files)
+
+
+def files_in(folder: Path) -> dict[str, Path]:
+    """Files in a folder and its folders by their names from there, except hidden ones."""
+    paths = {path.relative_to(folder): path for path in folder.rglob("*") if path.is_file()}
+    return {
+        name.as_posix(): path
+        for name, path in paths.items()
+        if not any(part.startswith(".") for part in name.parts)
+    }
 
 
 def relocated(root: etree._Element, moved: Mapping[str, str]) -> etree._Element:

@@ -67,8 +67,16 @@ def connect(tree: Hierarchy, findings: Findings) -> tuple[Connection, ...]:
     -------
     tuple of Connection
     """
+    # The wire into each port: SSP allows one source per input.
+    incoming = {}
+    for wire in tree.wires:
+        if wire.target in incoming:
+            first = incoming[wire.target]
+            message = f"A second connection into {wire.target}. It gets {first.source} already ({first.place})."
+            findings.error(wire.place, message, "Remove one of them.")
+        else:
+            incoming[wire.target] = wire
     # Trace back from each place where a value is used to where it comes from.
-    incoming = _incoming(tree, findings)
     connections = []
     for key, port in tree.ports.items():
         # A value is used at inputs of components and outputs of the root; elsewhere it is passed on.
@@ -80,20 +88,6 @@ def connect(tree: Hierarchy, findings: Findings) -> tuple[Connection, ...]:
             if wires and (source := _source(wires[0].source, tree)) is not None:
                 connections.append(_connection(wires, source, tree, findings))
     return tuple(connections)
-
-
-def _incoming(tree: Hierarchy, findings: Findings) -> dict[Key, Wire]:
-    """The wire into each port."""
-    # SSP allows one source per input.
-    incoming = {}
-    for wire in tree.wires:
-        if wire.target in incoming:
-            first = incoming[wire.target]
-            message = f"A second connection into {wire.target}. It gets {first.source} already ({first.place})."
-            findings.error(wire.place, message, "Remove one of them.")
-        else:
-            incoming[wire.target] = wire
-    return incoming
 
 
 def _way(key: Key, incoming: Mapping[Key, Wire], findings: Findings) -> list[Wire]:

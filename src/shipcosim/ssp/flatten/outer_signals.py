@@ -49,7 +49,12 @@ class OuterSignals:
     def _signal(self, key: Key) -> Signal:
         port = self.tree.ports[key]
         # What the SSD leaves open is taken from the variables behind the connector.
-        ends = self._ends(key)
+        near = (None, key.name)
+        pairs = [(c.target, c) for c in self.connections if c.source == near]
+        pairs += [(c.source, c) for c in self.connections if c.target == near]
+        ends = [
+            (self.components[name].variables[variable], c) for (name, variable), c in pairs if name
+        ]
         unit = (
             port.unit.name if port.unit else next((end.unit for end, _ in ends if end.unit), None)
         )
@@ -58,15 +63,6 @@ class OuterSignals:
             start = self._derived(ends)
         kind = port.type or next((end.kind for end, _ in ends), None)
         return Signal(key.name, kind, unit, port.description, start, port.items)
-
-    def _ends(self, key: Key) -> list[tuple[Variable, Connection]]:
-        """Variables at the other ends of a connector's connections, with the connections."""
-        near = (None, key.name)
-        pairs = [(c.target, c) for c in self.connections if c.source == near]
-        pairs += [(c.source, c) for c in self.connections if c.target == near]
-        return [
-            (self.components[name].variables[variable], c) for (name, variable), c in pairs if name
-        ]
 
     def _derived(self, ends: list[tuple[Variable, Connection]]) -> Value | None:
         """Start of an input without one: that of the variables behind it, if they agree."""

@@ -118,7 +118,12 @@ def _exists(end: End, ends: list[End], link: Link, system: SystemElement, tree: 
     # The FMU may have the variable although the SSD declares no connector: accept it.
     component, fmu = tree.components.get(end.key.path, (None, None))
     if fmu is not None and end.name in fmu.variables:
-        return _undeclared(end, fmu, link, tree)
+        port = variable_port(fmu.variables[end.name], fmu, link.place)
+        tree.ports[end.key] = port
+        message = f"{end} is not declared as a connector; it is taken from {fmu.path.name}."
+        remedy = f'Add <Connector name="{end.name}" kind="{port.kind}"/>.'
+        tree.findings.remark(link.place, message, remedy)
+        return True
     if component is None or fmu is not None:
         wanted, there = _wanted(end, ends, fmu, tree)
         owner = end.element or system.name
@@ -126,17 +131,6 @@ def _exists(end: End, ends: list[End], link: Link, system: SystemElement, tree: 
             link.place, f"{owner} has no {wanted} '{end.name}'.", it_has(end.name, there)
         )
     return False
-
-
-def _undeclared(end: End, fmu: FmuDescription, link: Link, tree: Hierarchy) -> bool:
-    """Add the port of a variable that only the FMU declares, with a remark."""
-    port = variable_port(fmu.variables[end.name], fmu, link.place)
-    tree.ports[end.key] = port
-    message = f"{end} is not declared as a connector; it is taken from {fmu.path.name}."
-    tree.findings.remark(
-        link.place, message, f'Add <Connector name="{end.name}" kind="{port.kind}"/>.'
-    )
-    return True
 
 
 def _wanted(

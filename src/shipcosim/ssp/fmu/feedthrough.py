@@ -10,7 +10,7 @@ import lxml.etree as etree
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.xml.archive import read_entry
-from shipcosim.ssp.xml.document import LARGEST_FILE, Findings, parse, parts_in, parts_of
+from shipcosim.ssp.xml.document import Findings, parse, parts_in, parts_of
 
 
 def feedthrough(fmu: FmuDescription) -> dict[str, frozenset[str]]:
@@ -28,7 +28,7 @@ def feedthrough(fmu: FmuDescription) -> dict[str, frozenset[str]]:
     """
     # An FMU that cannot be read states nothing.
     try:
-        data = read_entry(fmu.path, "modelDescription.xml", LARGEST_FILE)
+        data = read_entry(fmu.path, "modelDescription.xml")
     except ShipcosimError:
         data = None
     root = None if data is None else parse(data, fmu.path.name, Findings(), utf8=False)

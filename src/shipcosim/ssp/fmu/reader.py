@@ -16,7 +16,6 @@ from shipcosim.ssp.fmu.variables import read_variables
 from shipcosim.ssp.xml.archive import entries, read_entry
 from shipcosim.ssp.xml.definitions import noted_units
 from shipcosim.ssp.xml.document import (
-    LARGEST_FILE,
     AnyPath,
     Document,
     Findings,
@@ -29,6 +28,7 @@ from shipcosim.ssp.xml.validation import validate
 
 MOST_KEPT = 64
 """FMUs whose descriptions are kept: systems are read again and again while they are edited."""
+INTERFACES = ("CoSimulation", "ModelExchange", "ScheduledExecution")
 
 
 def read_fmu(path: AnyPath) -> FmuDescription:
@@ -99,7 +99,7 @@ def _kept(
 def _described(path: AnyPath, findings: Findings, shown: str) -> FmuDescription | None:
     # The archive, and the description in it.
     try:
-        data = read_entry(path, "modelDescription.xml", LARGEST_FILE, shown)
+        data = read_entry(path, "modelDescription.xml", shown)
         names = entries(path, shown)
     except ShipcosimError as error:
         findings.problems += error.problems
@@ -155,6 +155,11 @@ def _description(
     # FMI 3.0 lists its event indicators.
     listed = [local(part) for part in parts_of(root, "ModelStructure")]
     n_indicators = listed.count("EventIndicator")
+    interfaces = (
+        interfaces_of(root)
+        if version == "1.0"
+        else {local(part): dict(part.attrib) for part in root if local(part) in INTERFACES}
+    )
     given = next((dict(part.attrib) for part in parts_in(root, "DefaultExperiment")), {})
     experiment = _experiment(document, given, findings)
     return FmuDescription(
@@ -165,7 +170,7 @@ def _description(
         variables=read_variables(document, findings),
         description=root.get("description", ""),
         generation_tool=root.get("generationTool", ""),
-        interfaces=interfaces_of(root) if version == "1.0" else _interfaces(root),
+        interfaces=interfaces,
         units=noted_units(document, parts_of(root, "UnitDefinitions"), findings),
         platforms=tuple(sorted(platforms)),
         experiment=experiment,
@@ -191,8 +196,3 @@ def _experiment(document: Document, given: dict[str, str], findings: Findings) -
         )
         del numbers[name]
     return numbers
-
-
-def _interfaces(root: etree._Element) -> dict[str, dict[str, str]]:
-    interfaces = ("CoSimulation", "ModelExchange", "ScheduledExecution")
-    return {local(part): dict(part.attrib) for part in root if local(part) in interfaces}

@@ -1,6 +1,6 @@
 """Reader of an FMU's variables, whichever version of FMI describes them."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import lxml.etree as etree
@@ -39,7 +39,9 @@ def read_variables(document: Document, findings: Findings) -> dict[str, Variable
     is_first = document.root.get("fmiVersion", "").startswith("1.")
     variables = {}
     for element in elements:
-        for name, description in _names(element):
+        for named in (element, *parts_in(element, "Alias")):
+            name = named.get("name")
+            description = named.get("description", "")
             # A variable with a bad value is left out; the others are still read.
             try:
                 variable = _variable(element, name, description, types, sizes, is_first)
@@ -77,12 +79,6 @@ def _start_outside(variable: Variable) -> str:
         f"{word} {end:g}" for word, end in (("at least", low), ("at most", high)) if end is not None
     ]
     return f"It starts with {start:g}. Its own range is {' and '.join(ends)}."
-
-
-def _names(element: etree._Element) -> Iterator[tuple[str, str]]:
-    yield element.get("name"), element.get("description", "")
-    for alias in parts_in(element, "Alias"):
-        yield alias.get("name"), alias.get("description", "")
 
 
 def _type_element(element: etree._Element) -> etree._Element | None:

@@ -99,7 +99,8 @@ def _values(host: str, subject: Subject, system: System) -> tuple[str, System]:
                     )
     # Values that differ from ours, and components with the tool's values.
     other = [
-        _instead(component, variable, applied[name])
+        f"{name}.{variable} is {_value(component, variable, applied[name])!r} "
+        f"instead of {component.start_value(variable)!r}"
         for name, component in system.components.items()
         for variable in {**component.start, **applied[name]}
         if _value(component, variable, applied[name]) != component.start_value(variable)
@@ -120,12 +121,6 @@ def _takes(host: str, value: ParameterValue, variable: Variable, fmu: FmuDescrip
 
 def _value(component: Component, variable: str, applied: Mapping[str, Value]) -> Value | None:
     return applied.get(variable, component.variables[variable].start)
-
-
-def _instead(component: Component, variable: str, applied: Mapping[str, Value]) -> str:
-    there = _value(component, variable, applied)
-    here = component.start_value(variable)
-    return f"{component.name}.{variable} is {there!r} instead of {here!r}"
 
 
 def _connections(host: str, subject: Subject, system: System) -> tuple[str, System]:

@@ -122,23 +122,24 @@ class Library:
         Document or None
         """
         # Inline, inside an FMU, or a file of the package.
-        if source.inline is not None or source.uri is None:
+        uri = source.uri
+        if source.inline is not None or uri is None:
             return source.inline
         if source.in_component:
             return (
                 None
                 if fmu is None
-                else self._once((fmu.path, source.uri), lambda: self._inside(fmu, source))
+                else self._once(
+                    (fmu.path, uri),
+                    lambda: read_in_component(fmu, uri, source.place, self.findings),
+                )
             )
-        file = self.file(source, source.uri, place)
+        file = self.file(source, uri, place)
         return (
             None
             if file is None
             else self._once(("file", file), lambda: place.package.read(file, self.findings))
         )
-
-    def _inside(self, fmu: FmuDescription, source: Source) -> Document | None:
-        return read_in_component(fmu, source.uri or "", source.place, self.findings)
 
     def parsed(self, read: Callable[[Document, Findings], Any], document: Document) -> Any:
         """What `read_parameter_set`, `read_mapping` or `read_dictionary` reads from a document."""

@@ -12,7 +12,6 @@ from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.read.addresses import meant
 from shipcosim.ssp.xml.archive import read_entry, unpack
 from shipcosim.ssp.xml.document import (
-    LARGEST_FILE,
     AnyPath,
     Document,
     Findings,
@@ -310,7 +309,7 @@ def read_in_component(
     """
     name = unquote(uri)
     try:
-        data = read_entry(fmu.path, name, LARGEST_FILE)
+        data = read_entry(fmu.path, name)
     except ShipcosimError as error:
         findings.problems += error.problems
         return None

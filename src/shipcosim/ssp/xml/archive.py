@@ -9,7 +9,7 @@ from pathlib import Path, PurePosixPath
 
 from shipcosim.dialects import LFS_POINTER
 from shipcosim.errors import Problem, ShipcosimError, error_at
-from shipcosim.ssp.xml.document import AnyPath
+from shipcosim.ssp.xml.document import LARGEST_FILE, AnyPath
 from shipcosim.temporary import replacement
 
 MOST_ENTRIES = 20_000
@@ -65,7 +65,7 @@ def entries(path: AnyPath, shown: str | None = None) -> list[str]:
         return [entry.filename for entry in archive.infolist() if not entry.is_dir()]
 
 
-def read_entry(path: AnyPath, name: str, limit: int, shown: str | None = None) -> bytes | None:
+def read_entry(path: AnyPath, name: str, shown: str | None = None) -> bytes | None:
     """Bytes of one file of an archive, or None if it is missing.
 
     Parameters
@@ -74,8 +74,6 @@ def read_entry(path: AnyPath, name: str, limit: int, shown: str | None = None) -
         The archive.
     name : str
         Name within it.
-    limit : int
-        Largest size. [bytes]
     shown : str, optional
         Name of the archive in messages.
 
@@ -93,8 +91,8 @@ def read_entry(path: AnyPath, name: str, limit: int, shown: str | None = None) -
         if name not in archive.namelist():
             return None
         # The stated size first: a large file is never read.
-        if archive.getinfo(name).file_size > limit:
-            raise error_at(shown, f"{name} is larger than {limit >> 20} MiB.")
+        if archive.getinfo(name).file_size > LARGEST_FILE:
+            raise error_at(shown, f"{name} is larger than {LARGEST_FILE >> 20} MiB.")
         try:
             return archive.read(name)
         except Exception as error:  # sizes and places that a damaged directory states can be absurd

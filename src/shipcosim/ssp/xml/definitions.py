@@ -70,7 +70,12 @@ def noted_units(
                 if units.setdefault(name, unit) != unit:
                     both = f"{units[name].definition} and {unit.definition}"
                     raise ValueError(f"The unit '{name}' is defined twice: {both}.")
-                _note_contradiction(unit, document.place(element), findings)
+                # The file's definition counts, also where the name commonly means something else.
+                usual = None if name in AMBIGUOUS else spelled_unit(name)
+                if usual is not None and contradicts(unit, usual):
+                    message = f"'{name}' is defined as {unit.definition}; commonly it is {usual.definition}."
+                    remedy = "Correct the definition, or give the unit another name."
+                    findings.remark(document.place(element), message, remedy)
         for base in parts_in(element, "BaseUnit"):
             if _says_nothing(element, base):
                 message = f"The base unit of '{name}' is empty; the unit has its usual meaning."
@@ -78,16 +83,6 @@ def noted_units(
                     document.place(base), message, "State its exponents, or leave BaseUnit out."
                 )
     return units
-
-
-def _note_contradiction(unit: Unit, place: str, findings: Findings) -> None:
-    """Remark a unit whose definition is not what its name commonly means; the file's definition counts."""
-    usual = None if unit.name in AMBIGUOUS else spelled_unit(unit.name)
-    if usual is not None and contradicts(unit, usual):
-        message = (
-            f"'{unit.name}' is defined as {unit.definition}; commonly it is {usual.definition}."
-        )
-        findings.remark(place, message, "Correct the definition, or give the unit another name.")
 
 
 def read_enumerations(elements: Iterable[etree._Element]) -> dict[str, dict[str, int]]:

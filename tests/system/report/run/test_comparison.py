@@ -8,8 +8,8 @@ import xarray as xr
 
 import shipcosim
 from shipcosim.errors import ShipcosimError
-from shipcosim.report import write_comparison
-from shipcosim.report.run.comparison import differences, lay_over
+from shipcosim.report.run.comparison import compared, differences, lay_over
+from shipcosim.results.comparison import RunComparison
 from shipcosim.series import make_table
 
 
@@ -28,6 +28,13 @@ def boat(north=0.0, turn=0.0, start=0.0, stop=100.0, **start_values):
     )
     known = {"boat.length": 20.0, "boat.breadth": 5.0} | start_values
     return table.assign_attrs(start_values=json.dumps(known))
+
+
+def write_comparison(tables, names, path):
+    """Write the page of two runs; return what it says first, and the differences."""
+    comparison = compared(tables, names)
+    RunComparison(names, tables).page().save(path)
+    return comparison.page.outcome, comparison.differences
 
 
 def test_two_runs_give_two_outlines_each_in_its_colour(browse, tmp_path):

@@ -4,8 +4,9 @@ import json
 
 import numpy as np
 import pytest
+from report.run.test_comparison import write_comparison
 
-from shipcosim.report import write_comparison, write_report
+from shipcosim.report import write_report
 
 SECTORS = {"port": [[80.0, 280.0]], "starboard": []}
 START = {

@@ -315,4 +315,4 @@ def test_headings_are_averaged_and_blended_across_south():
     middle = own_record.mixed(record, Motion(zeros, zeros, headings, zeros, zeros, zeros))
     assert float(middle.psi) == pytest.approx(-math.pi + 0.1)
     one, other = Motion(0.0, 0.0, 3.1, 0.0, 0.0, 0.0), Motion(2.0, 0.0, -3.1, 0.0, 0.0, 0.0)
-    assert drift_off.blended(one, other, 0.5)[:3] == pytest.approx((1.0, 0.0, -math.pi), abs=1e-9)
+    assert drift_off.blend(one, other, 0.5)[:3] == pytest.approx((1.0, 0.0, -math.pi), abs=1e-9)
