@@ -65,10 +65,21 @@ def hemisphere_signs(cells: np.ndarray, role: str) -> np.ndarray | None:
         Of the numbers that the column belongs to.
     """
     signs = sides_of(role)
+    # Of a shaft 1 is ahead beside 0 or -1 for astern.
+    if cells.dtype.kind == "f":
+        is_shaft = role.endswith(("_rpm", "_thrust"))
+        return np.where(cells == 1.0, 1.0, -1.0) if is_shaft and is_direction(cells) else None
     sides = [str(cell).strip().upper() for cell in cells if cell is not None]
-    if cells.dtype.kind == "f" or not sides or not signs.keys() >= set(sides):
+    if not sides or not signs.keys() >= set(sides):
         return None
     return np.array([signs.get(str(cell).strip().upper(), np.nan) for cell in cells])
+
+
+def is_direction(cells: np.ndarray) -> bool:
+    """Whether a column holds two codes for directions: 1 and 0, 1 and -1, or CW and CCW."""
+    if cells.dtype.kind == "f":
+        return set(finite(cells)) in ({0.0, 1.0}, {-1.0, 1.0})
+    return {str(cell).strip().upper() for cell in cells if cell is not None} == {"CW", "CCW"}
 
 
 def sides_of(role: str) -> dict[str, float]:

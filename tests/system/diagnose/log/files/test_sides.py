@@ -9,7 +9,8 @@ from hypothesis import strategies as some
 
 from shipcosim.diagnose.log.degree_size import metres_per_degree
 from shipcosim.diagnose.log.names.proposal import propose
-from shipcosim.diagnose.log.reader import columns_of
+from shipcosim.diagnose.log.reader import columns_of, read_log
+from shipcosim.errors import ShipcosimError
 
 SIDES = {
     "sway": ("Sway [m/s]", [("S", "P"), ("STBD", "PORT"), ("R", "L"), ("sb", "bb")]),
@@ -31,6 +32,39 @@ def test_a_column_of_sides_gives_the_signs(tmp_path, role, pair, shift):
     log = log_of(tmp_path, {"time": T} | MOTION | {name: np.abs(values), f"{name[:3]} side": sides})
     assert log[role].values == pytest.approx(values, abs=1e-4)
     assert "its side stands in" in remarks(log)
+
+
+@pytest.mark.parametrize("codes", [("1", "0"), ("1", "-1"), ("CW", "CCW")])
+@pytest.mark.parametrize("name", ["Port direction", "port_rpm_dir", "Port shaft rotation", "Port reverse"])
+def test_the_code_of_a_direction_is_asked(tmp_path, codes, name):
+    values = 90.0 * np.sin(T / 20.0)
+    columns = {"time": T} | MOTION | {"Port RPM": np.abs(values), "power": T}
+    columns[name] = [codes[0] if v >= 0.0 else codes[1] for v in values]
+    log = log_of(tmp_path, columns)
+    assert "port_rpm" not in log
+    assert f"it has no sign, and '{name}' may hold it" in remarks(log)
+    if codes[0] == "1":
+        guess = next(g for g in propose(columns_of(tmp_path / "log.csv"), THRUSTERS).used if g.role == "port_rpm")
+        assert guess.channel.hemisphere == name and guess.channel.sign == (-1 if "reverse" in name else 1)
+        lines = "".join(
+            f'{role} = "{role}"\n' for role in ("time", *MOTION)
+        ) + f'port_rpm = {{column = "Port RPM", hemisphere = "{name}", sign = -1}}\n'
+        (tmp_path / "channels.toml").write_text(lines)
+        log = read_log(tmp_path / "log.csv", tmp_path / "channels.toml")
+        assert log["port_rpm"].values == pytest.approx(-values, abs=1e-4)
+
+
+def test_a_side_in_words_is_read_wherever_its_column_stands(tmp_path):
+    values = 90.0 * np.sin(T / 20.0)
+    sides = ["Ahead" if v >= 0.0 else "Astern" for v in values]
+    columns = {"time": T, "port direction": sides} | MOTION | {"Port RPM": np.abs(values)}
+    assert log_of(tmp_path, columns)["port_rpm"].values == pytest.approx(values, abs=1e-4)
+
+
+@pytest.mark.parametrize("name", ["Port running", "Stbd direction", "Alarm"])
+def test_the_codes_of_another_column_are_no_direction(tmp_path, name):
+    columns = {"time": T} | MOTION | {"Port RPM": 50.0 + T, name: T % 2.0}
+    assert log_of(tmp_path, columns)["port_rpm"].values == pytest.approx(50.0 + T, abs=1e-4)
 
 
 @pytest.mark.parametrize("word", ["A", "R", "V", "on"])
@@ -70,6 +104,41 @@ def test_a_longitude_is_in_degrees_and_minutes_where_the_latitude_is(
     )
     assert log["north"].values - log["north"].values[0] == pytest.approx(MOTION["north"], abs=0.1)
     assert log["east"].values - log["east"].values[0] == pytest.approx(MOTION["east"], abs=0.1)
+
+
+@EASY
+@given(some.floats(-0.9, 0.9), some.floats(5.0, 170.0))
+def test_a_latitude_is_in_degrees_and_minutes_where_the_longitude_is(tmp_path, latitude, longitude):
+    texts = [minutes(place) for place in positions(latitude, longitude)]
+    columns = {"time": T, "heading": MOTION["heading"], "Lat": texts[0], "Lon": texts[1]}
+    log = log_of(tmp_path, columns)
+    assert log["north"].values - log["north"].values[0] == pytest.approx(MOTION["north"], abs=0.1)
+
+
+WRONG = {
+    "rad": np.radians,
+    "62.20 for 62 deg 20 min": lambda degrees: np.trunc(degrees) + 0.6 * (degrees % 1.0),
+    "ddmm.mmmm": lambda degrees: 60.0 * degrees,  # below 1 degree
+}
+
+
+@EASY
+@given(some.sampled_from(sorted(WRONG)), some.floats(0.05, 0.7), some.floats(0.1, 0.9))
+def test_positions_that_move_otherwise_than_the_velocity_are_asked(tmp_path, unit, latitude, longitude):
+    if unit != "ddmm.mmmm":
+        latitude, longitude = latitude + 61.0, longitude + 10.0
+    places = [WRONG[unit](place) for place in positions(latitude, longitude)]
+    velocity = (np.gradient(MOTION["north"], T) + 1j * np.gradient(MOTION["east"], T)) * np.exp(
+        -1j * np.radians(MOTION["heading"])
+    )
+    columns = {"time": T, "heading": MOTION["heading"], "surge": velocity.real, "sway": velocity.imag}
+    columns |= {
+        name: [f"{v:.12f}" for v in place]
+        for name, place in zip(("latitude", "longitude"), places, strict=True)
+    }
+    with pytest.raises(ShipcosimError, match="moves otherwise than the ship") as error:
+        log_of(tmp_path, columns)
+    assert f"is it in {unit}?" in str(error.value)
 
 
 @EASY
