@@ -22,7 +22,7 @@ from shipcosim.calls.arguments import (
     sources_of,
     values_of_sets,
 )
-from shipcosim.calls.keywords import with_known_keywords
+from shipcosim.keywords import with_known_keywords
 from shipcosim.calls.learning import assumed_craft, check_learning
 from shipcosim.errors import Problem, error_at
 from shipcosim.results.diagnosis import DiagnosisOfLog, DiagnosisOfLogs

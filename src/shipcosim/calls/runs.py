@@ -28,7 +28,7 @@ from shipcosim.calls.arguments import (
     with_osp_events,
     without_none,
 )
-from shipcosim.calls.keywords import with_known_keywords
+from shipcosim.keywords import with_known_keywords
 from shipcosim.cosim import Interrupted, RunError, Snapshot, interpolated, write_snapshot
 from shipcosim.cosim import simulate as simulate_system
 from shipcosim.cosim.simulate import clock_start, with_open_snapshot

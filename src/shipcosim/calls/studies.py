@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from shipcosim.calls.arguments import AnyPath, find, mapping
-from shipcosim.calls.keywords import with_known_keywords
+from shipcosim.keywords import with_known_keywords
 from shipcosim.calls.runs import PreparedRun, prepare_run
 from shipcosim.errors import error_at
 from shipcosim.options import CountProgress

@@ -19,7 +19,7 @@ from shipcosim.calls.arguments import (
     values_of_sets,
     without_none,
 )
-from shipcosim.calls.keywords import with_known_keywords
+from shipcosim.keywords import with_known_keywords
 from shipcosim.calls.runs import system_for
 from shipcosim.cosim import Variation
 from shipcosim.cosim import simulate_many as run_variations
