@@ -5,6 +5,7 @@ from math import sqrt
 
 from shipcosim.errors import error_at, suggestion
 from shipcosim.models.core.constants import GRAVITY
+from shipcosim.ships.check import SHALLOW, SLENDER
 from shipcosim.ships.estimates.hull import HullDimensions, cross_flow_drag, inertia_yaw
 from shipcosim.ships.estimates.resistance import resistance
 from shipcosim.ships.estimates.weather import USUAL_KIND, front_area, side_area
@@ -18,6 +19,8 @@ LAYOUTS = {
 """Usual thrusters."""
 USUAL_LAYOUT = "azimuths"
 ASSUMED = "assumed: usual of a ship of this size"
+SHORTEST, LONGEST = 0.1, 1000.0
+"""Lengths, breadths and draughts of ships, models included. [m]"""
 LENGTH = 30.0
 """Of a ship of which nothing is known. [m]"""
 EFFICIENCY = 0.5
@@ -98,17 +101,26 @@ def _form(answers: Answers) -> HullDimensions:
     mass = _given(answers, "displacement", "kg")
     block = min(max(mass / (1025.0 * L * B * T), 0.2), 1.0) if mass else USUAL_BLOCK
     speed = _given(answers, "speed", "m/s") or 0.25 * sqrt(GRAVITY * L)
+    # Beyond these the formulae of her loads give numbers without a sense, such as a negative power.
+    for name, ratio, (low, high) in (
+        ("length over breadth", L / B, SLENDER),
+        ("breadth over draught", B / T, SHALLOW),
+    ):
+        if not low <= ratio <= high:
+            raise ValueError(f"{name} is {ratio:.3g}. Ships have {low:g} to {high:g}; is a unit missing?")
     return HullDimensions(
         length=L, breadth=B, draught=T, block=block, hulls=1, density=1025.0, speed=speed
     )
 
 
 def _given(answers: Answers, key: str, unit: str) -> float | None:
-    """An answer as a number, or None. Raises ValueError where it is not above 0."""
+    """An answer as a number, or None. Raises ValueError where it is not above 0, or no length of a ship."""
     text = getattr(answers, key)
     value = number_in(text, unit) if text else None
     if value is not None and not value > 0.0:
         raise ValueError(f"{key} = {text}. It must be greater than 0.")
+    if value is not None and unit == "m" and not SHORTEST <= value <= LONGEST:
+        raise ValueError(f"{key} = {text}. Ships have {SHORTEST:g} to {LONGEST:g} m; is the unit right?")
     return value
 
 

@@ -146,10 +146,7 @@ def guarded(function: Callable[..., Conclusion | None]) -> Callable[..., None]:
             raise
         except ShipcosimError as error:
             problems = error.problems
-            # A component that fails on the way is a finding, in a process of its own too; what does not even start is
-            # unusable.
-            table = getattr(error, "table", None)
-            code = FAILED if table is not None and table.sizes["time"] else UNUSABLE
+            code = FAILED if getattr(error, "is_finding", False) else UNUSABLE
             explain(problems, debug)
         except KeyboardInterrupt:
             say("Interrupted.", err=True)
