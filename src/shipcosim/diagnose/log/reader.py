@@ -205,6 +205,11 @@ def _sure(columns: LogColumns, proposal: Proposal) -> dict[str, Channel]:
         message = f"has no column 'time', only {_shown(columns)}."
         if guess:
             message = f"'{guess.column}' may be the time, but {guess.why}."
+        # A column of that name may hold what is no time.
+        texts = [cell for cell in columns.values.get("time", ()) if isinstance(cell, str)]
+        if texts:
+            message = f"column 'time' holds '{texts[0]:.40}', which is not read as a time or a date."
+            help_ = "Write it as 2024-03-14T09:26:00, or in seconds."
         problems.append(Problem(source, message, help_))
     elif len(mapping) < 2:
         problems.append(
