@@ -116,9 +116,9 @@ def _other_kind(annotation: str, value: Any) -> str:
     if not set(kinds) <= set(KINDS) or set(kinds) >= TIME or is_none:
         return ""
     for kind in kinds:
-        # A list of numbers is bytes to Python, and the folder one is in an empty path.
-        is_other = isinstance(value, bytes) or (kind == "AnyPath" and value == "")
-        fits = kind in names or (isinstance(value, KINDS[kind][0]) and not is_other)
+        # An empty path is the folder one is in to Python.
+        is_empty = (kind, value) == ("AnyPath", "")
+        fits = kind in names or (isinstance(value, KINDS[kind][0]) and not is_empty)
         # True is a number to Python; counts are not negative.
         if fits and (kind == "bool" or "bool" not in names) and (kind != "int" or value >= 0):
             return ""

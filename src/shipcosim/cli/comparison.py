@@ -9,7 +9,6 @@ from shipcosim.cosim.engines.registry import ENGINES, OWN, engines_missing
 from shipcosim.errors import counted
 from shipcosim.results.studies import EngineComparison
 
-
 MOST_SHOWN = 30
 """Signals that the table shows beside those that differ by more than the tolerance."""
 
@@ -30,17 +29,19 @@ def print_comparison(comparison: EngineComparison) -> None:
     from shipcosim.report.notebook.study_cards import comparison_table
 
     console = make_console(soft_wrap=True)
-    # Rows of signals that differ are red. The others follow by how much they differ, as far as a reader goes.
+    # Rows of signals that differ are red, and come first. The others are shown as far as a reader goes.
     table = comparison_table(comparison)
     rows = []
+    differing = 0
     for signal, row in zip(comparison.signals, table.rows, strict=True):
         differs = signal.worst > comparison.tolerance
-        if differs or len(rows) < MOST_SHOWN:
-            rows.append([Text(cell, style="red" if differs else "") for cell in row])
-    print_table(console, rows, table.head)
-    if len(rows) < len(table.rows):
-        left_out = len(table.rows) - len(rows)
-        console.print(f"{counted(left_out, 'signal')} that differ less: --json has all.")
+        differing += differs
+        rows.append([Text(cell, style="red" if differs else "") for cell in row])
+    shown = rows[: max(MOST_SHOWN, differing)]
+    print_table(console, shown, table.head)
+    if len(shown) < len(rows):
+        left_out = counted(len(rows) - len(shown), "signal")
+        console.print(f"{left_out} that differ less: --json has all.")
     for name, seconds in comparison.seconds.items():
         console.print(f"{name} ran in {seconds:.1f} s.")
     for name, why in comparison.left_out.items():

@@ -19,7 +19,7 @@ from shipcosim.cli.console import (
 )
 from shipcosim.cli.outcomes.exits import INTERRUPTED, Conclusion
 from shipcosim.cosim import Interrupted
-from shipcosim.errors import Problem, ShipcosimError, raise_errors
+from shipcosim.errors import ShipcosimError
 from shipcosim.native import is_installed
 from shipcosim.results.run import VERDICT
 from shipcosim.staging import set_aside
@@ -41,7 +41,7 @@ def concluded(prepared: PreparedRun, out: Path, force: bool = False) -> Conclusi
 
 def prepare_folder(
     files: Mapping[str, Path], options: Mapping[str, Any]
-) -> tuple[dict[str, PreparedRun], dict[str, tuple[Problem, ...]]]:
+) -> tuple[dict[str, PreparedRun], dict[str, ShipcosimError]]:
     """Read and check scenarios, all before the first one runs; those that can run, and why others cannot.
 
     Parameters
@@ -64,15 +64,15 @@ def prepare_folder(
         try:
             prepared[name] = prepare_run(file, **options)
         except ShipcosimError as error:
-            refused[name] = tuple(error.problems)
+            refused[name] = error
     if not prepared:
-        raise_errors(problem for problems in refused.values() for problem in problems)
+        raise ShipcosimError([problem for error in refused.values() for problem in error.problems])
     return prepared, refused
 
 
 def run_folder(
     prepared: Mapping[str, PreparedRun],
-    refused: Mapping[str, tuple[Problem, ...]],
+    refused: Mapping[str, ShipcosimError],
     name: str,
     out: Path | None = None,
     force: bool = False,
@@ -83,7 +83,7 @@ def run_folder(
     ----------
     prepared : mapping of str to PreparedRun
         By the names of the scenarios in their folder.
-    refused : mapping of str to tuple of Problem
+    refused : mapping of str to ShipcosimError
         Why others of them cannot run; this is printed last, where it is seen.
     name : str
         Of the folder of the scenarios.
@@ -106,8 +106,8 @@ def run_folder(
 
     def show() -> None:
         print_overview(finished.outcome, rows, out / "report.html")
-        for problems in refused.values():
-            print_problems(problems)
+        for error in refused.values():
+            print_problems(error.problems)
 
     return Conclusion(name, finished, show, out)
 

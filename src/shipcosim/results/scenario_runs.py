@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from shipcosim.errors import Problem
+from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.keywords import with_known_keywords
 from shipcosim.report import ScenarioRow, overview_outcome, write_overview
 from shipcosim.report.run.page import Digest
@@ -31,13 +32,13 @@ class ScenarioRuns(Result):
         Of the folder.
     runs : mapping of str to Run
         By the names of the scenarios.
-    refused : mapping of str to tuple of Problem
+    refused : mapping of str to ShipcosimError
         Scenarios that could not be read, with why.
     """
 
     name: str
     runs: Mapping[str, Run]
-    refused: Mapping[str, tuple[Problem, ...]] = field(default_factory=dict)
+    refused: Mapping[str, ShipcosimError] = field(default_factory=dict)
 
     @property
     def rows(self) -> list[ScenarioRow]:
@@ -46,8 +47,8 @@ class ScenarioRuns(Result):
             ScenarioRow(name, run.scenario.description, f"{name}/{run.checks[0].page}", run.digest)
             for name, run in self.runs.items()
         ]
-        for name, problems in self.refused.items():
-            outcome = Outcome("failed", "ERROR", " ".join(map(str, problems)))
+        for name, error in self.refused.items():
+            outcome = Outcome("failed", "ERROR", str(error))
             rows.append(ScenarioRow(name, "cannot be run", f"#{name}", Digest(outcome, [], ())))
         return rows
 
@@ -64,8 +65,9 @@ class ScenarioRuns(Result):
     @property
     def failures(self) -> tuple[Problem, ...]:
         """Why runs did not begin or did not get to their end."""
-        during = tuple(error for run in self.runs.values() for error in run.errors)
-        return during + tuple(problem for problems in self.refused.values() for problem in problems)
+        errors = [run.errors for run in self.runs.values()]
+        errors += [error.problems for error in self.refused.values()]
+        return tuple(chain.from_iterable(errors))
 
     @property
     def outcome(self) -> Outcome:
@@ -80,8 +82,8 @@ class ScenarioRuns(Result):
             for name, run in self.runs.items()
             for check in run.checks
         ]
-        for name, problems in self.refused.items():
-            checks += [Check("can be run", "error", str(problem), name) for problem in problems]
+        for name, error in self.refused.items():
+            checks.append(Check("can be run", "error", str(error), name))
         return tuple(checks)
 
     def as_json(self) -> dict[str, Any]:
@@ -92,7 +94,7 @@ class ScenarioRuns(Result):
             "verdict": "passed" if self.passed else "failed",
             "sentence": self.outcome.sentence,
             "scenarios": [run.as_json() | {"name": name} for name, run in self.runs.items()],
-            "refused": {name: list(map(str, why)) for name, why in self.refused.items()},
+            "refused": {name: str(error) for name, error in self.refused.items()},
             "page": "report.html",
             "files": ["report.html", VERDICT],
         }

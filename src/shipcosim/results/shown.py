@@ -153,6 +153,9 @@ def passed_or_failed(holds: bool) -> str:
 class Result(ABC):
     """What all results have: a line for the console, a card for notebooks, what was checked one by one."""
 
+    is_usable = True
+    """Whether all of the input could be used; else the command ends with exit code 2."""
+
     @abstractmethod
     def _card(self) -> Card:
         """What a notebook shows."""
@@ -166,11 +169,6 @@ class Result(ABC):
     def passed(self) -> bool:
         """Whether nothing is wrong; else the command ends with exit code 1."""
         return getattr(self, "verdict", "consistent") == "consistent"
-
-    @property
-    def is_usable(self) -> bool:
-        """Whether all of the input could be used; else the command ends with exit code 2."""
-        return True
 
     @property
     def failures(self) -> tuple[Problem, ...]:

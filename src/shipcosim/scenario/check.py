@@ -347,6 +347,11 @@ def _event_complaint(
     # An amount with a unit must be convertible; any other value must fit the type.
     if kind == "Real" and is_amount(value):
         return _unit_complaint(system, verb, signal, value, (component, name))
+    # FMI's integers have 32 bits, or say how many they have.
+    is_plain = kind == "Integer" and (component is None or variable.type == "Integer")
+    if is_plain and isinstance(value, (int, float)) and not -(2**31) <= value < 2**31:
+        message = f"{verb} of '{signal}' with {value:.15g}: too large for an Integer."
+        return message, f"Give one from {-(2**31)} to {2**31 - 1}."
     if verb != "reset" and not _fits(value, kind, items, verb):
         listed = f" Its items are {', '.join(items)}." if items else ""
         message = f"{verb} of '{signal}' with {value!r}: the signal is {kind or None}."

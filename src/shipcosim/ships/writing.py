@@ -5,7 +5,6 @@ from math import sqrt
 
 from shipcosim.errors import error_at, suggestion
 from shipcosim.models.core.constants import GRAVITY
-from shipcosim.ships.check import SHALLOW, SLENDER
 from shipcosim.ships.estimates.hull import HullDimensions, cross_flow_drag, inertia_yaw
 from shipcosim.ships.estimates.resistance import resistance
 from shipcosim.ships.estimates.weather import USUAL_KIND, front_area, side_area
@@ -101,13 +100,6 @@ def _form(answers: Answers) -> HullDimensions:
     mass = _given(answers, "displacement", "kg")
     block = min(max(mass / (1025.0 * L * B * T), 0.2), 1.0) if mass else USUAL_BLOCK
     speed = _given(answers, "speed", "m/s") or 0.25 * sqrt(GRAVITY * L)
-    # Beyond these the formulae of her loads give numbers without a sense, such as a negative power.
-    for name, ratio, (low, high) in (
-        ("length over breadth", L / B, SLENDER),
-        ("breadth over draught", B / T, SHALLOW),
-    ):
-        if not low <= ratio <= high:
-            raise ValueError(f"{name} is {ratio:.3g}. Ships have {low:g} to {high:g}; is a unit missing?")
     return HullDimensions(
         length=L, breadth=B, draught=T, block=block, hulls=1, density=1025.0, speed=speed
     )
@@ -120,7 +112,9 @@ def _given(answers: Answers, key: str, unit: str) -> float | None:
     if value is not None and not value > 0.0:
         raise ValueError(f"{key} = {text}. It must be greater than 0.")
     if value is not None and unit == "m" and not SHORTEST <= value <= LONGEST:
-        raise ValueError(f"{key} = {text}. Ships have {SHORTEST:g} to {LONGEST:g} m; is the unit right?")
+        raise ValueError(
+            f"{key} = {text}. Ships have {SHORTEST:g} to {LONGEST:g} m; is the unit right?"
+        )
     return value
 
 

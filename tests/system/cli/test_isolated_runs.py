@@ -90,7 +90,10 @@ def test_an_fmu_that_ends_its_process_at_the_start_has_one_exit_code(project, en
     file.write_text(text.replace("self.y = 0.0", end))
     main = [sys.executable, "-c", "from shipcosim.cli import main; main()"]
     ended = subprocess.run(
-        [*main, "run", "fill", "--out", "out", *isolate], capture_output=True, text=True, check=False
+        [*main, "run", "fill", "--out", "out", *isolate],
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert ended.returncode == 1 and "Traceback" not in ended.stderr
     assert not list(project.rglob("*.unfinished*"))

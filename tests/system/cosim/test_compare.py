@@ -214,7 +214,11 @@ def test_command_shows_each_signal_and_the_verdict(packed):
 
 def test_command_shows_the_signals_that_differ_most():
     result = run_command("gust", "--stop-time", 0.2)
-    shown = [line for line in result.output.splitlines() if line.startswith(tuple("abcdefghijklmnopqrstuvwxyz"))]
+    shown = [
+        line
+        for line in result.output.splitlines()
+        if line.startswith(tuple("abcdefghijklmnopqrstuvwxyz"))
+    ]
     left_out = int(re.search(r"(\d+) signals that differ less: --json has all", result.output)[1])
     told = json.loads(run_command("gust", "--stop-time", 0.2, "--json").stdout)["signals"]
     assert len(told) - left_out == MOST_SHOWN

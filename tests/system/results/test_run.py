@@ -246,7 +246,9 @@ def test_what_cannot_be_used_is_one_error_without_a_wall(case):
 @pytest.mark.parametrize("wrong", [3, 2.5, None, True, b"out", [], {}, "", ["a", "b"], object()])
 def test_saving_to_what_is_no_path_is_one_error(gust, wrong):
     for save in (gust.save, gust.save_part, gust.page().save, gust.plot().save):
-        with pytest.raises(sc.ShipcosimError, match=r"save(_part)?\(\): (folder|path) = .*Give a path or name"):
+        with pytest.raises(
+            sc.ShipcosimError, match=r"save(_part)?\(\): (folder|path) = .*Give a path or name"
+        ):
             save(wrong)
     with pytest.raises(sc.ShipcosimError, match="There is no keyword 'overwrite'"):
         gust.save("out", overwrite=True)
@@ -255,7 +257,10 @@ def test_saving_to_what_is_no_path_is_one_error(gust, wrong):
 
 
 def test_none_is_as_good_as_left_out_wherever_there_is_a_default():
-    assert sc.simulate("gunnerus_open", None, stop_time=0.1, set=None, strict=None).name == "gunnerus_open"
+    assert (
+        sc.simulate("gunnerus_open", None, stop_time=0.1, set=None, strict=None).name
+        == "gunnerus_open"
+    )
     with pytest.raises(sc.ShipcosimError, match="scenario = None. Give a path"):
         sc.run(None)
     with pytest.raises(sc.ShipcosimError, match="scenario = None. Give a path"):

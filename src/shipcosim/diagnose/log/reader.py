@@ -17,10 +17,8 @@ from shipcosim.diagnose.log.files.joined_tables import joined, tables_in
 from shipcosim.diagnose.log.files.long_format import brought_together, spread
 from shipcosim.diagnose.log.files.missing import without_dropouts, without_missing
 from shipcosim.diagnose.log.files.nmea2000 import is_messages, tables_of_messages
-from shipcosim.diagnose.log.files.positions import MINUTES, degrees_of_minutes
 from shipcosim.diagnose.log.files.table import LogColumns, read_file
 from shipcosim.diagnose.log.files.times import epoch_unit
-from shipcosim.diagnose.log.names.evidence import unit_of_speed
 from shipcosim.diagnose.log.names.guesses import Thrusters
 from shipcosim.diagnose.log.names.proposal import Proposal, propose
 from shipcosim.diagnose.log.names.units import unit_for
@@ -103,11 +101,8 @@ def read_log(
     _check_restart(columns.source, time, [values for values, _ in signals.values()])
     remarks += more + without_dropouts(signals) + _over_the_earth(signals)
     if LARGEST.keys() <= signals.keys():
-        degrees = [signals[name][0] for name in LARGEST]
         attributes |= _local_position(columns.source, signals, remarks)
         remarks += without_dropouts(signals)
-        if not stated["latitude"]:
-            _check_degrees(columns.source, time, signals, degrees)
     remarks += _without_value(columns.source, signals)
     attributes["column_remarks"] = [
         *columns.remarks,
@@ -208,7 +203,9 @@ def _sure(columns: LogColumns, proposal: Proposal) -> dict[str, Channel]:
         # A column of that name may hold what is no time.
         texts = [cell for cell in columns.values.get("time", ()) if isinstance(cell, str)]
         if texts:
-            message = f"column 'time' holds '{texts[0]:.40}', which is not read as a time or a date."
+            message = (
+                f"column 'time' holds '{texts[0]:.40}', which is not read as a time or a date."
+            )
             help_ = "Write it as 2024-03-14T09:26:00, or in seconds."
         problems.append(Problem(source, message, help_))
     elif len(mapping) < 2:
@@ -390,39 +387,6 @@ def _local_position(source, signals, remarks):
     signals["north"] = north, "m"
     signals["east"] = east, "m"
     return {f"{name}_origin": float(of[first]) for name, of in zip(LARGEST, values, strict=True)}
-
-
-_POINTED = "62.20 for 62 deg 20 min"
-_READINGS = {
-    "rad": np.degrees,
-    MINUTES: degrees_of_minutes,
-    _POINTED: lambda values: degrees_of_minutes(100.0 * values),
-}
-"""What numbers that are small enough for degrees may be instead, and their degrees."""
-
-
-def _check_degrees(source, time, signals, degrees):
-    """Raise ShipcosimError where only in another unit latitude and longitude move as the ship's velocity says."""
-    if not {"surge", "sway"} <= signals.keys() or not (np.diff(time) > 0.0).all():
-        return
-    speed = np.hypot(signals["surge"][0], signals["sway"][0])
-    north, east = signals["north"][0], signals["east"][0]
-    if unit_of_speed(time, north, east, speed) == "m/s":
-        return
-    # Rows without a fix are none of either reading.
-    places = [np.where(np.isfinite(north + east), values, np.nan) for values in degrees]
-    for unit, read in _READINGS.items():
-        latitude, longitude = (read(values) for values in places)
-        is_possible = np.nanmax(np.abs(latitude)) <= 90.0 and np.nanmax(np.abs(longitude)) <= 360.0
-        if unit == _POINTED:
-            is_possible = is_possible and all((finite(np.abs(v)) % 1.0 < 0.6).all() for v in places)
-        if not is_possible or unit_of_speed(time, *local_plane(latitude, longitude)[:2], speed) != "m/s":
-            continue
-        message = f"moves otherwise than the ship by her velocity: is it in {unit}?"
-        remedy = f'Say the unit in a channel file: latitude = {{column = "...", unit = "{unit}"}}, or "deg".'
-        if unit == _POINTED:
-            remedy = f'Times 100 it is "{MINUTES}". If it is right, say unit = "deg" in a channel file.'
-        raise error_at(f"{source}, latitude", message, remedy)
 
 
 def _without_value(source, signals):

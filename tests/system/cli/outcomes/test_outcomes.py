@@ -239,7 +239,9 @@ def test_a_scenario_that_cannot_be_read_is_named_and_the_others_run(call, projec
     page = Path("results/scenarios/report.html").read_text(encoding="utf-8")
     assert "2 of 3 scenarios miss something: a, z." in page
     cases = ElementTree.parse("j.xml").getroot()[0]
-    assert {case.get("classname").rpartition(".")[2] for case in cases if case.find("error") is not None} == {"a", "z"}
+    assert {
+        case.get("classname").rpartition(".")[2] for case in cases if case.find("error") is not None
+    } == {"a", "z"}
 
 
 def test_a_folder_of_broken_scenarios_is_one_error(call, project):

@@ -520,7 +520,9 @@ def test_a_function_that_an_fmu_lacks_matters_only_where_it_is_called(
 
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 @pytest.mark.parametrize("status", [-1, -7, -(2**31), 6, 99])
-def test_a_status_that_fmi_does_not_have_is_a_failure(version, status, tmp_path, needs, monkeypatch):
+def test_a_status_that_fmi_does_not_have_is_a_failure(
+    version, status, tmp_path, needs, monkeypatch
+):
     if c_fmus.compiler() is None:
         needs("a C compiler")
     steps = c_fmus.ADAPTERS[version].replace("if (m->mode != STEP) return 3;", f"return {status};")

@@ -10,22 +10,12 @@ from shipcosim.angles import wrap_series
 from shipcosim.diagnose.log.files.cells import without_fillers
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.vocabulary import vocabulary, words_of
-from shipcosim.diagnose.numerics import finite, runs
+from shipcosim.diagnose.log.roles import ROLES
+from shipcosim.diagnose.numerics import runs
 from shipcosim.errors import counted
 
 FLAGS = frozenset(vocabulary()["flags"]["words"])
 """Words of a column that says which rows of another one are measurements."""
-_GROUPS = (
-    ("north", "east"),
-    ("heading",),
-    ("surge", "sway"),
-    ("yaw_rate",),
-    ("speed_over_ground", "course_over_ground"),
-    ("north_velocity", "east_velocity"),
-    ("wind_speed", "wind_from"),
-    ("true_wind_speed", "true_wind_from"),
-)
-"""Channels of one sensor, which lose their values together. What drives thrusters may leap, and is none of them."""
 _FAR_LEAP = 5.0
 """Times all but one in a hundred changes of a channel; no ship leaps further, holds, and leaps back. Assumed."""
 _LARGE_LEAP = 0.25
@@ -100,25 +90,19 @@ def without_dropouts(signals: dict[str, tuple[np.ndarray, str]]) -> list[str]:
         Values and unit by role.
     """
     remarks = []
-    for group in _GROUPS:
-        roles = [role for role in group if role in signals]
-        found = {role: dropouts(*signals[role]) for role in roles}
-        lost = np.any([rows for rows in found.values()], axis=0)
-        for role in roles:
-            # A course of 0 beside a lost speed of 0 is lost as well, though it may be a course.
-            values, unit = signals[role]
-            rows = found[role] | (lost & (values == 0.0))
-            if not rows.any():
-                continue
-            fillers = ", ".join(f"{value:g}" for value in np.unique(values[rows]))
-            where = counted(rows.sum(), "row")
-            remarks.append(f"{role}: it leaps to {fillers} and back in {where}, as without a measurement: left empty.")
+    # What drives thrusters may leap, and is none of these. Positions are looked at in m.
+    for role in signals.keys() & (ROLES.keys() - {"latitude", "longitude"}):
+        values, unit = signals[role]
+        rows = dropouts(values, unit)
+        if rows.any():
+            where = f"{values[rows][0]:g} and back in {counted(rows.sum(), 'row')}"
+            remarks.append(f"{role}: it leaps to {where}, as without a measurement: left empty.")
             signals[role] = np.where(rows, np.nan, values), unit
-    return remarks
+    return sorted(remarks)
 
 
 def dropouts(values: np.ndarray, unit: str) -> np.ndarray:
-    """True in rows with the number that a channel leaps to, holds and leaves again for where it was, (n,) array.
+    """True in rows with the number that a channel leaps to, and from which it leaps away again, (n,) array.
 
     Examples
     --------
@@ -128,8 +112,7 @@ def dropouts(values: np.ndarray, unit: str) -> np.ndarray:
     [30, 31, 32]
     """
     rows = np.zeros(len(values), bool)
-    numbers = finite(values)
-    for filler in {0.0, numbers.min(initial=0.0), numbers.max(initial=0.0)}:
+    for filler in {0.0, np.nanmin(values, initial=0.0), np.nanmax(values, initial=0.0)}:
         is_filler = values == filler
         rest = np.flatnonzero(np.isfinite(values) & ~is_filler)
         if not is_filler.any() or len(rest) < _FEWEST:
@@ -137,18 +120,14 @@ def dropouts(values: np.ndarray, unit: str) -> np.ndarray:
         # What the channel does otherwise: its changes from row to row, and its range.
         usual = np.quantile(_distance(np.diff(values[rest]), unit), 0.99)
         large = _LARGE_LEAP * np.ptp(values[rest])
-        # Leaps to the number and from it; a log may begin or end with it.
+        # Leaps to the number and from it, the smaller of both; a log may begin or end with it.
         spans = runs(is_filler)
         place = np.searchsorted(rest, spans[:, 0])
         around = np.concatenate(([np.nan], values[rest], [np.nan]))
-        before = around[place]
-        after = around[place + 1]
-        leap = np.fmin(_distance(before - filler, unit), _distance(after - filler, unit))
-        is_elsewhere = _distance(after - before, unit) >= 0.5 * leap
-        far = ~is_elsewhere & (leap > _FAR_LEAP * usual) & (usual > 0.0)
+        leap = np.nanmin(_distance(around[[place, place + 1]] - filler, unit), axis=0)
         # A number that stands for no value at one place does so elsewhere. A single row may be any outlier.
-        if (far & (leap > large)).any() and (filler == 0.0 or is_filler.sum() > 1):
-            for first, last in spans[far]:
+        if usual > 0.0 and leap.max() > large and (filler == 0.0 or is_filler.sum() > 1):
+            for first, last in spans[leap > _FAR_LEAP * usual]:
                 rows[first:last] = True
     return rows
 

@@ -65,21 +65,19 @@ def hemisphere_signs(cells: np.ndarray, role: str) -> np.ndarray | None:
         Of the numbers that the column belongs to.
     """
     signs = sides_of(role)
-    # Of a shaft 1 is ahead beside 0 or -1 for astern.
-    if cells.dtype.kind == "f":
-        is_shaft = role.endswith(("_rpm", "_thrust"))
-        return np.where(cells == 1.0, 1.0, -1.0) if is_shaft and is_direction(cells) else None
-    sides = [str(cell).strip().upper() for cell in cells if cell is not None]
-    if not sides or not signs.keys() >= set(sides):
+    texts = _texts(cells)
+    if not texts or not signs.keys() >= texts:
         return None
     return np.array([signs.get(str(cell).strip().upper(), np.nan) for cell in cells])
 
 
-def is_direction(cells: np.ndarray) -> bool:
-    """Whether a column holds two codes for directions: 1 and 0, 1 and -1, or CW and CCW."""
-    if cells.dtype.kind == "f":
-        return set(finite(cells)) in ({0.0, 1.0}, {-1.0, 1.0})
-    return {str(cell).strip().upper() for cell in cells if cell is not None} == {"CW", "CCW"}
+def are_codes(cells: np.ndarray) -> bool:
+    """Whether a column holds two codes that may be directions: 1 and 0, 1 and -1, or CW and CCW."""
+    return len(_texts(cells)) == 2 and _texts(cells) <= {"1.0", "0.0", "-1.0", "CW", "CCW"}
+
+
+def _texts(cells):
+    return {str(cell).strip().upper() for cell in cells if cell is not None and cell == cell}
 
 
 def sides_of(role: str) -> dict[str, float]:

@@ -1,13 +1,12 @@
 """All columns of a log together: which one has which role, what is sure, what a guess, and what is not used and why."""
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from shipcosim.diagnose.log.channels import Channel
 from shipcosim.diagnose.log.files.file_layout import FileLayout
-from shipcosim.diagnose.log.files.positions import hemisphere_signs, is_direction, sides_of
+from shipcosim.diagnose.log.files.positions import are_codes, hemisphere_signs, sides_of
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.clock import time_of
 from shipcosim.diagnose.log.names.guesses import (
@@ -25,9 +24,9 @@ from shipcosim.diagnose.log.names.vocabulary import words_of
 from shipcosim.diagnose.log.values import LARGEST
 from shipcosim.diagnose.numerics import finite
 
-_ASTERN = {"reverse", "rev", "astern", "back", "backward"}
-_DIRECTIONS = _ASTERN | {"direction", "rotation", "sign", "ahead", "forward", "sense"}
+_DIRECTIONS = set("direction rotation sign ahead forward sense reverse rev astern backward".split())
 """Words of a column that holds the direction of a shaft."""
+_OF_A_SHAFT = set("rpm thrust speed shaft propeller thruster feedback".split())
 _POSITIONS = (("north", "east"), ("latitude", "longitude"))
 _PAIRS = (
     *_POSITIONS,
@@ -249,9 +248,10 @@ def _with_hemispheres(chosen, log, left):
         if role not in LARGEST:
             named, after = (), [name for name in after if name not in named]
         for name in (*after, *named):
-            # Codes such as 0 and 1 may be anything.
             cells = log.values[name]
-            signs = None if cells.dtype.kind == "f" else hemisphere_signs(cells, role)
+            if cells.dtype.kind == "f" or are_codes(cells):
+                continue
+            signs = hemisphere_signs(cells, role)
             # An A alone behind a number may mean that it is active.
             if signs is not None and (1.0 in signs or "F" not in sides_of(role)):
                 notes = () if role in LARGEST else (f"its side stands in '{name}'",)
@@ -262,37 +262,24 @@ def _with_hemispheres(chosen, log, left):
 
 
 def _with_directions(chosen, log):
-    """Speeds and thrusts without a sign are asked where a column of codes may hold it."""
+    """Speeds and thrusts without a sign are asked where another column may hold their direction."""
     for role, guess in chosen.items():
-        quantity = role.rpartition("_")[2]
-        values = log.values.get(guess.column, np.empty(0))
-        if quantity not in ("rpm", "thrust") or guess.channel.hemisphere or values.dtype.kind != "f":
+        values = log.values.get(guess.column)
+        is_shaft = role.endswith(("_rpm", "_thrust")) and not guess.channel.hemisphere
+        if not is_shaft or values.dtype.kind != "f" or (finite(values) < 0.0).any():
             continue
         thruster = _thruster_words(guess.column)
-        names = [
-            name
-            for name, cells in log.values.items()
-            if _DIRECTIONS & set(words_of(name))
-            and _thruster_words(name) == thruster
-            and (is_direction(cells) or hemisphere_signs(cells, role) is not None)
-        ]
-        if not names or (finite(values) < 0.0).any():
-            continue
-        column = names[0]
-        is_readable = hemisphere_signs(log.values[column], role) is not None
-        settings: dict[str, Any] = {"hemisphere": column} if is_readable else {}
-        if is_readable and not is_direction(log.values[column]):
-            chosen[role] = guess.read_as(settings, notes=(*guess.notes, f"its side stands in '{column}'"))
-            continue
-        if _ASTERN & set(words_of(column)):
-            settings["sign"] = -1
-        why = f"it has no sign, and '{column}' may hold it: which code is ahead is not stated"
-        chosen[role] = guess.read_as(settings, rank=GUESS, why=why)
+        for name, cells in log.values.items():
+            if not _DIRECTIONS & set(words_of(name)) or _thruster_words(name) != thruster:
+                continue
+            if are_codes(cells):
+                why = f"it has no sign, and '{name}' may hold it: which code is ahead is not stated"
+                chosen[role] = guess.read_as({"hemisphere": name}, rank=GUESS, why=why)
 
 
 def _thruster_words(name):
     """Words of a name that say which thruster it is."""
-    return set(words_of(name)) - _DIRECTIONS - {"rpm", "thrust", "speed", "shaft", "propeller", "thruster", "feedback"}
+    return set(words_of(name)) - _DIRECTIONS - _OF_A_SHAFT
 
 
 def _never_changes(guess, log):

@@ -57,8 +57,8 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: FileLayout) -> None
             if 0.0 < np.abs(numbers).max(initial=0.0) <= most:
                 _guess(chosen, role, "rad", "no unit is stated: rad or deg")
         elif guess.rank == EXACT and not guess.unit and (is_direction or role == "heading"):
-            # The name of the role stands for degrees, unless the numbers speak for radians and no other channel tells.
-            if _is_within_a_turn(numbers) and not _is_judged(role, chosen, log, form, motion):
+            # The name of a role stands for degrees, but a log in radians may have it too.
+            if _is_within_a_turn(numbers):
                 _guess(chosen, role, "rad", _RAD_OR_DEG)
 
 
@@ -66,22 +66,6 @@ def _is_within_a_turn(numbers):
     """Whether numbers can be directions in radians: they change, are hardly whole, and none is beyond 2 pi."""
     is_small = 0.0 < np.abs(numbers).max(initial=0.0) <= _DEGREES
     return is_small and np.ptp(numbers) > 0.0 and np.mean(numbers == np.round(numbers)) < 0.5
-
-
-def _is_judged(role, chosen, log, form, motion):
-    """Whether the course or a yaw rate shows the unit of a heading, so that a diagnosis can name a wrong one."""
-    if role != "heading" or motion is None:
-        return False
-    heading = _values(chosen, "heading", log, form)
-    rate = _values(chosen, "yaw_rate", log, form)
-    if rate is not None and unit_of_rate(motion[0], heading, rate) is not None:
-        return True
-    if motion[1] is None:
-        return False
-    body: list[Any] = [_values(chosen, axis, log, form) for axis in ("surge", "sway")]
-    drift = None if any(values is None for values in body) else np.arctan2(body[1], body[0])
-    readings = {"deg": heading, "rad": np.degrees(heading)}
-    return frame_of_angle(*motion, readings, drift) is not None
 
 
 def _settle_degrees(chosen, log):
@@ -104,7 +88,8 @@ def _settle_degrees(chosen, log):
             )
     # A position in radians looks like one in the Gulf of Guinea.
     is_small = [
-        _is_open(chosen, role)
+        role in chosen
+        and not chosen[role].unit
         and 0.0 < np.abs(_finite(log.values[chosen[role].column])).max(initial=0.0) <= most
         for role, most in {"latitude": np.pi / 2.0, "longitude": np.pi}.items()
     ]

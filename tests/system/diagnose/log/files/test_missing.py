@@ -119,7 +119,11 @@ def test_a_ship_that_stops_and_a_heading_through_north_lose_no_value(tmp_path, p
     speed = np.maximum(np.abs(T - 150.0) - pause, 0.0) * 0.02
     speed = np.where(speed < noise, 0.0, speed + noise * 0.1 * np.sin(9.0 * T))
     heading = np.round(np.mod(20.0 * np.sin(T / 40.0), 360.0))
-    columns = {"time": T} | SENSORS | {"surge": speed, "heading": heading, "port_rpm": 90.0 * (speed > 0.0)}
+    columns = (
+        {"time": T}
+        | SENSORS
+        | {"surge": speed, "heading": heading, "port_rpm": 90.0 * (speed > 0.0)}
+    )
     log = log_of(tmp_path, columns)
     assert log["surge"].values == pytest.approx(speed, abs=1e-4)
     assert log["heading"].values.tolist() == heading.tolist()

@@ -10,7 +10,6 @@ from hypothesis import strategies as some
 from shipcosim.diagnose.log.degree_size import metres_per_degree
 from shipcosim.diagnose.log.names.proposal import propose
 from shipcosim.diagnose.log.reader import columns_of, read_log
-from shipcosim.errors import ShipcosimError
 
 SIDES = {
     "sway": ("Sway [m/s]", [("S", "P"), ("STBD", "PORT"), ("R", "L"), ("sb", "bb")]),
@@ -35,7 +34,9 @@ def test_a_column_of_sides_gives_the_signs(tmp_path, role, pair, shift):
 
 
 @pytest.mark.parametrize("codes", [("1", "0"), ("1", "-1"), ("CW", "CCW")])
-@pytest.mark.parametrize("name", ["Port direction", "port_rpm_dir", "Port shaft rotation", "Port reverse"])
+@pytest.mark.parametrize(
+    "name", ["Port direction", "port_rpm_dir", "Port shaft rotation", "Port reverse"]
+)
 def test_the_code_of_a_direction_is_asked(tmp_path, codes, name):
     values = 90.0 * np.sin(T / 20.0)
     columns = {"time": T} | MOTION | {"Port RPM": np.abs(values), "power": T}
@@ -44,21 +45,19 @@ def test_the_code_of_a_direction_is_asked(tmp_path, codes, name):
     assert "port_rpm" not in log
     assert f"it has no sign, and '{name}' may hold it" in remarks(log)
     if codes[0] == "1":
-        guess = next(g for g in propose(columns_of(tmp_path / "log.csv"), THRUSTERS).used if g.role == "port_rpm")
-        assert guess.channel.hemisphere == name and guess.channel.sign == (-1 if "reverse" in name else 1)
-        lines = "".join(
-            f'{role} = "{role}"\n' for role in ("time", *MOTION)
-        ) + f'port_rpm = {{column = "Port RPM", hemisphere = "{name}", sign = -1}}\n'
+        guess = next(
+            g
+            for g in propose(columns_of(tmp_path / "log.csv"), THRUSTERS).used
+            if g.role == "port_rpm"
+        )
+        assert guess.channel.hemisphere == name
+        lines = (
+            "".join(f'{role} = "{role}"\n' for role in ("time", *MOTION))
+            + f'port_rpm = {{column = "Port RPM", hemisphere = "{name}", sign = -1}}\n'
+        )
         (tmp_path / "channels.toml").write_text(lines)
         log = read_log(tmp_path / "log.csv", tmp_path / "channels.toml")
         assert log["port_rpm"].values == pytest.approx(-values, abs=1e-4)
-
-
-def test_a_side_in_words_is_read_wherever_its_column_stands(tmp_path):
-    values = 90.0 * np.sin(T / 20.0)
-    sides = ["Ahead" if v >= 0.0 else "Astern" for v in values]
-    columns = {"time": T, "port direction": sides} | MOTION | {"Port RPM": np.abs(values)}
-    assert log_of(tmp_path, columns)["port_rpm"].values == pytest.approx(values, abs=1e-4)
 
 
 @pytest.mark.parametrize("name", ["Port running", "Stbd direction", "Alarm"])
@@ -115,32 +114,6 @@ def test_a_latitude_is_in_degrees_and_minutes_where_the_longitude_is(tmp_path, l
     assert log["north"].values - log["north"].values[0] == pytest.approx(MOTION["north"], abs=0.1)
 
 
-WRONG = {
-    "rad": np.radians,
-    "62.20 for 62 deg 20 min": lambda degrees: np.trunc(degrees) + 0.6 * (degrees % 1.0),
-    "ddmm.mmmm": lambda degrees: 60.0 * degrees,  # below 1 degree
-}
-
-
-@EASY
-@given(some.sampled_from(sorted(WRONG)), some.floats(0.05, 0.7), some.floats(0.1, 0.9))
-def test_positions_that_move_otherwise_than_the_velocity_are_asked(tmp_path, unit, latitude, longitude):
-    if unit != "ddmm.mmmm":
-        latitude, longitude = latitude + 61.0, longitude + 10.0
-    places = [WRONG[unit](place) for place in positions(latitude, longitude)]
-    velocity = (np.gradient(MOTION["north"], T) + 1j * np.gradient(MOTION["east"], T)) * np.exp(
-        -1j * np.radians(MOTION["heading"])
-    )
-    columns = {"time": T, "heading": MOTION["heading"], "surge": velocity.real, "sway": velocity.imag}
-    columns |= {
-        name: [f"{v:.12f}" for v in place]
-        for name, place in zip(("latitude", "longitude"), places, strict=True)
-    }
-    with pytest.raises(ShipcosimError, match="moves otherwise than the ship") as error:
-        log_of(tmp_path, columns)
-    assert f"is it in {unit}?" in str(error.value)
-
-
 @EASY
 @given(some.floats(2.0, 80.0), some.floats(182.0, 359.0))
 def test_a_longitude_counts_on_to_360_where_the_latitude_is_in_degrees(
@@ -156,9 +129,10 @@ def test_a_longitude_counts_on_to_360_where_the_latitude_is_in_degrees(
 @pytest.mark.parametrize(
     ("latitude", "longitude"), [(63.4, 10.4), (-33.9, 18.4), (1.3, 103.9), (50.0, -125.0)]
 )
-def test_positions_in_radians_without_a_unit_are_asked(tmp_path, latitude, longitude):
+@pytest.mark.parametrize("names", [("Lat", "Lon"), ("latitude", "longitude")])
+def test_positions_in_radians_without_a_unit_are_asked(tmp_path, latitude, longitude, names):
     columns = {"time": [f"{t}" for t in T]}
-    for name, place in zip(("Lat", "Lon"), positions(latitude, longitude), strict=True):
+    for name, place in zip(names, positions(latitude, longitude), strict=True):
         columns[name] = [f"{np.radians(degrees):.12f}" for degrees in place]
     rows = [",".join(columns), *(",".join(row) for row in zip(*columns.values(), strict=True))]
     used = {g.role: g for g in propose(columns_of(save(tmp_path, rows)), THRUSTERS).used}
