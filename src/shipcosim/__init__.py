@@ -124,7 +124,7 @@ def __getattr__(name):
     else:
         attribute = getattr(_place_of(name), name)
     if isinstance(attribute, FunctionType) and not hasattr(attribute, "__wrapped__"):
-        from shipcosim.calls.keywords import with_known_keywords
+        from shipcosim.keywords import with_known_keywords
 
         attribute = with_known_keywords(attribute)
     globals()[name] = attribute

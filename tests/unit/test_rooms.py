@@ -50,6 +50,7 @@ MAY_IMPORT = {
         "scenario",
         "cosim",
     },
+    "keywords": {"errors", "options"},
     "ships": {"errors", "units", "models", "ssp"},
     "capability": {"library", "errors", "angles", "models", "ships", "ssp"},
     "sweep": {
@@ -97,6 +98,7 @@ MAY_IMPORT = {
     "results": {
         "temporary",
         "errors",
+        "keywords",
         "options",
         "staging",
         "series",
@@ -111,6 +113,7 @@ MAY_IMPORT = {
     "calls": {
         "temporary",
         "errors",
+        "keywords",
         "options",
         "staging",
         "units",

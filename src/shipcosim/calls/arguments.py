@@ -184,8 +184,16 @@ class Reading:
         if isinstance(given, SystemStructure):
             return given.checked(parameters, swapped)
         path = _path_of_system(given, argument)
-        folders = [*listed(self.fmus, "fmus"), *library.fmus(path)]
+        folders = [*self._fmu_folders(), *library.fmus(path)]
         return read_system(path, parameters, fmus=folders, components=swapped, strict=self.strict)
+
+    def _fmu_folders(self) -> list[Path]:
+        """Folders of FMUs that were given; ShipcosimError if one is not there."""
+        folders = [Path(path) for path in listed(self.fmus, "fmus")]
+        for folder in folders:
+            if not folder.is_dir():
+                raise error_at("fmus", f"There is no folder '{folder}'.", "Give folders with FMUs.")
+        return folders
 
     def system_of_scenario(self, scenario: Scenario) -> System:
         """The system of a scenario, checked, with the parameter sets and FMUs of both."""
@@ -197,7 +205,7 @@ class Reading:
             parameters=[Path(parameter) for parameter in listed(self.parameters)],
             components=fmus_of(self.components),
             strict=self.strict,
-            fmus=[Path(path) for path in listed(self.fmus, "fmus")],
+            fmus=self._fmu_folders(),
         )
 
 

@@ -22,9 +22,9 @@ from shipcosim.calls.arguments import (
     sources_of,
     values_of_sets,
 )
-from shipcosim.calls.keywords import with_known_keywords
 from shipcosim.calls.learning import assumed_craft, check_learning
 from shipcosim.errors import Problem, error_at
+from shipcosim.keywords import with_known_keywords
 from shipcosim.results.diagnosis import DiagnosisOfLog, DiagnosisOfLogs
 from shipcosim.results.log import Log
 from shipcosim.results.shown import parts_of
@@ -123,31 +123,9 @@ def isolability(
 
 
 @overload
-def diagnose(
-    log: AnyLog,
-    system: AnySystem | None = None,
-    channels: AnyPath | None = None,
-    causes: AnyPath | None = None,
-    progress: Progress | None = None,
-    *,
-    out: AnyPath | None = None,
-    force: bool = False,
-    reference: AnyPath | Reference | None = None,
-    learn: bool = False,
-    length: float | str | None = None,
-) -> DiagnosisOfLog: ...
+def diagnose(log: AnyLog, *arguments: Any, **keywords: Any) -> DiagnosisOfLog: ...
 @overload
-def diagnose(
-    log: Sequence[AnyLog],
-    system: AnySystem | None = None,
-    channels: AnyPath | None = None,
-    causes: AnyPath | None = None,
-    progress: Progress | None = None,
-    *,
-    out: AnyPath | None = None,
-    force: bool = False,
-    reference: AnyPath | Reference | None = None,
-) -> DiagnosisOfLogs: ...
+def diagnose(log: Sequence[AnyLog], *arguments: Any, **keywords: Any) -> DiagnosisOfLogs: ...
 @with_known_keywords
 def diagnose(
     log: AnyLog | Sequence[AnyLog],

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shipcosim.calls.arguments import AnyPath
-from shipcosim.calls.keywords import with_known_keywords
+from shipcosim.keywords import with_known_keywords
 from shipcosim.results.comparison import RunComparison, table_of
 from shipcosim.results.run import Run
 from shipcosim.staging import check_targets

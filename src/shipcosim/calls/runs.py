@@ -28,11 +28,11 @@ from shipcosim.calls.arguments import (
     with_osp_events,
     without_none,
 )
-from shipcosim.calls.keywords import with_known_keywords
 from shipcosim.cosim import Interrupted, RunError, Snapshot, interpolated, write_snapshot
 from shipcosim.cosim import simulate as simulate_system
 from shipcosim.cosim.simulate import clock_start, with_open_snapshot
 from shipcosim.errors import Problem, ShipcosimError, error_at
+from shipcosim.keywords import with_known_keywords
 from shipcosim.options import RunKeywords, RunOptions
 from shipcosim.results.run import Run
 from shipcosim.scenario import (

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from shipcosim.calls.arguments import AnyPath, find, mapping
-from shipcosim.calls.keywords import with_known_keywords
 from shipcosim.calls.runs import PreparedRun, prepare_run
 from shipcosim.errors import error_at
+from shipcosim.keywords import with_known_keywords
 from shipcosim.options import CountProgress
 from shipcosim.results.run import Run
 from shipcosim.results.shown import parts_of

@@ -27,8 +27,8 @@ from shipcosim.calls.arguments import (
     system_and_scenario,
     without_none,
 )
-from shipcosim.calls.keywords import with_known_keywords
 from shipcosim.errors import Problem, ShipcosimError, error_at, held_strictly
+from shipcosim.keywords import with_known_keywords
 from shipcosim.options import CountProgress, RunOptions
 from shipcosim.results.check import CheckedFiles
 from shipcosim.results.shown import parts_of

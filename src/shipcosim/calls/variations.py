@@ -19,11 +19,11 @@ from shipcosim.calls.arguments import (
     values_of_sets,
     without_none,
 )
-from shipcosim.calls.keywords import with_known_keywords
 from shipcosim.calls.runs import system_for
 from shipcosim.cosim import Variation
 from shipcosim.cosim import simulate_many as run_variations
 from shipcosim.errors import error_at
+from shipcosim.keywords import with_known_keywords
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.scenario.signals import chosen

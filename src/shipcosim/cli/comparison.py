@@ -6,7 +6,11 @@ from shipcosim.cli.console import say_outcome
 from shipcosim.cli.tables import print_table
 from shipcosim.cli.terminal import make_console
 from shipcosim.cosim.engines.registry import ENGINES, OWN, engines_missing
+from shipcosim.errors import counted
 from shipcosim.results.studies import EngineComparison
+
+MOST_SHOWN = 30
+"""Signals that the table shows beside those that differ by more than the tolerance."""
 
 
 def not_compared() -> list[str]:
@@ -21,17 +25,23 @@ def not_compared() -> list[str]:
 
 
 def print_comparison(comparison: EngineComparison) -> None:
-    """Table of signals, then what did not run, what explains differences, and the verdict."""
+    """Table of the signals that differ most, then what did not run, what explains differences, and the verdict."""
     from shipcosim.report.notebook.study_cards import comparison_table
 
     console = make_console(soft_wrap=True)
-    # Rows of signals that differ are red.
+    # Rows of signals that differ are red, and come first. The others are shown as far as a reader goes.
     table = comparison_table(comparison)
     rows = []
+    differing = 0
     for signal, row in zip(comparison.signals, table.rows, strict=True):
-        style = "red" if signal.worst > comparison.tolerance else ""
-        rows.append([Text(cell, style=style) for cell in row])
-    print_table(console, rows, table.head)
+        differs = signal.worst > comparison.tolerance
+        differing += differs
+        rows.append([Text(cell, style="red" if differs else "") for cell in row])
+    shown = rows[: max(MOST_SHOWN, differing)]
+    print_table(console, shown, table.head)
+    if len(shown) < len(rows):
+        left_out = counted(len(rows) - len(shown), "signal")
+        console.print(f"{left_out} that differ less: --json has all.")
     for name, seconds in comparison.seconds.items():
         console.print(f"{name} ran in {seconds:.1f} s.")
     for name, why in comparison.left_out.items():

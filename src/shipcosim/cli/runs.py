@@ -19,7 +19,7 @@ from shipcosim.cli.console import (
 )
 from shipcosim.cli.outcomes.exits import INTERRUPTED, Conclusion
 from shipcosim.cosim import Interrupted
-from shipcosim.errors import ShipcosimError, raise_errors
+from shipcosim.errors import ShipcosimError
 from shipcosim.native import is_installed
 from shipcosim.results.run import VERDICT
 from shipcosim.staging import set_aside
@@ -39,8 +39,10 @@ def concluded(prepared: PreparedRun, out: Path, force: bool = False) -> Conclusi
     return Conclusion(result.name, result, lambda: print_run(result, out), out)
 
 
-def prepare_folder(files: Mapping[str, Path], options: Mapping[str, Any]) -> dict[str, PreparedRun]:
-    """Read and check scenarios, all before the first one runs.
+def prepare_folder(
+    files: Mapping[str, Path], options: Mapping[str, Any]
+) -> tuple[dict[str, PreparedRun], dict[str, ShipcosimError]]:
+    """Read and check scenarios, all before the first one runs; those that can run, and why others cannot.
 
     Parameters
     ----------
@@ -52,23 +54,28 @@ def prepare_folder(files: Mapping[str, Path], options: Mapping[str, Any]) -> dic
     Raises
     ------
     ShipcosimError
-        With the problems of all scenarios.
+        With the problems of all scenarios, if none can run.
     """
     from shipcosim.calls.runs import prepare_run
 
     prepared = {}
-    problems = []
+    refused = {}
     for name, file in files.items():
         try:
             prepared[name] = prepare_run(file, **options)
         except ShipcosimError as error:
-            problems += error.problems
-    raise_errors(problems)
-    return prepared
+            refused[name] = error
+    if not prepared:
+        raise ShipcosimError([problem for error in refused.values() for problem in error.problems])
+    return prepared, refused
 
 
 def run_folder(
-    prepared: Mapping[str, PreparedRun], name: str, out: Path | None = None, force: bool = False
+    prepared: Mapping[str, PreparedRun],
+    refused: Mapping[str, ShipcosimError],
+    name: str,
+    out: Path | None = None,
+    force: bool = False,
 ) -> Conclusion:
     """Run scenarios one after another, each into a folder of its own, and write the table of all of them.
 
@@ -76,6 +83,8 @@ def run_folder(
     ----------
     prepared : mapping of str to PreparedRun
         By the names of the scenarios in their folder.
+    refused : mapping of str to ShipcosimError
+        Why others of them cannot run; this is printed last, where it is seen.
     name : str
         Of the folder of the scenarios.
     out : Path, optional
@@ -91,12 +100,16 @@ def run_folder(
     for key, planned in prepared.items():
         runs[key] = run_with_progress(planned, out / key, force)
         print_run(runs[key], out / key)
-    finished = ScenarioRuns(name, runs)
+    finished = ScenarioRuns(name, runs, refused)
     finished.save(out)
     rows = [(row.name, row.digest.outcome) for row in finished.rows]
-    return Conclusion(
-        name, finished, lambda: print_overview(finished.outcome, rows, out / "report.html"), out
-    )
+
+    def show() -> None:
+        print_overview(finished.outcome, rows, out / "report.html")
+        for error in refused.values():
+            print_problems(error.problems)
+
+    return Conclusion(name, finished, show, out)
 
 
 def print_run(result: Run, out: Path) -> None:

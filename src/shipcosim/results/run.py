@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from shipcosim.errors import Problem, error_at
+from shipcosim.keywords import with_known_keywords
 from shipcosim.results.shown import (
     Check,
     HtmlPage,
@@ -252,6 +253,7 @@ class Run(LikeTable, Result):
         )
         return HtmlPage(self.name, page)
 
+    @with_known_keywords
     def save(self, folder: AnyPath, *, force: bool = False) -> Path:
         """Write result.nc, result.csv, report.html, verdict.json and, where something predicts, predictions.csv.
 
@@ -277,6 +279,7 @@ class Run(LikeTable, Result):
                 write_predictions(self.predictions, stage / PREDICTIONS)
         return Path(folder)
 
+    @with_known_keywords
     def save_part(self, folder: AnyPath, *, force: bool = False) -> Path:
         """Write result-partial.nc, .csv and .html of a run that did not get to its end, and its verdict.json.
 

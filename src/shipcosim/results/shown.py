@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from shipcosim.keywords import with_known_keywords
 from shipcosim.series import write_file, write_json
 from shipcosim.staging import staged
 
@@ -49,6 +50,7 @@ class HtmlPage:
     title: str
     html: str = field(repr=False)
 
+    @with_known_keywords
     def save(self, path: AnyPath) -> Path:
         """Write the page to a file; it is there completely or not at all.
 
@@ -97,6 +99,7 @@ class Picture:
     name: str
     svg: str = field(repr=False)
 
+    @with_known_keywords
     def save(self, path: AnyPath) -> Path:
         """Write the picture to an .svg file; errors as for `HtmlPage.save`."""
         write_file(path, self.svg.encode())
@@ -150,6 +153,9 @@ def passed_or_failed(holds: bool) -> str:
 class Result(ABC):
     """What all results have: a line for the console, a card for notebooks, what was checked one by one."""
 
+    is_usable = True
+    """Whether all of the input could be used; else the command ends with exit code 2."""
+
     @abstractmethod
     def _card(self) -> Card:
         """What a notebook shows."""
@@ -201,6 +207,7 @@ class SavedResult(Result):
             write_json(self.as_json(), stage / self.json_name)  # pyright: ignore[reportAttributeAccessIssue]
         self.page().save(stage / "report.html")
 
+    @with_known_keywords
     def save(self, folder: AnyPath, *, force: bool = False) -> Path:
         """Write the files that the command of the same name leaves; returns the folder.
 

@@ -346,15 +346,26 @@ def _event_complaint(
             return f"'{signal}' is a {variable.variability} {variable.causality}.", remedy
     # An amount with a unit must be convertible; any other value must fit the type.
     if kind == "Real" and is_amount(value):
-        try:
-            number_in(value, system.unit_of(component, name), difference=verb == "bias")
-        except UnitError as error:
-            return f"{verb} of '{signal}': {error.found}", error.remedy
-        return None
+        return _unit_complaint(system, verb, signal, value, (component, name))
+    # FMI's integers have 32 bits, or say how many they have.
+    is_plain = kind == "Integer" and (component is None or variable.type == "Integer")
+    if is_plain and isinstance(value, (int, float)) and not -(2**31) <= value < 2**31:
+        message = f"{verb} of '{signal}' with {value:.15g}: too large for an Integer."
+        return message, f"Give one from {-(2**31)} to {2**31 - 1}."
     if verb != "reset" and not _fits(value, kind, items, verb):
         listed = f" Its items are {', '.join(items)}." if items else ""
         message = f"{verb} of '{signal}' with {value!r}: the signal is {kind or None}."
         return message, f"{_WANTED.get(kind, 'It cannot be changed.')}{listed}"
+    return None
+
+
+def _unit_complaint(
+    system: System, verb: str, signal: str, value: str, end: tuple[str | None, str]
+) -> tuple[str, str] | None:
+    try:
+        number_in(value, system.unit_of(*end), difference=verb == "bias")
+    except UnitError as error:
+        return f"{verb} of '{signal}': {error.found}", error.remedy
     return None
 
 

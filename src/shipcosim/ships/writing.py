@@ -18,6 +18,8 @@ LAYOUTS = {
 """Usual thrusters."""
 USUAL_LAYOUT = "azimuths"
 ASSUMED = "assumed: usual of a ship of this size"
+SHORTEST, LONGEST = 0.1, 1000.0
+"""Lengths, breadths and draughts of ships, models included. [m]"""
 LENGTH = 30.0
 """Of a ship of which nothing is known. [m]"""
 EFFICIENCY = 0.5
@@ -104,11 +106,15 @@ def _form(answers: Answers) -> HullDimensions:
 
 
 def _given(answers: Answers, key: str, unit: str) -> float | None:
-    """An answer as a number, or None. Raises ValueError where it is not above 0."""
+    """An answer as a number, or None. Raises ValueError where it is not above 0, or no length of a ship."""
     text = getattr(answers, key)
     value = number_in(text, unit) if text else None
     if value is not None and not value > 0.0:
         raise ValueError(f"{key} = {text}. It must be greater than 0.")
+    if value is not None and unit == "m" and not SHORTEST <= value <= LONGEST:
+        raise ValueError(
+            f"{key} = {text}. Ships have {SHORTEST:g} to {LONGEST:g} m; is the unit right?"
+        )
     return value
 
 

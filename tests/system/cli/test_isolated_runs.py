@@ -83,6 +83,23 @@ def test_an_fmu_that_calls_exit_0_is_no_run_that_went_well(project, command, iso
 
 
 @pytest.mark.parametrize("isolate", [[], ["--isolate"]])
+@pytest.mark.parametrize("end", [QUIT, "import os; os.abort()", "import os; os._exit(3)"])
+def test_an_fmu_that_ends_its_process_at_the_start_has_one_exit_code(project, end, isolate):
+    file = project / "fmus" / "lag" / "lag.py"
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text.replace("self.y = 0.0", end))
+    main = [sys.executable, "-c", "from shipcosim.cli import main; main()"]
+    ended = subprocess.run(
+        [*main, "run", "fill", "--out", "out", *isolate],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ended.returncode == 1 and "Traceback" not in ended.stderr
+    assert not list(project.rglob("*.unfinished*"))
+
+
+@pytest.mark.parametrize("isolate", [[], ["--isolate"]])
 def test_an_fmu_that_does_not_start_is_unusable_in_a_process_of_its_own_too(call, project, isolate):
     file = project / "fmus" / "lag" / "lag.py"
     text = file.read_text(encoding="utf-8")

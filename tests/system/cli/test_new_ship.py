@@ -54,6 +54,16 @@ def test_a_size_that_no_ship_has_is_refused_by_name(project, option, wrong):
     assert ("greater than 0" in made.output) == (wrong in ("-60", "0", "-0.0"))
 
 
+@pytest.mark.parametrize("wrong", ["1e-9 m", "4.5 mm", "0.09 m", "1001 m", "2 nmi"])
+@pytest.mark.parametrize("option", ["--length", "--breadth", "--draught"])
+def test_a_dimension_in_a_wrong_unit_is_refused_by_name(project, option, wrong):
+    given = dict(zip(ASKED[::2], ASKED[1::2], strict=True)) | {option: wrong}
+    made = told("new", "ship", "tern", *(part for pair in given.items() for part in pair), "--yes")
+    assert made.exit_code == 2 and not (project / "ships").exists()
+    assert f"{option[2:]} = {wrong}. Ships have 0.1 to 1000 m" in " ".join(made.output.split())
+    assert "power" not in made.output
+
+
 def test_nothing_is_written_over_without_being_told(project):
     assert told("new", "ship", "tern", *ASKED, "--propulsion", "rudder", "--yes").exit_code == 0
     before = (project / "ships/tern/ship.toml").read_bytes()

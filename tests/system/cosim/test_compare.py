@@ -1,6 +1,7 @@
 """The comparison of engines: what it measures, and that it finds in words what was done to a table."""
 
 import json
+import re
 import shutil
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from shipcosim.cli import app
+from shipcosim.cli.comparison import MOST_SHOWN
 from shipcosim.cosim import ENGINES, RunError, engines_missing, simulate
 from shipcosim.cosim.compare import compare, halved
 from shipcosim.cosim.differences import explained
@@ -208,6 +210,21 @@ def test_command_shows_each_signal_and_the_verdict(packed):
         line.split()[0] for line in result.output.splitlines() if line.strip()
     }
     assert "…" not in result.output
+
+
+def test_command_shows_the_signals_that_differ_most():
+    result = run_command("gust", "--stop-time", 0.2)
+    shown = [
+        line
+        for line in result.output.splitlines()
+        if line.startswith(tuple("abcdefghijklmnopqrstuvwxyz"))
+    ]
+    left_out = int(re.search(r"(\d+) signals that differ less: --json has all", result.output)[1])
+    told = json.loads(run_command("gust", "--stop-time", 0.2, "--json").stdout)["signals"]
+    assert len(told) - left_out == MOST_SHOWN
+    assert [line.split()[0] for line in shown if "." in line.split()[0]][:MOST_SHOWN] == [
+        signal["name"] for signal in told[:MOST_SHOWN]
+    ]
 
 
 def test_command_fails_where_engines_differ(packed, monkeypatch):

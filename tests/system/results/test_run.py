@@ -229,6 +229,9 @@ REFUSED = {
     "text": ({"scenario": "gust", "stop_time": "long"}, "stop_time = 'long'"),
     "key": ({"scenario": "gust", "events": [{"tim": 1.0}]}, "tim: There is no such key"),
     "value": ({"scenario": "gust", "set": {"vessel.mas": 1.0}}, "Did you mean 'mass'"),
+    "fmus": ({"scenario": "gust", "fmus": ["none"]}, "There is no folder 'none'"),
+    "bytes": ({"scenario": b"gust"}, "scenario = b'gust'. Give a path or name"),
+    "empty": ({"scenario": ""}, "scenario = ''. Give a path or name"),
 }
 
 
@@ -238,6 +241,30 @@ def test_what_cannot_be_used_is_one_error_without_a_wall(case):
     with pytest.raises(sc.ShipcosimError, match=words) as caught:
         sc.run(**keywords)
     assert "pydantic" not in str(caught.value) and len(str(caught.value)) < 1000
+
+
+@pytest.mark.parametrize("wrong", [3, 2.5, None, True, b"out", [], {}, "", ["a", "b"], object()])
+def test_saving_to_what_is_no_path_is_one_error(gust, wrong):
+    for save in (gust.save, gust.save_part, gust.page().save, gust.plot().save):
+        with pytest.raises(
+            sc.ShipcosimError, match=r"save(_part)?\(\): (folder|path) = .*Give a path or name"
+        ):
+            save(wrong)
+    with pytest.raises(sc.ShipcosimError, match="There is no keyword 'overwrite'"):
+        gust.save("out", overwrite=True)
+    with pytest.raises(sc.ShipcosimError, match="Missing a required argument: 'folder'"):
+        gust.save()
+
+
+def test_none_is_as_good_as_left_out_wherever_there_is_a_default():
+    assert (
+        sc.simulate("gunnerus_open", None, stop_time=0.1, set=None, strict=None).name
+        == "gunnerus_open"
+    )
+    with pytest.raises(sc.ShipcosimError, match="scenario = None. Give a path"):
+        sc.run(None)
+    with pytest.raises(sc.ShipcosimError, match="scenario = None. Give a path"):
+        sc.run(scenario=None)
 
 
 @pytest.mark.parametrize(

@@ -74,7 +74,8 @@ def run(
 
     A part of a run is checked for what is expected within it. The scenarios of a folder are run one after another;
     report.html in results/FOLDER is a table of all of them, and the results of each are in a folder beside it. Of a
-    project's folder all scenarios are run. Earlier results are kept in results/SCENARIO-1, -2, ... without --force.
+    project's folder all scenarios are run; one that cannot be read is named, with exit code 2. Earlier
+    results are kept in results/SCENARIO-1, -2, ... without --force.
 
     --parameters takes sets that were made for another system too, as extended.ssv of a diagnosis: what the scenario's
     system has is taken, over what the scenario says, and what it has not is said.
@@ -100,6 +101,7 @@ def run(
         if store or resume:
             message = "This is a folder of scenarios, which has no one state to keep."
             raise error_at(scenario, message, "Name one scenario, or leave out --store and --from.")
-        return run_folder(prepare_folder(files, options), Path(scenario).resolve().name, out, force)
+        prepared, refused = prepare_folder(files, options)
+        return run_folder(prepared, refused, Path(scenario).resolve().name, out, force)
     prepared = prepare_run(scenario, store=store, **options)
     return concluded(prepared, out or Path("results") / prepared.scenario.name, force)

@@ -76,7 +76,7 @@ class Output:
                 yield
 
     def conclude(self, conclusion: Conclusion) -> None:
-        """Print the result; exit code 1 unless it passed."""
+        """Print the result; exit code 1 unless it passed, 2 if a part of the input could not be used."""
         from shipcosim.cli.console import print_problems, say_outcome
         from shipcosim.cli.terminal import make_console
 
@@ -93,7 +93,7 @@ class Output:
             sentence = f"{outcome.word} {outcome.sentence}"
             self.publish(conclusion.name, sentence, conclusion.result.checks, conclusion.folder)
         if not conclusion.result.passed:
-            raise typer.Exit(FAILED)
+            raise typer.Exit(FAILED if conclusion.result.is_usable else UNUSABLE)
 
     @property
     def is_published(self) -> bool:
@@ -146,10 +146,7 @@ def guarded(function: Callable[..., Conclusion | None]) -> Callable[..., None]:
             raise
         except ShipcosimError as error:
             problems = error.problems
-            # A component that fails on the way is a finding, in a process of its own too; what does not even start is
-            # unusable.
-            table = getattr(error, "table", None)
-            code = FAILED if table is not None and table.sizes["time"] else UNUSABLE
+            code = FAILED if getattr(error, "is_finding", False) else UNUSABLE
             explain(problems, debug)
         except KeyboardInterrupt:
             say("Interrupted.", err=True)

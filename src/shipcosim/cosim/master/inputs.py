@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.cosim.master.plan import WIDE
 from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors, shortened, suggestion
 from shipcosim.series import conversion
 
@@ -69,11 +70,15 @@ def _values(table, system, times):
     # Only rows that the run needs are checked: gaps and NaN elsewhere do no harm.
     rows = _rows(clock, times)
     problems = list(_gaps(table, clock[rows]))
+    # Integers have 32 bits, and 64 where an FMU of the system has larger ones.
+    is_wide = any(variable.type in WIDE for _, variable in system.all_variables())
+    largest = (-(2**63), 2**63 - 1) if is_wide else (-(2**31), 2**31 - 1)
     # Convert each column; collect the problems of all before raising.
     fed = {}
     for name in table.data_vars:
         try:
-            fed[str(name)] = _column(table[name][rows], system.inputs[name], clock[rows], times)
+            signal = system.inputs[name]
+            fed[str(name)] = _column(table[name][rows], signal, clock[rows], times, largest)
         except ShipcosimError as error:
             problems += [Problem(f"inputs: {name}", p.found, p.remedy) for p in error.problems]
     raise_errors(problems)
@@ -203,8 +208,8 @@ def _gaps(table, clock):
         yield Problem("inputs", message, remedy)
 
 
-def _column(column, signal, clock, times):
-    """Values of a column at the times, in the unit of the input that it feeds."""
+def _column(column, signal, clock, times, largest):
+    """Values of a column at the times, in the unit of the input that it feeds; `largest` bounds integers."""
     how = column.attrs.get("interpolation", "held")
     values = column.values
     if how not in INTERPOLATIONS or (how == "linear" and signal.type != "Real"):
@@ -214,10 +219,13 @@ def _column(column, signal, clock, times):
         more = f" So are {len(bad) - 1} more of the rows that are needed." if len(bad) > 1 else ""
         remedy = "Fill or drop such rows; a dropped row is held or interpolated over."
         raise error_at("", f"is {values[bad[0]]} at {clock[bad[0]]:.9g} s.{more}", remedy)
-    # Flags and integers must be whole: a rounded value would hide an error of the log.
-    if signal.type != "Real" and np.any(off := values != np.round(values)):
+    # Flags and integers must be whole and fit: a rounded or wrapped value would hide an error of the log.
+    low, high = (0, 1) if signal.type == "Boolean" else largest
+    off = (values != np.round(values)) | (values < low) | (values > high)
+    if signal.type != "Real" and off.any():
         message = f"is {values[off][0]} at {clock[off][0]:.9g} s."
-        raise error_at("", message, f"It feeds a {signal.type}, which takes whole numbers.")
+        remedy = f"It feeds an input of type {signal.type}: whole numbers from {low} to {high}."
+        raise error_at("", message, remedy)
     # Convert the unit before interpolating, so that a full turn is in the input's unit.
     factor, offset = conversion(column.attrs.get("units"), signal.unit)
     values = values if (factor, offset) == (1.0, 0.0) else factor * values + offset

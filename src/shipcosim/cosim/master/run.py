@@ -41,7 +41,7 @@ from shipcosim.cosim.processes.remote_slave import IsolatedInstances
 from shipcosim.cosim.profile import MASTER, Profile
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
-from shipcosim.cosim.slaves.slave import SlaveError
+from shipcosim.cosim.slaves.slave import ProcessEnded, SlaveError
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.options import CountProgress, RunOptions
 from shipcosim.scenario import Scenario
@@ -59,6 +59,12 @@ class RunError(ShipcosimError):
     def __init__(self, problems: Problem | Sequence[Problem], table: xarray.Dataset):
         super().__init__(problems)
         self.table = table
+
+    @property
+    def is_finding(self) -> bool:
+        """Whether a component failed on its way, or its process ended; one that does not start is unusable input."""
+        cause = getattr(self.__cause__, "__cause__", None)
+        return self.table.sizes["time"] > 0 or isinstance(cause, ProcessEnded)
 
 
 class Interrupted(KeyboardInterrupt):

@@ -11,7 +11,7 @@ from time import monotonic
 from typing import Any, BinaryIO, cast
 
 from shipcosim.cosim.processes.child import Garbled, receive, send
-from shipcosim.cosim.slaves.slave import RunEnded, SlaveError
+from shipcosim.cosim.slaves.slave import ProcessEnded, RunEnded, SlaveError
 from shipcosim.errors import printable
 
 START = (
@@ -113,7 +113,7 @@ class ComponentProcess:
             return action(*arguments)
         # A broken pipe means that the process has ended: find out why.
         except (OSError, EOFError):
-            raise SlaveError(self._cause_of_end(what, limit)) from None
+            raise ProcessEnded(self._cause_of_end(what, limit)) from None
         # Where an answer begins and ends is lost: as after a crash, the process is useless.
         except Garbled:
             self._kill()

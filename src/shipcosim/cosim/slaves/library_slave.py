@@ -3,7 +3,7 @@
 import os
 import re
 from collections.abc import Mapping, Sequence
-from ctypes import Array, byref, c_char, c_char_p, c_size_t, c_uint, c_void_p, cast
+from ctypes import Array, byref, c_char, c_char_p, c_int, c_size_t, c_uint, c_void_p, cast
 from pathlib import Path
 from typing import Any
 
@@ -102,7 +102,7 @@ class LibrarySlave(Slave):
         if status >= FAILED:
             # After a fatal error FMI allows no further call, not even to free the instance.
             self._is_lost = status == FATAL
-            label = STATUS[status] if status < len(STATUS) else str(status)
+            label = STATUS[status] if status < len(STATUS) else str(c_int(status).value)
             raise SlaveError(
                 f"{self._prefix}{function} returned '{label}'. {self.last_messages()}".strip()
             )
@@ -252,9 +252,13 @@ class LibrarySlave(Slave):
     def _function(self, name):
         """Function of the FMU's library by its name without prefix; FMPy has set its types."""
         try:
-            return getattr(self._fmu.dll, self._symbol(name))
+            function = getattr(self._fmu.dll, self._symbol(name))
         except AttributeError:
             raise SlaveError(f"Its library has no function {self._symbol(name)}.") from None
+        # A negative status is none of FMI: as a large number it is a failure.
+        if function.restype is c_int:
+            function.restype = c_uint
+        return function
 
     def _symbol(self, function):
         """Name of a function in the FMU's library."""

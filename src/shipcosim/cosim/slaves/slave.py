@@ -37,6 +37,10 @@ class SlaveError(Exception):
     """A call to an FMU failed. The text is the FMU's message."""
 
 
+class ProcessEnded(SlaveError):
+    """The process of an FMU is no longer there, or was ended because it gave no answer."""
+
+
 class RunEnded(SlaveError):
     """An FMU asks to end the simulation; this does not count as a failure."""
 

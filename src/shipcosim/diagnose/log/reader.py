@@ -15,7 +15,7 @@ from shipcosim.diagnose.log.files.bags import is_bag, tables_of_bag
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.joined_tables import joined, tables_in
 from shipcosim.diagnose.log.files.long_format import brought_together, spread
-from shipcosim.diagnose.log.files.missing import without_missing
+from shipcosim.diagnose.log.files.missing import without_dropouts, without_missing
 from shipcosim.diagnose.log.files.nmea2000 import is_messages, tables_of_messages
 from shipcosim.diagnose.log.files.table import LogColumns, read_file
 from shipcosim.diagnose.log.files.times import epoch_unit
@@ -99,9 +99,10 @@ def read_log(
     _check_time(columns.source, time)
     time, signals, more = brought_together(time, signals, columns.joined)
     _check_restart(columns.source, time, [values for values, _ in signals.values()])
-    remarks += more + _over_the_earth(signals)
+    remarks += more + without_dropouts(signals) + _over_the_earth(signals)
     if LARGEST.keys() <= signals.keys():
         attributes |= _local_position(columns.source, signals, remarks)
+        remarks += without_dropouts(signals)
     remarks += _without_value(columns.source, signals)
     attributes["column_remarks"] = [
         *columns.remarks,
@@ -199,6 +200,13 @@ def _sure(columns: LogColumns, proposal: Proposal) -> dict[str, Channel]:
         message = f"has no column 'time', only {_shown(columns)}."
         if guess:
             message = f"'{guess.column}' may be the time, but {guess.why}."
+        # A column of that name may hold what is no time.
+        texts = [cell for cell in columns.values.get("time", ()) if isinstance(cell, str)]
+        if texts:
+            message = (
+                f"column 'time' holds '{texts[0]:.40}', which is not read as a time or a date."
+            )
+            help_ = "Write it as 2024-03-14T09:26:00, or in seconds."
         problems.append(Problem(source, message, help_))
     elif len(mapping) < 2:
         problems.append(
@@ -395,8 +403,9 @@ def _without_value(source, signals):
 def _proposal_text(proposal):
     """Remarks on columns with other names than their roles, and on unused columns with the reason."""
     named = [g for g in proposal.used if g.rank < 2]
+    used = proposal.channels()
     other = [
-        f"{g.role} from '{g.column}'{_guess_text(g)}"
+        f"{g.role} from '{g.column}'{_guess_text(g, used[g.role].unit)}"
         for g in named
         if g.column != g.role or g.notes
     ]
@@ -426,6 +435,6 @@ def _not_named(unused):
     )
 
 
-def _guess_text(guess):
-    unit = f" [{guess.channel.unit}]" if guess.channel.unit else ""
+def _guess_text(guess, unit):
+    unit = f" [{unit}]" if unit else ""
     return f"{unit}{' (' + '; '.join(guess.notes) + ')' if guess.notes else ''}"

@@ -391,15 +391,18 @@ def _signs(channel, name, log):
 
 
 def _in_minutes(values, name, log):
-    """Whether numbers are degrees and minutes; a longitude is where a latitude is, as it may be small or beyond 180."""
-    latitudes = [
+    """Whether numbers are degrees and minutes; a latitude is where a longitude is and the other way round, if small."""
+    other = "longitude" if name == "latitude" else "latitude"
+    beside = [
         cells
-        for other, cells in log.values.items()
-        if meaning_of(words_of(other)).role == "latitude" and cells.dtype.kind == "f"
+        for column, cells in log.values.items()
+        if meaning_of(words_of(column)).role == other and cells.dtype.kind == "f"
     ]
-    if name == "latitude" or not latitudes:
-        return is_minutes(values, LARGEST[name])
-    return is_minutes(values, 360.0) or any(is_minutes(cells, 90.0) for cells in latitudes)
+    # Degrees of a longitude may be counted on to 360 beside a latitude.
+    largest = {"latitude": 90.0, "longitude": 360.0 if beside else 180.0}
+    if any(is_minutes(cells, largest[other]) for cells in beside):
+        return True
+    return is_minutes(values, largest[name])
 
 
 def _mapped(values, channel, column):

@@ -215,13 +215,38 @@ def test_run_of_a_project_runs_all_its_scenarios_and_says_all_in_one_file(call, 
     assert "Page: out/storms/slow/report.html" in failed.find("failure").text
 
 
-def test_every_broken_scenario_of_a_folder_is_named_and_none_runs(call, project):
+BROKEN = {
+    "name": lambda text: text.replace("lag.y", "lag.z"),
+    "TOML": lambda text: text + "[",
+    "bytes": lambda text: "\x00" + text,
+    "key": lambda text: "stoptime = 3\n" + text,
+    "empty": lambda text: "",
+}
+
+
+@pytest.mark.parametrize("fault", BROKEN)
+@pytest.mark.parametrize("form", [[], ["--json"], ["-q"]])
+def test_a_scenario_that_cannot_be_read_is_named_and_the_others_run(call, project, fault, form):
     text = (project / "scenarios" / "fill.toml").read_text()
-    for name in ("a", "b"):
-        (project / "scenarios" / f"{name}.toml").write_text(text.replace("lag.y", f"lag.{name}"))
-    failed = call("run", "scenarios")
-    assert failed.code == 2 and "'a'" in failed.err and "'b'" in failed.err
-    assert not (project / "results").exists()
+    for name in ("a", "z"):
+        (project / "scenarios" / f"{name}.toml").write_text(BROKEN[fault](text))
+    failed = call("run", "scenarios", "--junit", "j.xml", *form)
+    assert failed.code == 2 and "a.toml" in failed.err and "z.toml" in failed.err
+    found = json.loads(Path("results/scenarios/verdict.json").read_text(encoding="utf-8"))
+    assert found["verdict"] == "failed" and list(found["refused"]) == ["a", "z"]
+    assert found["scenarios"][0]["name"] == "fill"
+    assert Path("results/scenarios/fill/report.html").is_file()
+    page = Path("results/scenarios/report.html").read_text(encoding="utf-8")
+    assert "2 of 3 scenarios miss something: a, z." in page
+    cases = ElementTree.parse("j.xml").getroot()[0]
+    assert {
+        case.get("classname").rpartition(".")[2] for case in cases if case.find("error") is not None
+    } == {"a", "z"}
+
+
+def test_a_folder_of_broken_scenarios_is_one_error(call, project):
+    (project / "scenarios" / "fill.toml").write_text("[")
+    assert call("run", "scenarios").code == 2 and not (project / "results").exists()
 
 
 def test_a_run_that_breaks_does_not_keep_the_others_of_its_folder_from_running(call, project):

@@ -38,3 +38,24 @@ def test_three_rows_of_one_time_and_times_that_go_back_are_refused():
     for clock in ([0.0, 0.5, 0.5, 0.5, 1.0], [0.0, 0.6, 0.5, 0.7, 1.0]):
         with pytest.raises(ShipcosimError, match="Times have to grow"):
             fed(clock, range(5), [0.0, 0.5, 1.0], "held")
+
+
+@given(
+    kind=st.sampled_from(["Integer", "Boolean", "Enumeration"]),
+    value=st.one_of(
+        st.integers(-(2**31), 2**31 - 1),
+        st.sampled_from([-1.0, 2.0, 0.5, 2.0**31, -(2.0**31) - 1.0, 1e12, 1e300]),
+    ),
+)
+@settings(max_examples=60, deadline=None)
+def test_a_value_that_an_input_cannot_hold_is_refused(kind, value):
+    table = make_table(np.array([0.0, 1.0]), [("u", np.array([0.0, value]), "", "")])
+    system = System("one", "one.ssd", {}, inputs={"u": Signal("u", kind)})
+    low, high = (0, 1) if kind == "Boolean" else (-(2**31), 2**31 - 1)
+    if low <= value <= high and value == round(value):
+        assert input_values(table, system, np.array([0.0, 1.0]))["u"].tolist() == [0, value]
+        return
+    with pytest.raises(
+        ShipcosimError, match=f"feeds an input of type {kind}: whole numbers from {low} to"
+    ):
+        input_values(table, system, np.array([0.0, 1.0]))

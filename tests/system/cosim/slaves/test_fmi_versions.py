@@ -516,3 +516,20 @@ def test_a_function_that_an_fmu_lacks_matters_only_where_it_is_called(
         )
     with pytest.raises(RunError, match=f"{own}Get(String|{state})"):
         simulate(system, SCENARIO, RunOptions(store=tmp_path / "x.state"))
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+@pytest.mark.parametrize("status", [-1, -7, -(2**31), 6, 99])
+def test_a_status_that_fmi_does_not_have_is_a_failure(
+    version, status, tmp_path, needs, monkeypatch
+):
+    if c_fmus.compiler() is None:
+        needs("a C compiler")
+    steps = c_fmus.ADAPTERS[version].replace("if (m->mode != STEP) return 3;", f"return {status};")
+    monkeypatch.setitem(c_fmus.ADAPTERS, version, steps)
+    real = [variable for variable in VARIABLES if variable[3] == "Real"]
+    text = c_fmus.describe("odd", version, real, ("CoSimulation",))
+    path = c_fmus.build(tmp_path, "odd", version, DECAY, text, "CoSimulation")
+    system = System("one", "one.ssd", {"m": Component("m", read_fmu(path))})
+    with pytest.raises(RunError, match=f"DoStep returned '{status}'"):
+        simulate(system, SCENARIO)

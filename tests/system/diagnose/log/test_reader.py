@@ -102,6 +102,10 @@ def test_stamps_of_date_and_time_become_seconds(tmp_path):
     ("text", "said"),
     [
         ("moment,surge\n0,1\n1,2\n", "has no column 'time', only 'moment', 'surge'"),
+        (
+            "time,surge\n2024/075/10:14:00,1\n2024/075/10:15:00,2\n",
+            "column 'time' holds '2024/075/10:14:00', which is not read",
+        ),
         ("time,u\n0,1\n1,2\n", "no column but time has a role: 'time', 'u'"),
         ("time,surge [deg]\n0,1\n1,2\n", "its unit 'deg' is none that converts to m/s"),
         ("time,surge\n0,1\n1,fast\n", "holds 'fast' in row 3, not only numbers"),

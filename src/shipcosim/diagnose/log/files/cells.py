@@ -12,8 +12,10 @@ from shipcosim.dialects import NOTHING, WITH_UNIT
 from shipcosim.errors import counted
 
 _SIDES = ("N", "S", "E", "W")  # after a number of a position, no unit
-_FILLERS = re.compile(r"9{2,}(\.9+)?|8{4,}|3276[78]|65535|214748364[78]|4294967295")
-"""Numbers that loggers write for missing values, without their sign: nines or eights alone, ends of integers."""
+_FILLERS = re.compile(r"9{2,}(\.(9+|25))?|8{4,}|3276[78]|65535|214748364[78]|4294967295")
+"""Numbers that loggers write for missing values, without their sign: nines or eights alone, ends of integers, 999.25."""
+_LEAST_ALONE = 999.0
+"""Smallest number that means 'no value' where all other values are the same: a command may go from 0 to 99. Assumed."""
 _NO_NUMBER = 1e15
 """Times the median of a column; a larger number, such as 1e30, stands for no value. Assumed."""
 _GROUPS = r"(?<=\d)['\u2019\u00a0\u202f](?=\d{3}(?!\d))"  # between thousands in Swiss, French and Nordic numbers
@@ -74,8 +76,8 @@ def numbers_of(name: str, cells: Any, decimal: str) -> tuple[np.ndarray, list[st
 def without_fillers(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
     """A column without the number that means 'no value' in it, and remarks.
 
-    It is one of those that loggers take for it, stands there more than once, and is further from all other values
-    than these are from each other; or it is so large that nothing measured is, such as 1e30.
+    It is one of those that loggers take for it, does not just begin or end the column, and is further from all other
+    values than these are from each other; or it is so large that nothing measured is, such as 1e30.
 
     Examples
     --------
@@ -88,8 +90,12 @@ def without_fillers(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str
     rows = np.abs(values) > _NO_NUMBER * max(np.median(np.abs(numbers)), 1.0)
     for filler in (numbers.min(), numbers.max()):
         rest = numbers[numbers != filler]
-        is_usual = len(rest) < len(numbers) - 1 and _FILLERS.fullmatch(f"{abs(filler):.12g}")
-        if is_usual and len(rest) and np.abs(rest - filler).min() > max(np.ptp(rest), 10.0):
+        if not len(rest) or not _FILLERS.fullmatch(f"{abs(filler):.12g}"):
+            continue
+        # A single number at an end may be measured, as a time after a gap.
+        is_inside = len(rest) < len(numbers) - 1 or filler not in (numbers[0], numbers[-1])
+        is_far = np.abs(rest - filler).min() > max(np.ptp(rest), 10.0)
+        if is_inside and is_far and (np.ptp(rest) > 0.0 or abs(filler) >= _LEAST_ALONE):
             rows |= values == filler
     if not rows.any():
         return values, []

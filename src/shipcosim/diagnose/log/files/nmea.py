@@ -377,7 +377,9 @@ def _channels(
         enough = {
             kind: pairs for kind, pairs in by_channel[name].items() if len(pairs) >= _ENOUGH * most
         }
-        kind = min(enough, key=lambda source_: (order.index(source_[-3:]), -len(enough[source_])))
+        kind = min(
+            enough, key=lambda sentence: (order.index(sentence[-3:]), -len(enough[sentence]))
+        )
         moments, values = np.array(enough[kind]).T
         moments, first = np.unique(moments, return_index=True)
         channels[name] = moments, values[first]

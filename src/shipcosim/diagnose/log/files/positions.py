@@ -65,10 +65,19 @@ def hemisphere_signs(cells: np.ndarray, role: str) -> np.ndarray | None:
         Of the numbers that the column belongs to.
     """
     signs = sides_of(role)
-    sides = [str(cell).strip().upper() for cell in cells if cell is not None]
-    if cells.dtype.kind == "f" or not sides or not signs.keys() >= set(sides):
+    texts = _texts(cells)
+    if not texts or not signs.keys() >= texts:
         return None
     return np.array([signs.get(str(cell).strip().upper(), np.nan) for cell in cells])
+
+
+def are_codes(cells: np.ndarray) -> bool:
+    """Whether a column holds two codes that may be directions: 1 and 0, 1 and -1, or CW and CCW."""
+    return len(_texts(cells)) == 2 and _texts(cells) <= {"1.0", "0.0", "-1.0", "CW", "CCW"}
+
+
+def _texts(cells):
+    return {str(cell).strip().upper() for cell in cells if cell is not None and cell == cell}
 
 
 def sides_of(role: str) -> dict[str, float]:

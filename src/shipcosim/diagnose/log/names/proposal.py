@@ -6,7 +6,7 @@ import numpy as np
 
 from shipcosim.diagnose.log.channels import Channel
 from shipcosim.diagnose.log.files.file_layout import FileLayout
-from shipcosim.diagnose.log.files.positions import hemisphere_signs, sides_of
+from shipcosim.diagnose.log.files.positions import are_codes, hemisphere_signs, sides_of
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.clock import time_of
 from shipcosim.diagnose.log.names.guesses import (
@@ -24,6 +24,9 @@ from shipcosim.diagnose.log.names.vocabulary import words_of
 from shipcosim.diagnose.log.values import LARGEST
 from shipcosim.diagnose.numerics import finite
 
+_DIRECTIONS = set("direction rotation sign ahead forward sense reverse rev astern backward".split())
+"""Words of a column that holds the direction of a shaft."""
+_OF_A_SHAFT = set("rpm thrust speed shaft propeller thruster feedback".split())
 _POSITIONS = (("north", "east"), ("latitude", "longitude"))
 _PAIRS = (
     *_POSITIONS,
@@ -91,6 +94,7 @@ def propose(
     left += others
     left = _with_quaternion(chosen, log, left)
     left = _with_hemispheres(chosen, log, left)
+    _with_directions(chosen, log)
     # Conventions and values settle what names leave open.
     _by_convention_of_ros(chosen, log)
     settled(chosen, log, form)
@@ -244,7 +248,10 @@ def _with_hemispheres(chosen, log, left):
         if role not in LARGEST:
             named, after = (), [name for name in after if name not in named]
         for name in (*after, *named):
-            signs = hemisphere_signs(log.values[name], role)
+            cells = log.values[name]
+            if cells.dtype.kind == "f" or are_codes(cells):
+                continue
+            signs = hemisphere_signs(cells, role)
             # An A alone behind a number may mean that it is active.
             if signs is not None and (1.0 in signs or "F" not in sides_of(role)):
                 notes = () if role in LARGEST else (f"its side stands in '{name}'",)
@@ -252,6 +259,27 @@ def _with_hemispheres(chosen, log, left):
                 left = [other for other in left if other.column != name]
                 break
     return left
+
+
+def _with_directions(chosen, log):
+    """Speeds and thrusts without a sign are asked where another column may hold their direction."""
+    for role, guess in chosen.items():
+        values = log.values.get(guess.column)
+        is_shaft = role.endswith(("_rpm", "_thrust")) and not guess.channel.hemisphere
+        if not is_shaft or values.dtype.kind != "f" or (finite(values) < 0.0).any():
+            continue
+        thruster = _thruster_words(guess.column)
+        for name, cells in log.values.items():
+            if not _DIRECTIONS & set(words_of(name)) or _thruster_words(name) != thruster:
+                continue
+            if are_codes(cells):
+                why = f"it has no sign, and '{name}' may hold it: which code is ahead is not stated"
+                chosen[role] = guess.read_as({"hemisphere": name}, rank=GUESS, why=why)
+
+
+def _thruster_words(name):
+    """Words of a name that say which thruster it is."""
+    return set(words_of(name)) - _DIRECTIONS - _OF_A_SHAFT
 
 
 def _never_changes(guess, log):

@@ -51,11 +51,21 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: FileLayout) -> None
     # azimuths stay within some degrees.
     for role, guess in list(chosen.items()):
         is_direction = role in ("wind_from", "true_wind_from", "course_over_ground")
+        numbers = _finite(log.values.get(guess.column, np.empty(0)))
         if (is_direction or role.endswith("_azimuth")) and _is_open(chosen, role):
-            sizes = np.abs(_finite(log.values[guess.column]))
             most = _DEGREES if is_direction else np.pi + 0.01
-            if len(sizes) and 0.0 < sizes.max() <= most:
+            if 0.0 < np.abs(numbers).max(initial=0.0) <= most:
                 _guess(chosen, role, "rad", "no unit is stated: rad or deg")
+        elif guess.rank == EXACT and not guess.unit and (is_direction or role == "heading"):
+            # The name of a role stands for degrees, but a log in radians may have it too.
+            if _is_within_a_turn(numbers):
+                _guess(chosen, role, "rad", _RAD_OR_DEG)
+
+
+def _is_within_a_turn(numbers):
+    """Whether numbers can be directions in radians: they change, are hardly whole, and none is beyond 2 pi."""
+    is_small = 0.0 < np.abs(numbers).max(initial=0.0) <= _DEGREES
+    return is_small and np.ptp(numbers) > 0.0 and np.mean(numbers == np.round(numbers)) < 0.5
 
 
 def _settle_degrees(chosen, log):
@@ -78,7 +88,8 @@ def _settle_degrees(chosen, log):
             )
     # A position in radians looks like one in the Gulf of Guinea.
     is_small = [
-        _is_open(chosen, role)
+        role in chosen
+        and not chosen[role].unit
         and 0.0 < np.abs(_finite(log.values[chosen[role].column])).max(initial=0.0) <= most
         for role, most in {"latitude": np.pi / 2.0, "longitude": np.pi}.items()
     ]
@@ -268,7 +279,10 @@ def _settle_rate(chosen, log, form, motion):
     if heading is not None and motion is not None and raw.dtype.kind == "f":
         unit = unit_of_rate(motion[0], heading, raw)
     guess = chosen["yaw_rate"]
-    if guess.rank == EXACT and unit in (None, "deg/s"):
+    if guess.rank == EXACT:
+        if unit not in (None, "deg/s"):
+            doubt = f"in deg/s, as its name stands for; by the heading it may be in {unit}"
+            chosen["yaw_rate"] = guess.read_as({"unit": unit}, notes=(*guess.notes, doubt))
         return
     if unit is None:
         is_rot = guess.column.strip().lower() in (

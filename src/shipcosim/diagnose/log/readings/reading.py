@@ -297,15 +297,15 @@ def _with_known_rates(readings):
     }
     with_rates = []
     # A free clock rate within 3 standard errors of a usual one is replaced by the usual one.
-    for judged_one in readings:
-        other = usual.get(_beside_clock(judged_one)) if _clock_of(judged_one) == CLOCK else None
+    for reading in readings:
+        other = usual.get(_beside_clock(reading)) if _clock_of(reading) == CLOCK else None
         if (
             other is not None
-            and abs(np.log(judged_one.rate[0] / other.rate[0]))
-            < 3.0 * judged_one.rate[1] / judged_one.rate[0]
+            and abs(np.log(reading.rate[0] / other.rate[0]))
+            < 3.0 * reading.rate[1] / reading.rate[0]
         ):
-            judged_one = replace(other, probability=judged_one.probability)
-        with_rates.append(judged_one)
+            reading = replace(other, probability=reading.probability)
+        with_rates.append(reading)
     return sorted(with_rates, key=lambda entry: -entry.probability)
 
 

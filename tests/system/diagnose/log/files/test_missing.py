@@ -22,6 +22,7 @@ FILLERS = [
     "99999.9",
     "-8888",
     "1e30",
+    "-999.25",
     "-3.4028235e38",
     "65535",
     "-32768",
@@ -55,8 +56,8 @@ def remarks(log):
 @given(
     some.sampled_from(FILLERS),
     some.sampled_from(sorted(MOTION)),
-    some.integers(0, 200),
-    some.integers(2, 90),
+    some.integers(1, 200),
+    some.integers(1, 90),
     some.floats(0.1, 3.0),
 )
 def test_a_number_that_means_no_value_is_left_out(tmp_path, filler, role, first, count, size):
@@ -75,6 +76,58 @@ def test_a_number_that_means_no_value_is_left_out(tmp_path, filler, role, first,
 def test_an_end_of_what_was_measured_is_no_missing_value(last):
     values = np.linspace(0.5, 1.0, 200) * last
     assert without_fillers("rpm", np.append(values, [last, last]))[1] == []
+
+
+@pytest.mark.parametrize("column", [[0.0] * 9 + [99.0] * 9, [0.0, 10.0, 20.0, 999.0]])
+def test_a_step_and_a_time_after_a_gap_are_no_missing_values(column):
+    assert without_fillers("rpm", np.array(column))[1] == []
+
+
+SENSORS = {
+    "heading": 200.0 + 30.0 * np.sin(T / 40.0),
+    "north": 500.0 + 9.0 * np.sin(T / 60.0),
+    "east": 300.0 + 0.1 * T,
+    "surge": 1.5 + 0.2 * np.sin(T / 25.0),
+    "sway": 0.1 * np.cos(T / 25.0) - 0.7,
+    "wind_speed": 9.0 + np.sin(T / 9.0),
+    "wind_from": 45.0 + 20.0 * np.sin(T / 13.0),
+}
+
+
+@EASY
+@given(
+    some.sampled_from([0.0, -1.0]),
+    some.sampled_from(["heading", "north", "surge", "wind_speed"]),
+    some.lists(some.tuples(some.integers(0, 270), some.integers(2, 25)), min_size=1, max_size=4),
+)
+def test_a_number_that_a_sensor_leaps_to_and_back_is_no_value(tmp_path, filler, role, blocks):
+    is_lost = np.zeros(len(T), bool)
+    for first, count in blocks:
+        is_lost[first : first + count] = True
+    lost = {role: np.where(is_lost, filler, SENSORS[role])}
+    log = log_of(tmp_path, {"time": T} | SENSORS | lost)
+    assert np.isnan(log[role].values).tolist() == is_lost.tolist()
+    assert f"{role}: it leaps to {filler:g} and back in {is_lost.sum()} rows" in remarks(log)
+    for other in SENSORS.keys() - {role}:
+        assert np.isfinite(log[other].values).all()
+
+
+@EASY
+@given(some.integers(2, 60), some.floats(0.02, 0.2))
+def test_a_ship_that_stops_and_a_heading_through_north_lose_no_value(tmp_path, pause, noise):
+    # A receiver at rest gives exactly 0, and the compass passes 0 with whole degrees.
+    speed = np.maximum(np.abs(T - 150.0) - pause, 0.0) * 0.02
+    speed = np.where(speed < noise, 0.0, speed + noise * 0.1 * np.sin(9.0 * T))
+    heading = np.round(np.mod(20.0 * np.sin(T / 40.0), 360.0))
+    columns = (
+        {"time": T}
+        | SENSORS
+        | {"surge": speed, "heading": heading, "port_rpm": 90.0 * (speed > 0.0)}
+    )
+    log = log_of(tmp_path, columns)
+    assert log["surge"].values == pytest.approx(speed, abs=1e-4)
+    assert log["heading"].values.tolist() == heading.tolist()
+    assert np.isfinite(log["port_rpm"].values).all()
 
 
 def test_two_numbers_for_no_value_in_one_column_are_both_left_out():
@@ -99,8 +152,7 @@ FLAGGED = {
 def test_rows_that_a_flag_calls_bad_are_left_out(tmp_path, flag, share):
     good, bad, roles = FLAGGED[flag]
     is_bad = np.arange(len(T)) % round(1.0 / share) == 1
-    motion = {name: np.where(is_bad, 0.0, values) for name, values in MOTION.items()}
-    log = log_of(tmp_path, {"time": T} | motion | {flag: [bad if b else good for b in is_bad]})
+    log = log_of(tmp_path, {"time": T} | MOTION | {flag: [bad if b else good for b in is_bad]})
     for role in MOTION:
         assert np.isnan(log[role].values).tolist() == (is_bad & (role in roles)).tolist()
     assert ("bad: left empty" in remarks(log)) == bool(roles)

@@ -9,7 +9,7 @@ from hypothesis import strategies as some
 
 from shipcosim.diagnose.log.degree_size import metres_per_degree
 from shipcosim.diagnose.log.names.proposal import propose
-from shipcosim.diagnose.log.reader import columns_of
+from shipcosim.diagnose.log.reader import columns_of, read_log
 
 SIDES = {
     "sway": ("Sway [m/s]", [("S", "P"), ("STBD", "PORT"), ("R", "L"), ("sb", "bb")]),
@@ -31,6 +31,39 @@ def test_a_column_of_sides_gives_the_signs(tmp_path, role, pair, shift):
     log = log_of(tmp_path, {"time": T} | MOTION | {name: np.abs(values), f"{name[:3]} side": sides})
     assert log[role].values == pytest.approx(values, abs=1e-4)
     assert "its side stands in" in remarks(log)
+
+
+@pytest.mark.parametrize("codes", [("1", "0"), ("1", "-1"), ("CW", "CCW")])
+@pytest.mark.parametrize(
+    "name", ["Port direction", "port_rpm_dir", "Port shaft rotation", "Port reverse"]
+)
+def test_the_code_of_a_direction_is_asked(tmp_path, codes, name):
+    values = 90.0 * np.sin(T / 20.0)
+    columns = {"time": T} | MOTION | {"Port RPM": np.abs(values), "power": T}
+    columns[name] = [codes[0] if v >= 0.0 else codes[1] for v in values]
+    log = log_of(tmp_path, columns)
+    assert "port_rpm" not in log
+    assert f"it has no sign, and '{name}' may hold it" in remarks(log)
+    if codes[0] == "1":
+        guess = next(
+            g
+            for g in propose(columns_of(tmp_path / "log.csv"), THRUSTERS).used
+            if g.role == "port_rpm"
+        )
+        assert guess.channel.hemisphere == name
+        lines = (
+            "".join(f'{role} = "{role}"\n' for role in ("time", *MOTION))
+            + f'port_rpm = {{column = "Port RPM", hemisphere = "{name}", sign = -1}}\n'
+        )
+        (tmp_path / "channels.toml").write_text(lines)
+        log = read_log(tmp_path / "log.csv", tmp_path / "channels.toml")
+        assert log["port_rpm"].values == pytest.approx(-values, abs=1e-4)
+
+
+@pytest.mark.parametrize("name", ["Port running", "Stbd direction", "Alarm"])
+def test_the_codes_of_another_column_are_no_direction(tmp_path, name):
+    columns = {"time": T} | MOTION | {"Port RPM": 50.0 + T, name: T % 2.0}
+    assert log_of(tmp_path, columns)["port_rpm"].values == pytest.approx(50.0 + T, abs=1e-4)
 
 
 @pytest.mark.parametrize("word", ["A", "R", "V", "on"])
@@ -73,6 +106,15 @@ def test_a_longitude_is_in_degrees_and_minutes_where_the_latitude_is(
 
 
 @EASY
+@given(some.floats(-0.9, 0.9), some.floats(5.0, 170.0))
+def test_a_latitude_is_in_degrees_and_minutes_where_the_longitude_is(tmp_path, latitude, longitude):
+    texts = [minutes(place) for place in positions(latitude, longitude)]
+    columns = {"time": T, "heading": MOTION["heading"], "Lat": texts[0], "Lon": texts[1]}
+    log = log_of(tmp_path, columns)
+    assert log["north"].values - log["north"].values[0] == pytest.approx(MOTION["north"], abs=0.1)
+
+
+@EASY
 @given(some.floats(2.0, 80.0), some.floats(182.0, 359.0))
 def test_a_longitude_counts_on_to_360_where_the_latitude_is_in_degrees(
     tmp_path, latitude, longitude
@@ -87,9 +129,10 @@ def test_a_longitude_counts_on_to_360_where_the_latitude_is_in_degrees(
 @pytest.mark.parametrize(
     ("latitude", "longitude"), [(63.4, 10.4), (-33.9, 18.4), (1.3, 103.9), (50.0, -125.0)]
 )
-def test_positions_in_radians_without_a_unit_are_asked(tmp_path, latitude, longitude):
+@pytest.mark.parametrize("names", [("Lat", "Lon"), ("latitude", "longitude")])
+def test_positions_in_radians_without_a_unit_are_asked(tmp_path, latitude, longitude, names):
     columns = {"time": [f"{t}" for t in T]}
-    for name, place in zip(("Lat", "Lon"), positions(latitude, longitude), strict=True):
+    for name, place in zip(names, positions(latitude, longitude), strict=True):
         columns[name] = [f"{np.radians(degrees):.12f}" for degrees in place]
     rows = [",".join(columns), *(",".join(row) for row in zip(*columns.values(), strict=True))]
     used = {g.role: g for g in propose(columns_of(save(tmp_path, rows)), THRUSTERS).used}

@@ -195,3 +195,33 @@ def test_thousands_are_grouped_by_any_mark(tmp_path, mark, decimal):
     log = log_of(tmp_path, columns, ";")
     assert log["north"].values == pytest.approx(7035000.0 + MOTION["north"], abs=0.01)
     assert np.isfinite(log["east"].values).all()
+
+
+@pytest.mark.parametrize("role", ["heading", "wind_from", "true_wind_from"])
+@pytest.mark.parametrize("middle", [0.1, 1.5, 3.0])
+@pytest.mark.parametrize("swing", [0.05, 1.0, 3.0])
+@pytest.mark.parametrize("is_signed", [True, False])
+def test_directions_within_two_pi_are_asked_where_no_unit_is_stated(
+    tmp_path, role, middle, swing, is_signed
+):
+    angle = middle + swing * np.sin(T / 20.0)
+    angle = np.angle(np.exp(1j * angle)) if is_signed else np.mod(angle, 2.0 * np.pi)
+    columns = {"time": T, "surge": 1.0 + 0.1 * np.sin(T / 9.0), "sway": 0.1 * np.sin(T / 7.0)}
+    log = log_of(tmp_path, columns | {role: angle})
+    assert role not in log
+    assert "no unit is stated, and no value is beyond 2 pi: rad or deg" in " ".join(
+        log.attrs["column_remarks"]
+    )
+    log = log_of(tmp_path, columns | {f"{role} [deg]": angle})
+    assert log[role].values == pytest.approx(angle, abs=1e-4)
+
+
+@pytest.mark.parametrize("middle", [3.0, 90.0])
+def test_a_heading_in_degrees_needs_no_unit(tmp_path, middle):
+    # Around north it passes 360; in whole degrees it is in no radians.
+    swinging = np.mod(middle + 6.0 * np.sin(T / 20.0), 360.0)
+    assert (
+        log_of(tmp_path, {"time": T, "surge": T, "heading": swinging})["heading"].values.max() > 7.0
+    )
+    steady = np.round(3.0 + 2.0 * np.sin(T / 20.0))
+    assert "heading" in log_of(tmp_path, {"time": T, "surge": T, "heading": steady})

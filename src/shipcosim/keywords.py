@@ -47,8 +47,8 @@ TIME = {"float", "str"}
 def with_known_keywords(function: Function) -> Function:
     """A function that refuses arguments it does not have, or of another type, before it does anything.
 
-    It raises ShipcosimError. A keyword that is None is as good as left out. ``**options`` of a function are those of
-    `shipcosim.options.RunKeywords`.
+    It raises ShipcosimError. None is as good as left out wherever there is a default. ``**options`` of a function are
+    those of `shipcosim.options.RunKeywords`.
 
     Examples
     --------
@@ -67,41 +67,40 @@ def with_known_keywords(function: Function) -> Function:
         parameter.name: parameter.annotation
         for parameter in parameters.values()
         if parameter.kind in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY)
+        and parameter.name != "self"
     }
-    if any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters.values()):
+    required = {name for name in accepted if parameters[name].default is inspect.Parameter.empty}
+    options = next((p.name for p in parameters.values() if p.kind is p.VAR_KEYWORD), "")
+    if options:
         accepted |= {
             name: kind.__forward_arg__ for name, kind in RunKeywords.__annotations__.items()
         }
+    where = f"{function.__qualname__}()"
 
     @wraps(function)
     def call(*arguments, **keywords):
-        where = f"{function.__name__}()"
         unknown = [
             Problem(where, f"There is no keyword '{k}'.", suggestion(k, accepted))
             for k in keywords
             if k not in accepted
         ]
         raise_errors(unknown)
-        keywords = {name: value for name, value in keywords.items() if value is not None}
         try:
-            given = signature.bind(*arguments, **keywords).arguments
+            bound = signature.bind(*arguments, **keywords).arguments
         except TypeError as error:
-            remedy = f"Its form is {function.__name__}({', '.join(accepted)})."
+            remedy = f"Its form is {function.__qualname__}({', '.join(accepted)})."
             raise error_at(where, f"{capitalised(str(error))}.", remedy) from None
+        # Options stand in a mapping of their own. None is as good as left out where there is a default.
+        given = {**bound.pop(options, {}), **bound}
+        given = {name: v for name, v in given.items() if v is not None or name in required}
         wrong = []
-        for name, value in {**given, **keywords}.items():
+        for name, value in given.items():
             # Modules without postponed annotations have classes in place of their names.
             annotation = getattr(accepted.get(name), "__name__", str(accepted.get(name)))
-            if (
-                value is None
-                and name in parameters
-                and parameters[name].default is not inspect.Parameter.empty
-            ):
-                continue
             if wanted := _other_kind(annotation, value):
                 wrong.append(Problem(where, f"{name} = {value!r:.60}.", f"Give {wanted}."))
         raise_errors(wrong)
-        return function(*arguments, **keywords)
+        return function(**given)
 
     return cast(Function, call)
 
@@ -117,7 +116,9 @@ def _other_kind(annotation: str, value: Any) -> str:
     if not set(kinds) <= set(KINDS) or set(kinds) >= TIME or is_none:
         return ""
     for kind in kinds:
-        fits = kind in names or isinstance(value, KINDS[kind][0])
+        # An empty path is the folder one is in to Python.
+        is_empty = (kind, value) == ("AnyPath", "")
+        fits = kind in names or (isinstance(value, KINDS[kind][0]) and not is_empty)
         # True is a number to Python; counts are not negative.
         if fits and (kind == "bool" or "bool" not in names) and (kind != "int" or value >= 0):
             return ""
