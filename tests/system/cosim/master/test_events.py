@@ -118,8 +118,14 @@ def test_events_on_a_slow_component_act_on_its_next_step(make_system, make_scena
             "the signal is Boolean. Override it with true or false",
         ),
         ({"time": 0.2, "override": {"meter.number": 1.5}}, "the signal is Integer. A whole number"),
-        ({"time": 0.2, "override": {"meter.number": 2**31}}, "too large for an Integer. Give one from"),
-        ({"time": 0.2, "override": {"meter.number": -1e12}}, "too large for an Integer. Give one from"),
+        (
+            {"time": 0.2, "override": {"meter.number": 2**31}},
+            "too large for an Integer. Give one from",
+        ),
+        (
+            {"time": 0.2, "override": {"meter.number": -1e12}},
+            "too large for an Integer. Give one from",
+        ),
         ({"time": 0.2, "bias": {"meter.flag": 1.0}}, "bias of 'meter.flag'"),
         (
             {"time": 0.2, "override": {"meter.text": "a"}},
