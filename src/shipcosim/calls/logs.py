@@ -123,9 +123,31 @@ def isolability(
 
 
 @overload
-def diagnose(log: AnyLog, *arguments: Any, **keywords: Any) -> DiagnosisOfLog: ...
+def diagnose(
+    log: AnyLog,
+    system: AnySystem | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
+    progress: Progress | None = None,
+    *,
+    out: AnyPath | None = None,
+    force: bool = False,
+    reference: AnyPath | Reference | None = None,
+    learn: bool = False,
+    length: float | str | None = None,
+) -> DiagnosisOfLog: ...
 @overload
-def diagnose(log: Sequence[AnyLog], *arguments: Any, **keywords: Any) -> DiagnosisOfLogs: ...
+def diagnose(
+    log: Sequence[AnyLog],
+    system: AnySystem | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
+    progress: Progress | None = None,
+    *,
+    out: AnyPath | None = None,
+    force: bool = False,
+    reference: AnyPath | Reference | None = None,
+) -> DiagnosisOfLogs: ...
 @with_known_keywords
 def diagnose(
     log: AnyLog | Sequence[AnyLog],
