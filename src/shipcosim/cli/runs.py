@@ -64,7 +64,8 @@ def prepare_folder(
         try:
             prepared[name] = prepare_run(file, **options)
         except ShipcosimError as error:
-            refused[name] = error
+            # A name that is no text has "?" for what is none.
+            refused[name.encode(errors="replace").decode()] = error
     if not prepared:
         raise ShipcosimError([problem for error in refused.values() for problem in error.problems])
     return prepared, refused

@@ -122,7 +122,8 @@ def _text(path: Path) -> str:
         path.name.encode()
         return path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeEncodeError as error:
-        raise error_at(str(path), "has a name that is no UTF-8.", "Rename the file.") from error
+        shown = str(path).encode(errors="replace").decode()
+        raise error_at(shown, "has a name that is no UTF-8.", "Rename the file.") from error
     except OSError as error:
         raise error_at(str(path), f"cannot be read: {error.strerror or error}.") from error
     except UnicodeDecodeError as error:

@@ -466,7 +466,7 @@ def outliers(log: dict) -> dict[str, np.ndarray]:
 
 def _far_off(values, is_angle):
     """Samples that are far from both neighbours on the same side, while those agree; at an end, far from all others."""
-    if not np.isfinite(values).any():
+    if not np.isfinite(np.diff(values)).any():
         return np.zeros(len(values), bool)
     # Robust scale of the changes: median absolute deviation plus resolution.
     change = np.diff(values)
