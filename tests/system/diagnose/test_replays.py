@@ -51,6 +51,12 @@ def test_a_run_read_as_a_log_has_the_roles_of_its_signals(run):
     )
 
 
+def test_a_thruster_that_is_told_its_force_is_driven_by_it_and_by_no_speed(run):
+    force = run.rename(propeller_rpm="propeller_thrust").drop_vars("propeller_azimuth")
+    log = run_as_log(force, "vessel", ["propeller"])
+    assert "propeller_thrust" in log and "propeller_rpm" not in log
+
+
 def test_a_log_of_any_other_form_is_left_as_it_is(run):
     log = run_as_log(run, "vessel", [])
     assert run_as_log(log, "vessel", []) is log

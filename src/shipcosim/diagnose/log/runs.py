@@ -116,7 +116,10 @@ def channels_of_run(
         return {}
     named = {"time": "time"} | {role: f"{ship}.{output}" for role, (output, _) in _SHIP.items()}
     for name in thrusters:
-        named |= {f"{name}_{kind}": f"{name}.{kind}" for kind in ("rpm", "azimuth")}
+        # A thruster whose force is an input of the system is driven by that, and not by the speed of a shaft.
+        thrust = f"{name}_thrust"
+        speed = {thrust: thrust} if thrust in signals else {f"{name}_rpm": f"{name}.rpm"}
+        named |= speed | {f"{name}_azimuth": f"{name}.azimuth"}
     return {role: _channel(role, signal) for role, signal in named.items() if signal in signals}
 
 
