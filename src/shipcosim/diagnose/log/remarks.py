@@ -1,8 +1,9 @@
-"""What is ordinary in a log and handled without naming a fault: unordered rows, dropouts, outliers, uneven times."""
+"""What is ordinary in a log and handled without naming a fault: unordered rows, dropouts, outliers, noisier parts."""
 
 import numpy as np
 import xarray
 
+from shipcosim.diagnose.log.checks.noise import noisier_parts
 from shipcosim.diagnose.log.checks.samples import outliers
 from shipcosim.diagnose.log.rows import arrays_of, usable_rows
 from shipcosim.diagnose.log.thresholds import HOLE, UNEVEN
@@ -37,13 +38,14 @@ def remarks(log: xarray.Dataset) -> list[str]:
     for name, variable in log.data_vars.items():
         if empty := int(np.sum(~np.isfinite(variable.values[rows]))):
             sentences.append(f"{name}: {counted(empty, 'row')} without a number.")
-    far = outliers(arrays_of(log.isel(time=rows)))
+    right = arrays_of(log.isel(time=rows))
+    far = outliers(right)
     sentences += [
         f"{role}: {counted(bad.sum(), 'row')} far off both neighbours: left out."
         for role, bad in far.items()
         if bad.any()
     ]
-    return sentences
+    return [*sentences, *noisier_parts(right)]
 
 
 def handled(log: xarray.Dataset) -> list[str]:

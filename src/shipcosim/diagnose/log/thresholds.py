@@ -57,6 +57,12 @@ NOISIER = 2.0
 Assumed."""
 CALM_SHARE = 0.25
 """Share of the parts of a log that are calm."""
+NOISIER_PART = 4.0
+"""Noise of a channel in a part of a log over that elsewhere, from which on a remark gives both. Assumed."""
+NOISIER_PART_GAIN = 30.0
+"""What a noisier part must gain over noise that is the same throughout. [nats] Assumed."""
+NOISIER_PART_CLIP = 3.0
+"""Most that one row can gain by it: outliers are no noise. [nats] Assumed."""
 UNSURE_NOISE = (0.25, 0.35, 0.15)
 """Uncertainty of the loss that noise causes in a factor, which is measured in two ways: how far from the larger to the
 smaller the value is taken, how unsure it is as a share of their difference, and as a share of the larger even where
