@@ -105,6 +105,11 @@ class ShipcosimError(Exception):
         self.problems = [p if isinstance(p, Problem) else Problem("", p) for p in problems]
         super().__init__("\n".join(map(str, worth_showing(self.problems))))
 
+    @property
+    def is_finding(self) -> bool:
+        """Whether the work ran and this is what it found, as opposed to input that cannot be used."""
+        return False
+
     def _render_traceback_(self) -> list[str]:
         """What IPython and Jupyter show in place of a traceback: the problems, each on lines of its own."""
         shown = worth_showing(self.problems)

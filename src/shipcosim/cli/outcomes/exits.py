@@ -146,7 +146,7 @@ def guarded(function: Callable[..., Conclusion | None]) -> Callable[..., None]:
             raise
         except ShipcosimError as error:
             problems = error.problems
-            code = FAILED if getattr(error, "is_finding", False) else UNUSABLE
+            code = FAILED if error.is_finding else UNUSABLE
             explain(problems, debug)
         except KeyboardInterrupt:
             say("Interrupted.", err=True)

@@ -135,7 +135,8 @@ def inverses_of(effect: tuple, price: np.ndarray, levers: tuple, unit_of: tuple)
     inverses = []
     for lever in levers:
         scale = _vector(1.0, 1.0, 1.0 / lever)
-        for k in range(1 << max(unit_of) + 1):
+        # Every set of units, as a number with one bit a unit.
+        for k in range(2 ** (max(unit_of) + 1)):
             # W^-1/2 (S B W^-1/2)^+ S, with S for the yaw lever and only the free units' columns.
             free = np.array([(k >> unit) & 1 for unit in unit_of])
             weighted = scale[..., :, None] * matrix * (price * free)[..., None, :]

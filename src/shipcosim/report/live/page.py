@@ -181,8 +181,8 @@ def _about(described: Variable | Signal, kind: str) -> dict[str, Any]:
         "text": described.description or "",
     }
     # A variable of an FMU may have bounds, an input of the system has none.
-    for name in ("minimum", "maximum"):
+    for key, name in (("min", "minimum"), ("max", "maximum")):
         bound = getattr(described, name, None)
         if bound is not None:
-            about[name[:3]] = bound
+            about[key] = bound
     return about
