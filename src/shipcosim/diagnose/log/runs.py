@@ -11,6 +11,7 @@ import xarray
 
 from shipcosim.diagnose.log.channels import Channel
 from shipcosim.errors import error_at, reading
+from shipcosim.models.core.kinematics import to_body
 from shipcosim.series import make_table, read_columns
 from shipcosim.ssp import AnyPath
 
@@ -78,6 +79,10 @@ def run_as_log(log: LogSource, ship: str, thrusters: Collection[str]) -> LogSour
         message = f"this is the table of a run, and it has no {', '.join(_SHIP[role][0] for role in missing)} of '{ship}'."
         remedy = f"Its components: {', '.join(there)}. Name the system that made it: --system SSP."
         raise error_at(file.get("source", "log"), message, remedy)
+    if others := _thrusters_of_another_ship(signals, thrusters):
+        message = f"this is the table of a run of another ship: her thrusters are {', '.join(others)}."
+        remedy = f"Those of the system are {', '.join(thrusters)}. Name the system that made it: --system SSP."
+        raise error_at(file.get("source", "log"), message, remedy)
     # Inputs of the system that are named as roles go before what its components show.
     inputs = {
         name: _channel(name, name)
@@ -94,6 +99,12 @@ def run_as_log(log: LogSource, ship: str, thrusters: Collection[str]) -> LogSour
             np.asarray(signals["time"], float),
             [_column(role, signal, signals, units) for role, signal in named.items()],
         )
+    # Waves turn the ship, too: resolve the velocity along the heading that a compass shows.
+    turned = signals.get(f"{ship}.psi_wave")
+    if turned is not None and "surge" in table and "sway" in table:
+        along = to_body(np.asarray(turned, float), table["surge"].values, table["sway"].values)
+        for role, values in zip(("surge", "sway"), along, strict=True):
+            table[role].values = values
     table.encoding |= file
     return table
 
@@ -121,6 +132,17 @@ def channels_of_run(
         speed = {thrust: thrust} if thrust in signals else {f"{name}_rpm": f"{name}.rpm"}
         named |= speed | {f"{name}_azimuth": f"{name}.azimuth"}
     return {role: _channel(role, signal) for role, signal in named.items() if signal in signals}
+
+
+def _thrusters_of_another_ship(signals: Collection[str], thrusters: Collection[str]) -> list[str]:
+    """Components of a run that have a shaft and push the ship; none where the thrusters of the system are there."""
+    pushing = [
+        name.removesuffix(".rpm")
+        for name in signals
+        if name.endswith(".rpm") and f"{name.removesuffix('.rpm')}.tau_X" in signals
+    ]
+    missing = any(f"{name}.rpm" not in signals for name in thrusters)
+    return [name for name in pushing if name not in thrusters] if missing else []
 
 
 def _channel(role: str, signal: str) -> Channel:

@@ -19,9 +19,10 @@ from shipcosim.diagnose.inference.thresholds import UNMODELLED
 from shipcosim.diagnose.log.checks.samples import HELD, LIFELESS, held_segments, is_constant
 from shipcosim.diagnose.log.mislabels import drive_channels
 from shipcosim.diagnose.log.rows import inside
-from shipcosim.diagnose.log_faults.thresholds import HELD_ALIKE, HELD_EXCESS
+from shipcosim.diagnose.log_faults.thresholds import HELD_ALIKE, HELD_EXCESS, IDLE
 from shipcosim.diagnose.ship.inputs import with_inputs_of
 from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 
 _WIND = ("wind_speed", "wind_from", "true_wind_speed", "true_wind_from")
 
@@ -38,7 +39,14 @@ def held_inputs(log: xarray.Dataset, model: ShipModel) -> list[Finding]:
     time = log["logged_time"].values
     drives = [role for name in model.thrusters for role in drive_channels(name, log)]
     roles = [*drives, *(role for role in _WIND if role in log)]
-    held = {role: held_segments(time, log[role].values) for role in roles}
+    held = {
+        role: tuple(
+            segment
+            for segment in held_segments(time, log[role].values)
+            if not _idles(log, role, inside(time, [segment]), model)
+        )
+        for role in roles
+    }
     findings = {}
     # A wind that is the same in every row is none that was measured: she meets another one as she moves.
     wind = tuple(role for role in _WIND[:2] if role in log)
@@ -57,6 +65,19 @@ def held_inputs(log: xarray.Dataset, model: ShipModel) -> list[Finding]:
         )
         findings[together] = log_fault("gap", together, HELD, segments, 0.99)
     return list(findings.values())
+
+
+def _idles(log: xarray.Dataset, role: str, here: np.ndarray, model: ShipModel) -> bool:
+    """Whether a role is the direction of a thruster whose shaft hardly turns in some rows: it pushes in none.
+
+    A shaft that stands in each of these rows is no such one: speed and direction may be held together.
+    """
+    thruster, _, quantity = role.rpartition("_")
+    if quantity != "azimuth" or f"{thruster}_rpm" not in log:
+        return False
+    speed = np.abs(log[f"{thruster}_rpm"].values[here])
+    most = 60.0 * dp_thruster_of(model, thruster).most
+    return bool(np.nanmedian(speed) < IDLE * most and not is_constant(speed))
 
 
 def is_contradicted(finding: Finding, log: xarray.Dataset, problem: IdentificationProblem) -> bool:

@@ -49,6 +49,9 @@ held 118 to 962 (5 logs, seed 98500; two of them stay below)."""
 HELD_ALIKE = 0.9
 """Share of the held rows of a channel in which another one is held too, to be the same gap. Assumed."""
 
+IDLE = 0.05
+"""Speed of a shaft over the largest it can have, below which its direction hardly matters: 0.3 % of its thrust. Assumed."""
+
 # Labels of the navigation
 
 LABEL_GAIN = 30.0

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from shipcosim.diagnose.ship.form import form_functions, form_sizes
+from shipcosim.diagnose.ship.slipstreams import Slipstreams
 from shipcosim.diagnose.ship.third_party_fmu import ThirdPartyFmu
 from shipcosim.diagnose.ship.wiring import Wiring
 from shipcosim.models.propulsion.azimuth import AzimuthParameters
@@ -57,6 +58,8 @@ class ShipModel:
         Direction of azimuth thrusters of ours that neither the system nor the log turns. [rad]
     neighbours : dict of str to str
         By azimuth thruster of ours, the one whose slipstream can hit it.
+    slipstreams : Slipstreams or None
+        What the system's own FMU of their interaction says of it.
     """
 
     parts: dict[str, Any]
@@ -71,6 +74,7 @@ class ShipModel:
     third_party: dict[str, ThirdPartyFmu] = field(default_factory=dict)
     fixed: dict[str, float] = field(default_factory=dict)
     neighbours: dict[str, str] = field(default_factory=dict)
+    slipstreams: Slipstreams | None = None
 
     @property
     def numbers(self) -> list[str]:

@@ -8,12 +8,14 @@ from shipcosim.diagnose.ship.environment import water_of
 from shipcosim.diagnose.ship.form import HullForm, ThrusterForm, WindForm, form_of
 from shipcosim.diagnose.ship.instruments import Instruments
 from shipcosim.diagnose.ship.model import OWN_THRUSTERS, ShipModel
+from shipcosim.diagnose.ship.slipstreams import Slipstreams, numbers_of
 from shipcosim.diagnose.ship.third_party_fmu import part_of, problem_of, third_party_fmu_of
 from shipcosim.diagnose.ship.thrusters import fixed_of, neighbours_of, neighbours_placed
 from shipcosim.diagnose.ship.tolerances import tolerances_of
 from shipcosim.diagnose.ship.wiring import wiring_of
 from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.propulsion.interaction import InteractionParameters
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.ssp import System
 from shipcosim.ssp.flatten.system import Component
@@ -65,6 +67,7 @@ def ship_model_of(system: System) -> ShipModel:
     }
     parts_of_system = {"wiring": wiring_of(system, ship.name, ours), "third_party": third_party}
     parts_of_system |= {"fixed": fixed_of(system, parts), "neighbours": neighbours}
+    parts_of_system["slipstreams"] = _slipstreams(system, ours)
     return ShipModel(parts, ship.name, tolerances_of(system, parts, ship.name), **parts_of_system)
 
 
@@ -90,6 +93,16 @@ def _loading(system: System, ship: str) -> list[str]:
         if c.target[0] == ship and c.target[1].startswith("tau_")
     }
     return [name for name in system.components if name in sources]
+
+
+def _slipstreams(system: System, thrusters: list[str]) -> Slipstreams | None:
+    """The interaction of thrusters by the system's own FMU; None without one."""
+    for component in system.components.values():
+        if not _holds(component, InteractionParameters):
+            continue
+        numbers = numbers_of(system, component.name, thrusters)
+        return Slipstreams(_values(component, InteractionParameters), numbers)
+    return None
 
 
 def _holds(component: Component, kind: type) -> bool:

@@ -130,6 +130,8 @@ def _loads_of(
     if neighbour:
         n_other, azimuth_other = units[neighbour]
         extra = {"neighbour_azimuth": azimuth_other, "neighbour_rpm": 60.0 * n_other}
+    if model.slipstreams:
+        extra["thrust_share"] = model.slipstreams.share(name, units)
     *_, surge, sway, yaw = azimuth_loads(state, u_r, v_r, r, unit=unit, **extra)
     return surge, sway, yaw
 
