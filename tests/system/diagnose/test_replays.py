@@ -1,5 +1,7 @@
 """Replays of a log, of a run as a log, and of what a diagnosis extended."""
 
+import json
+
 import numpy as np
 import pytest
 from diagnose import twin
@@ -7,7 +9,7 @@ from diagnose import twin
 import shipcosim as sc
 from shipcosim.diagnose.extension.extend import extend
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
-from shipcosim.diagnose.log.runs import run_as_log
+from shipcosim.diagnose.log.runs import other_numbers, run_as_log
 from shipcosim.diagnose.replays import replay_log
 from shipcosim.diagnose.validation.tracks import errors_of
 from shipcosim.errors import ShipcosimError
@@ -55,6 +57,25 @@ def test_a_thruster_that_is_told_its_force_is_driven_by_it_and_by_no_speed(run):
     force = run.rename(propeller_rpm="propeller_thrust").drop_vars("propeller_azimuth")
     log = run_as_log(force, "vessel", ["propeller"])
     assert "propeller_thrust" in log and "propeller_rpm" not in log
+
+
+def test_the_velocity_is_along_the_heading_that_waves_turn(run):
+    waves = run.assign({"vessel.psi_wave": run["vessel.psi_wave"] + np.radians(90.0)})
+    log = run_as_log(waves, "vessel", ["propeller"])
+    ahead = run["vessel.u"] + run["vessel.u_wave"]
+    np.testing.assert_allclose(log["sway"], -ahead, atol=1e-12)
+
+
+def test_a_run_of_a_ship_with_other_thrusters_is_refused(run):
+    with pytest.raises(ShipcosimError, match="another ship: her thrusters are propeller"):
+        run_as_log(run, "vessel", ["left", "right"])
+
+
+def test_numbers_that_a_run_had_and_the_ship_has_not_are_named(run):
+    mass = json.loads(run.attrs["start_values"])["vessel.mass"]
+    assert other_numbers(run, {"vessel.mass": mass, "water.depth": 3.0}) == []
+    (remark,) = other_numbers(run, {"vessel.mass": 2.0 * mass})
+    assert f"vessel.mass {mass:g} (here {2.0 * mass:g})." in remark
 
 
 def test_a_log_of_any_other_form_is_left_as_it_is(run):

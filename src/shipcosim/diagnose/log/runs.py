@@ -2,8 +2,10 @@
 
 import gzip
 import hashlib
+import json
 from collections.abc import Collection, Mapping
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -31,6 +33,8 @@ _SHIP = {
     "wind_from": ("apparent_wind_from", "rad"),
 }
 """Role: output of the ship and its unit."""
+_MOST_NUMBERS = 5
+"""Numbers that a remark names."""
 _NEEDED = ("north", "east", "heading")
 
 
@@ -80,7 +84,9 @@ def run_as_log(log: LogSource, ship: str, thrusters: Collection[str]) -> LogSour
         remedy = f"Its components: {', '.join(there)}. Name the system that made it: --system SSP."
         raise error_at(file.get("source", "log"), message, remedy)
     if others := _thrusters_of_another_ship(signals, thrusters):
-        message = f"this is the table of a run of another ship: her thrusters are {', '.join(others)}."
+        message = (
+            f"this is the table of a run of another ship: her thrusters are {', '.join(others)}."
+        )
         remedy = f"Those of the system are {', '.join(thrusters)}. Name the system that made it: --system SSP."
         raise error_at(file.get("source", "log"), message, remedy)
     # Inputs of the system that are named as roles go before what its components show.
@@ -109,6 +115,35 @@ def run_as_log(log: LogSource, ship: str, thrusters: Collection[str]) -> LogSour
     return table
 
 
+def other_numbers(log: LogSource, numbers: Mapping[str, Any]) -> list[str]:
+    """One sentence on start values that a run had and a ship has not; none where they agree or the table has none.
+
+    Parameters
+    ----------
+    log : path or xarray.Dataset
+        Table of a run; a .csv says nothing of it.
+    numbers : mapping of str to float
+        Of the ship, ``component.name``.
+    """
+    written = None
+    if isinstance(log, xarray.Dataset):
+        written = log.attrs.get("start_values")
+    elif Path(log).suffix == ".nc":
+        with reading(log), h5py.File(log) as file:
+            written = file.attrs.get("start_values")
+    had = json.loads(written or "{}")
+    apart = [
+        f"{path} {had[path]:g} (here {number:g})"
+        for path, number in numbers.items()
+        if isinstance(had.get(path), (int, float)) and not np.isclose(had[path], number, 1e-6, 0.0)
+    ]
+    if not apart:
+        return []
+    more = f" and {len(apart) - _MOST_NUMBERS} more" if len(apart) > _MOST_NUMBERS else ""
+    shown = ", ".join(apart[:_MOST_NUMBERS])
+    return [f"This run had other numbers than the system that it is compared with: {shown}{more}."]
+
+
 def channels_of_run(
     signals: Collection[str], ship: str, thrusters: Collection[str]
 ) -> dict[str, Channel]:
@@ -135,14 +170,12 @@ def channels_of_run(
 
 
 def _thrusters_of_another_ship(signals: Collection[str], thrusters: Collection[str]) -> list[str]:
-    """Components of a run that have a shaft and push the ship; none where the thrusters of the system are there."""
-    pushing = [
-        name.removesuffix(".rpm")
-        for name in signals
-        if name.endswith(".rpm") and f"{name.removesuffix('.rpm')}.tau_X" in signals
-    ]
-    missing = any(f"{name}.rpm" not in signals for name in thrusters)
-    return [name for name in pushing if name not in thrusters] if missing else []
+    """Components of a run that push the ship by a thrust, where one of the system's thrusters is not in the run."""
+    there = {name.rpartition(".")[0] for name in signals}
+    if all(name in there for name in thrusters):
+        return []
+    pushing = [name for name in sorted(there) if {f"{name}.thrust", f"{name}.tau_X"} <= {*signals}]
+    return [name for name in pushing if name not in thrusters]
 
 
 def _channel(role: str, signal: str) -> Channel:

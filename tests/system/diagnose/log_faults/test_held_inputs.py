@@ -7,6 +7,7 @@ from diagnose import twin
 from shipcosim.diagnose.checked_log import ReadLog
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.log_faults.corrections import with_measured_inputs
+from shipcosim.diagnose.log_faults.held_inputs import held_inputs
 from shipcosim.diagnose.pipeline import problem_of
 
 FIRST, LAST = 120.0, 180.0  # s
@@ -71,3 +72,20 @@ def test_a_thruster_that_stands_still_is_no_gap(monkeypatch):
     log = with_noise(twin.sailed({"healthy": {}})["healthy"])
     stands = np.where(inside(log), 0.0, log["port_rpm"].values)
     assert gaps(log.assign(port_rpm=log["port_rpm"].copy(data=stands))) == []
+
+
+@pytest.mark.parametrize("speed, is_gap", [(3.0, False), (60.0, True)])
+def test_the_direction_of_a_shaft_that_hardly_turns_may_be_held(speed, is_gap):
+    """A unit that lost its power stops turning; its propeller windmills."""
+    log = with_noise(twin.logs()["healthy"])
+    here = inside(log)
+    wobble = np.random.default_rng(2).normal(scale=0.5, size=log.sizes["time"])
+    rpm = np.where(here, speed + wobble, log["port_rpm"].values)
+    azimuth = np.where(here, 12.0, log["port_azimuth"].values)
+    log = log.assign(
+        port_rpm=log["port_rpm"].copy(data=rpm),
+        port_azimuth=log["port_azimuth"].copy(data=azimuth),
+        logged_time=log["time"],
+    )
+    channels = {finding.channels for finding in held_inputs(log, twin.model())}
+    assert (("port_azimuth",) in channels) == is_gap
