@@ -22,6 +22,7 @@ from shipcosim.diagnose.log_faults.thresholds import (
     CLOCK_BLOCK,
     CLOCK_GAIN,
     LARGEST_SHARE,
+    MOTION_GAIN,
     MOST_BLOCKS,
     MOST_SEGMENTS,
     OVER_CAUSE,
@@ -37,6 +38,7 @@ from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.models.core.motion import Motion
 
 ASPECTS = [0, 1], [3, 4], [2], [5]  # states of the motion: way and speed, heading and rate of turn
+_OF_MOTION = [0, 2]  # the aspects that are motion alone: way and heading
 
 
 @dataclass(frozen=True)
@@ -102,9 +104,16 @@ def _all_aspects_agree(problem, finding, of_ship):
     # Rate of each aspect by least squares, with its covariance.
     covariance = np.linalg.pinv(inner)
     rates = covariance @ match
+    claimed = finding.parameters["rate"].estimate - 1.0
+    # How far she comes at her speed, and how far she turns at her rate, hang on no force: both by themselves
+    # must prefer this rate to a right clock. Forces that the model lacks, as of swell, look like a rate of speed.
+    weight = np.linalg.inv(covariance[np.ix_(_OF_MOTION, _OF_MOTION)])
+    mean = weight.sum(axis=0) @ rates[_OF_MOTION] / weight.sum()
+    if 0.5 * weight.sum() * (mean**2 - (mean - claimed) ** 2) < MOTION_GAIN:
+        return False
     # Chi-square test of equal rates, with some allowance for
     # model error; their common mean costs one degree of freedom.
-    apart = ASPECT_APART * (finding.parameters["rate"].estimate - 1.0)
+    apart = ASPECT_APART * claimed
     weight = np.linalg.inv(covariance + apart**2 * np.eye(len(ASPECTS)))
     rest = rates - weight.sum(axis=0) @ rates / weight.sum()
     return survival(rest @ weight @ rest, len(ASPECTS) - 1) > ASPECT_CHANCE

@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 from diagnose import twin
 
+import shipcosim as sc
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.log_faults import clock as timing
 from shipcosim.diagnose.log_faults.clock import clock_by_response, is_testable, with_rate
+from shipcosim.diagnose.log_faults.corrections import with_right_clock
+from shipcosim.diagnose.pipeline import problem_of, read_measurements
 
 FIRST, LAST, RATE = 150.0, 300.0, 1.3
 
@@ -33,6 +36,19 @@ def hurried(log):
 def test_a_right_clock_is_not_suspected():
     log = twin.logs()["healthy"]
     assert clock_by_response(twin.ready(log)) is None
+
+
+def test_swell_that_the_thrusters_work_against_is_no_wrong_clock():
+    """Her speed answers less than modelled, since the waves push; how far she comes at it is right."""
+    swell = {
+        "environment.wind_speed": 3.0,
+        "environment.significant_wave_height": 0.5,
+        "environment.peak_period": 6.0,
+        "environment.seed": 13,
+    }
+    run = sc.run("stationkeeping", set=swell, stop_time=450.0).table
+    problem = problem_of(read_measurements(run, sc.read("gunnerus_open").checked()))
+    assert with_right_clock(problem).faults == ()
 
 
 def test_a_clock_that_is_slow_for_a_while_is_found_with_its_rate():
