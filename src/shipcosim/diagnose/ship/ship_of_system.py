@@ -72,8 +72,10 @@ def ship_model_of(system: System) -> ShipModel:
 
 
 def _vessel(system: System) -> Component:
-    """The only component with the parameters of a hull."""
+    """The only component with the parameters of a hull; a predictor has them too, but nothing loads it."""
     vessels = [c for c in system.components.values() if _holds(c, HullParameters)]
+    if len(vessels) > 1:
+        vessels = [c for c in vessels if _loading(system, c.name)] or vessels
     if len(vessels) != 1:
         shown = ", ".join(f"{name} ({c.fmu.model_name})" for name, c in system.components.items())
         raise error_at(
