@@ -346,7 +346,7 @@ def admissible(fit: Fit, fits: Sequence[Fit], null: dict[str, float]) -> bool:
 
 
 def _is_sized(hypothesis, fit):
-    """Whether a cause is large enough to matter, clearly off neutral, and not at a bound."""
+    """Whether a cause is large enough to matter, beyond the ship's own tolerances, clearly off neutral, and not at a bound."""
     parameters = hypothesis.parameters
     # Size against mean standard deviation, both in typical units.
     size = _size(hypothesis, fit)
@@ -356,7 +356,10 @@ def _is_sized(hypothesis, fit):
     at_bound = any(
         fit.values[k.path] in k.bounds and fit.values[k.path] != k.neutral for k in parameters
     )
-    return not (size < hypothesis.definition.least or size < DEVIATIONS * std or at_bound)
+    # What the ship's file leaves open itself is no cause.
+    is_ordinary = all(abs(fit.values[k.path] - k.neutral) < k.tolerance for k in parameters)
+    is_small = size < hypothesis.definition.least or size < DEVIATIONS * std
+    return not (is_small or is_ordinary or at_bound)
 
 
 def _exceeds_special(hypothesis, fit, fits):
