@@ -71,11 +71,9 @@ def with_settled_form(explained: ExplainedLog) -> ExplainedLog:
     best = explained.fits[0]
     if not identification.problem.model.form_scale:
         return explained
-    # Fit the causes of the best set on a ship of the model's form.
+    # A full search with the plain form, where another cause may take what the learnt form took; that one is kept
+    # only where it gains its cost.
     plain = of_scale(identification.problem, 0.0, best.hypotheses, best.values)
-    if fitted(plain, best.hypotheses, best.values).score + FORM_COST < best.score:
-        return explained
-    # A full search with the plain form; keep the learnt form only where it gains its cost.
     fits = tuple(explain(plain))
     if fits[0].score + FORM_COST < best.score:
         return explained

@@ -19,6 +19,9 @@ from shipcosim.diagnose.inference.workers import each
 STRAIN = (
     2.5  # tolerances off, from which on a number's cause is fitted whatever it gains at first sight
 )
+FAR = 4.0
+"""Tolerances off, from which on every cause of the number's component is fitted: beside a current, say, the resistance to
+sway acts otherwise than at first sight. Healthy ships reach 3.4."""
 _LIKELY = 6  # causes that are fitted first; beside a set of causes half as many
 _NEAR = 12.0
 """Causes this far below the best are still fitted, or 85 % of its gain: at first sight what is not linear, as a
@@ -95,9 +98,11 @@ def explain(
             first = _LIKELY if stage == 0 else _LIKELY // 2
             # A number far outside its tolerance suggests a cause that the linear screening
             # underrates.
-            strained = _strained(fit)
+            strained = _strained(fit, STRAIN)
+            far = _components(_strained(fit, FAR))
             for place, (gain, hypothesis, values) in enumerate(gains):
-                if (place >= first or gain < least) and not strained & hypothesis.paths:
+                is_suspect = strained & hypothesis.paths or far & _components(hypothesis.paths)
+                if (place >= first or gain < least) and not is_suspect:
                     continue
                 hypotheses = (*fit.hypotheses, hypothesis)
                 key = names(hypotheses)
@@ -123,8 +128,13 @@ def explain(
     return sorted(fits.values(), key=lambda fit: -fit.score)
 
 
-def _strained(fit: Fit) -> set[str]:
-    """Parameters estimated far outside their tolerances; the linearisation may fail there, as for a lag."""
+def _components(paths: Iterable[str]) -> set[str]:
+    """Components whose numbers these are."""
+    return {path.rpartition(".")[0] for path in paths}
+
+
+def _strained(fit: Fit, most: float) -> set[str]:
+    """Parameters estimated more tolerances off than some; the linearisation may fail there, as for a lag."""
     off = defaultdict(float)
     tolerated = defaultdict(float)
     # Sum the shifts of all columns that move a number, and the variance of their tolerances.
@@ -132,7 +142,7 @@ def _strained(fit: Fit) -> set[str]:
         for path, size in column.changes.items():
             off[path] += theta * size
             tolerated[path] += size**2
-    return {path for path, variance in tolerated.items() if off[path] ** 2 > STRAIN**2 * variance}
+    return {path for path, variance in tolerated.items() if off[path] ** 2 > most**2 * variance}
 
 
 def at_first_sight(problem: IdentificationProblem) -> float:
