@@ -45,7 +45,7 @@ from shipcosim.diagnose.explanation.verdict import JudgedLog, judged, with_craft
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem, with_findings
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.log.reader import read_log
-from shipcosim.diagnose.log.runs import LogSource, other_numbers, run_as_log
+from shipcosim.diagnose.log.runs import LogSource, run_as_log
 from shipcosim.diagnose.log_faults.corrections import corrected, with_right_inputs
 from shipcosim.diagnose.reference.change_since_reference import with_sizes_at_reference
 from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers
@@ -231,16 +231,11 @@ def read_measurements(
 ) -> ReadLog:
     """A log by the roles of its columns, with the ship of a system or of a reference, and the causes of a catalogue."""
     ship = ship_by(system, reference)
-    roles = run_as_log(log, ship.vessel, ship.thrusters) if channels is None else log
-    table = read_log(roles, channels, {name: ship.drives(name) for name in ship.thrusters})
-    # Of a run it is known which numbers the ship had that made it.
-    if roles is not log:
+    if channels is None:
         numbers = {path: ship.get(path) for path in ship.numbers}
-        table.attrs["column_remarks"] = [
-            *table.attrs.get("column_remarks", ()),
-            *other_numbers(log, numbers),
-        ]
-    return ReadLog(table, ship, read_catalogue(causes))
+        log = run_as_log(log, ship.vessel, ship.thrusters, numbers)
+    drives = {name: ship.drives(name) for name in ship.thrusters}
+    return ReadLog(read_log(log, channels, drives), ship, read_catalogue(causes))
 
 
 def ship_by(system: System, reference: Reference | None) -> ShipModel:

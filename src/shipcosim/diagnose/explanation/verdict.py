@@ -346,7 +346,7 @@ def admissible(fit: Fit, fits: Sequence[Fit], null: dict[str, float]) -> bool:
 
 
 def _is_sized(hypothesis, fit):
-    """Whether a cause is large enough to matter, beyond the ship's own tolerances, clearly off neutral, and not at a bound."""
+    """Whether a cause is large enough to matter, beyond the ship's tolerances, clearly off neutral, and not at a bound."""
     parameters = hypothesis.parameters
     # Size against mean standard deviation, both in typical units.
     size = _size(hypothesis, fit)

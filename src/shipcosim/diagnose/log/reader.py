@@ -167,7 +167,7 @@ def _source_of(log, form) -> tuple[LogColumns, dict[str, str]]:
     values = {"time": np.asarray(log["time"].values, float)}
     values |= {str(name): np.asarray(v.values) for name, v in log.data_vars.items()}
     units = {name: str(log[name].attrs.get("units", "")) for name in values}
-    return LogColumns("log", values, units), {}
+    return LogColumns("log", values, units, tuple(log.attrs.get("run_remarks", ()))), {}
 
 
 def _is_unnamed(name):

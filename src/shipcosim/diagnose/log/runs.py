@@ -5,6 +5,7 @@ import hashlib
 import json
 from collections.abc import Collection, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import h5py
@@ -38,7 +39,12 @@ _MOST_NUMBERS = 5
 _NEEDED = ("north", "east", "heading")
 
 
-def run_as_log(log: LogSource, ship: str, thrusters: Collection[str]) -> LogSource:
+def run_as_log(
+    log: LogSource,
+    ship: str,
+    thrusters: Collection[str],
+    numbers: Mapping[str, Any] = MappingProxyType({}),
+) -> LogSource:
     """A log by roles of the table of a run; any other log as it is.
 
     What the instruments of a perfect ship would show: her position, heading and velocity with the waves that she
@@ -52,6 +58,9 @@ def run_as_log(log: LogSource, ship: str, thrusters: Collection[str]) -> LogSour
         Name of the ship's component.
     thrusters : collection of str
         Names of those of her thrusters.
+    numbers : mapping of str to float
+        Of the ship, ``component.name``: the attribute ``run_remarks`` of the table names those that the run had
+        otherwise.
 
     Returns
     -------
@@ -112,6 +121,7 @@ def run_as_log(log: LogSource, ship: str, thrusters: Collection[str]) -> LogSour
         for role, values in zip(("surge", "sway"), along, strict=True):
             table[role].values = values
     table.encoding |= file
+    table.attrs["run_remarks"] = other_numbers(log, numbers)
     return table
 
 
