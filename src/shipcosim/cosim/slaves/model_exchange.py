@@ -226,6 +226,13 @@ class ModelExchange(LibrarySlave):
                 "GetContinuousStates", states.ctypes.data_as(POINTER(c_double)), self.n_states
             )
             self.call(self.NOMINALS, nominals.ctypes.data_as(POINTER(c_double)), self.n_states)
+            usable = np.isfinite(nominals) & (nominals != 0.0)
+            if not usable.all():
+                number = int(usable.argmin())
+                raise SlaveError(
+                    f"The nominal value of its continuous state {number + 1} is {nominals[number]:g}. "
+                    "It has to be a positive number."
+                )
 
     def _close_solver(self):
         if self.close_group is not None:
@@ -271,10 +278,12 @@ class ModelExchange(LibrarySlave):
                 )
             if n_events % MOST_EVENTS_AT_ONCE == 0:
                 if self._time - counted_from <= SHORTEST_TIME * (end - time):
+                    remedy = "It needs a hysteresis, or a state in which it slides or rests."
+                    if self.next_event <= self._time + near:
+                        remedy = f"It announces one for t = {self.next_event:.9g} s; the next has to lie ahead."
                     raise SlaveError(
                         f"It chatters at t = {self._time:.9g} s: {MOST_EVENTS_AT_ONCE} events within "
-                        f"{self._time - counted_from:.1g} s, each of which causes the next. It needs a hysteresis, "
-                        "or a state in which it slides or rests."
+                        f"{self._time - counted_from:.1g} s, each of which causes the next. {remedy}"
                     )
                 counted_from = self._time
 
@@ -347,10 +356,12 @@ class ModelExchange(LibrarySlave):
     def _iterate_event(self):
         """Event iteration: update the discrete states until they no longer change."""
         for _ in range(MOST_ITERATIONS):
+            self._events.keep()
             needs_update, terminates, self.next_event = self._update_discrete_states()
             if terminates:
                 raise RunEnded
-            if not needs_update:
+            # What the update changed may have moved another indicator past zero: that is the next event, of the same time.
+            if not needs_update and not self._events.has_changed():
                 self._is_event_done = True
                 return
         raise SlaveError(

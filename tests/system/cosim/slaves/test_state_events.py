@@ -102,6 +102,29 @@ static void equations(M* m) { m->r[1] = m->i[0] ? 1 : -1; }
 static void indicators(M* m, double* z) { z[0] = m->r[0] - m->r[2]; }
 static void event(M* m) { m->i[0] = m->r[0] <= m->r[2]; }
 """,
+    # Passing r[2] shifts the second indicator past zero; the event sees one of them at a time and does not ask again.
+    "cascade": """
+#define NX 1
+#define NZ 2
+#define STATES {0}
+static void start(M* m) {}
+static void equations(M* m) { m->r[1] = 1; }
+static void indicators(M* m, double* z) { z[0] = m->r[0] - m->r[2]; z[1] = m->r[0] + m->i[0] - 1.2; }
+static void event(M* m) {
+  if (m->i[0] != m->r[0] > m->r[2]) m->i[0] = m->r[0] > m->r[2];
+  else m->i[1] = m->r[0] + m->i[0] > 1.2;
+}
+""",
+    # It announces its next event at r[2] s for ever.
+    "past": """
+#define NX 1
+#define NZ 0
+#define STATES {0}
+static void start(M* m) {}
+static void equations(M* m) { m->r[1] = 1; }
+static void indicators(M* m, double* z) {}
+static void event(M* m) { m->next = m->r[2]; }
+""",
     # Its second indicator is NaN from r[2] s on.
     "undefined": """
 #define NX 1
@@ -134,10 +157,14 @@ VARIABLES = {
     + COUNTS[:1],
     "relay": X + RATE + _parameters(2, level=0.3) + COUNTS[:1],
     "undefined": X + RATE + _parameters(2, until=0.5),
+    "cascade": X + RATE + _parameters(2, level=0.5) + COUNTS[:2],
+    "past": X + RATE + _parameters(2, next=0.5),
 }
 SIZES = {"thermostat": (1, 2), "levels": (1, 1), "pair": (1, 2), "block": (2, 3), "relay": (1, 1)}
 SIZES["windows"] = (1, 3)
 SIZES["undefined"] = (1, 2)
+SIZES["cascade"] = (1, 2)
+SIZES["past"] = (1, 0)
 STEP_SIZES = st.sampled_from([0.01, 0.05, 0.1, 0.25, 1.0])
 SOME = settings(max_examples=6, deadline=None)
 """Several times as many at night."""
@@ -306,3 +333,19 @@ def test_chattering_ends_the_run_and_says_so(run_of, version, level, step_size):
 def test_an_indicator_without_a_value_is_named(run_of, version, until):
     with pytest.raises(RunError, match="Its event indicator 2 is no number"):
         run_of("undefined", version, 1.0, 0.1, until=until)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("level", [0.25, 0.5, 0.73])
+def test_an_event_that_causes_another_is_followed_by_it(run_of, version, level):
+    table = run_of("cascade", version, 1.0, 0.1, level=level)
+    passed = table["time"].values > level + 1e-9
+    assert np.array_equal(table["m.n0"], passed)
+    assert np.array_equal(table["m.n1"], passed)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("next_event", [-1.0, 0.0, 0.25])
+def test_an_event_announced_for_the_past_is_refused(run_of, version, next_event):
+    with pytest.raises(RunError, match=f"It announces one for t = {next_event:g} s"):
+        run_of("past", version, 1.0, 0.1, next=next_event)
