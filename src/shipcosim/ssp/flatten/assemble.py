@@ -1,6 +1,6 @@
 """From a package to a system ready to run: flatten, set values, check."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from os import PathLike
 
@@ -16,7 +16,7 @@ from shipcosim.ssp.flatten.system import Component, System, alias_remarks
 from shipcosim.ssp.flatten.walk import take_in
 from shipcosim.ssp.read.package import Package
 from shipcosim.ssp.read.parameters import ParameterSet, ParameterSets, read_parameter_set
-from shipcosim.ssp.read.structure import Structure
+from shipcosim.ssp.read.structure import Structure, label
 from shipcosim.ssp.read.structure_reader import read_structure
 from shipcosim.ssp.xml.document import Findings, read_document
 
@@ -102,6 +102,7 @@ def _system(tree: Hierarchy, structure: Structure, file: str, findings: Findings
         for problem in resized(component):
             findings.error(component.name, problem, RESIZE)
     findings.problems += alias_remarks(components, connections)
+    _remark_replaced(components, connections, findings)
     # With errors the rest cannot be relied on; the components suffice for further messages.
     name = structure.name or structure.system.name
     if findings.errors:
@@ -122,6 +123,18 @@ def _system(tree: Hierarchy, structure: Structure, file: str, findings: Findings
         swapped={name: str(file) for name, file in tree.swapped.items()},
         _packages=tuple(tree.library.packages),
     )
+
+
+def _remark_replaced(
+    components: Mapping[str, Component], connections: Iterable[Connection], findings: Findings
+) -> None:
+    """Remark values of variables that are connected, since a connection replaces them at the start."""
+    for connection in connections:
+        component, name = connection.target
+        if connection.source[0] is not None and component in components:
+            if name in components[component].start:
+                message = f"{label(connection.source)} is connected to it; the value that is set for it is not used."
+                findings.remark(label(connection.target), message, "Take one of them out.")
 
 
 def components_of(tree: Hierarchy, settings: Settings) -> dict[str, Component]:
