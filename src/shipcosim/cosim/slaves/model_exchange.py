@@ -91,8 +91,8 @@ class ModelExchange(LibrarySlave):
         Event mode, continuous-time mode, or None before the end of the initialisation.
     next_event : float
         Time of its next event; infinite where it knows none. [s]
-    n_states : int
-        Number of continuous states; known from the end of the initialisation on.
+    n_states, n_indicators : int
+        Numbers of continuous states and of event indicators; known from the end of the initialisation on.
     """
 
     _form = "Model"
@@ -157,17 +157,17 @@ class ModelExchange(LibrarySlave):
 
         # Number of states and indicators may depend on parameters, so ask now.
         self._leave_initialisation()
-        self.n_states, self._n_indicators = self._sizes()
+        self.n_states, self.n_indicators = self._sizes()
         if self.n_states > MOST_STATES:
             raise SlaveError(
                 f"It has {self.n_states} continuous states; at most {MOST_STATES} are integrated."
             )
         self._close_solver()
         self._solver = solver = Cvode(
-            self.n_states, self._derivatives, self._n_indicators, self._indicators, self.tolerance
+            self.n_states, self._derivatives, self.n_indicators, self._indicators, self.tolerance
         )
         self._states = solver.states.ctypes.data_as(POINTER(c_double))
-        self._events = EventIndicators(self._n_indicators, self._indicator_getter)
+        self._events = EventIndicators(self.n_indicators, self._indicator_getter)
         # Discrete states must settle before continuous time begins (FMI, event iteration).
         self._iterate_event()
 
@@ -346,7 +346,7 @@ class ModelExchange(LibrarySlave):
     def _indicator_getter(self, values):
         """Prepared call that fills an (n_indicators,) array with the event indicators of now."""
         function, component = self._function("GetEventIndicators"), self.component
-        pointer, n = values.ctypes.data_as(POINTER(c_double)), self._n_indicators
+        pointer, n = values.ctypes.data_as(POINTER(c_double)), self.n_indicators
 
         def get():
             self.check("GetEventIndicators", function(component, pointer, n))
@@ -406,7 +406,7 @@ class ModelExchange(LibrarySlave):
 
     def _indicators(self, time, states, values):
         self._set_time_and_states(time, states)
-        return self._status_for_solver("GetEventIndicators", values, self._n_indicators)
+        return self._status_for_solver("GetEventIndicators", values, self.n_indicators)
 
     def _set_time_and_states(self, time, states):
         self.call("SetTime", time)
