@@ -43,8 +43,19 @@ class EventIndicators:
 
     def keep(self) -> None:
         """Keep the signs of now, for which the discrete states have settled."""
-        self._signs = np.sign(self._of_now())
+        self._signs = self.signs()
         self.may_be_zero = bool(np.any(self._signs == 0.0))
+
+    def signs(self) -> np.ndarray:
+        """Signs of now, an (n,) array."""
+        return np.sign(self._of_now())
+
+    def has_followed(self, before: np.ndarray) -> bool:
+        """Whether an update of the discrete states, with signs `before` it, has moved an indicator past zero.
+
+        One that the update brings back to its sign of the last event caused it, and means something else from now on.
+        """
+        return bool((self._differ(self._of_now()) & (self.signs() != before)).any())
 
     def has_changed(self) -> bool:
         """Whether one is past zero, on another side than at the last event."""

@@ -356,12 +356,12 @@ class ModelExchange(LibrarySlave):
     def _iterate_event(self):
         """Event iteration: update the discrete states until they no longer change."""
         for _ in range(MOST_ITERATIONS):
-            self._events.keep()
+            before = self._events.signs()
             needs_update, terminates, self.next_event = self._update_discrete_states()
             if terminates:
                 raise RunEnded
             # What the update changed may have moved another indicator past zero: that is the next event, of the same time.
-            if not needs_update and not self._events.has_changed():
+            if not needs_update and not self._events.has_followed(before):
                 self._is_event_done = True
                 return
         raise SlaveError(

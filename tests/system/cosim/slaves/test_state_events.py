@@ -115,6 +115,16 @@ static void event(M* m) {
   else m->i[1] = m->r[0] + m->i[0] > 1.2;
 }
 """,
+    # Each event but the first switches it, and its indicator then stands for the other level, on its old side.
+    "toggle": """
+#define NX 1
+#define NZ 1
+#define STATES {0}
+static void start(M* m) { m->i[0] = 1; }
+static void equations(M* m) { m->r[1] = m->i[0] ? 1 : -1; }
+static void indicators(M* m, double* z) { z[0] = m->i[0] ? m->r[2] - m->r[0] : m->r[0] - m->r[3]; }
+static void event(M* m) { if (m->i[2]) m->i[0] = !m->i[0]; m->i[2] = 1; }
+""",
     # It announces its next event at r[2] s for ever.
     "past": """
 #define NX 1
@@ -158,12 +168,14 @@ VARIABLES = {
     "relay": X + RATE + _parameters(2, level=0.3) + COUNTS[:1],
     "undefined": X + RATE + _parameters(2, until=0.5),
     "cascade": X + RATE + _parameters(2, level=0.5) + COUNTS[:2],
+    "toggle": X + RATE + _parameters(2, high=1.0, low=0.5) + COUNTS[:1],
     "past": X + RATE + _parameters(2, next=0.5),
 }
 SIZES = {"thermostat": (1, 2), "levels": (1, 1), "pair": (1, 2), "block": (2, 3), "relay": (1, 1)}
 SIZES["windows"] = (1, 3)
 SIZES["undefined"] = (1, 2)
 SIZES["cascade"] = (1, 2)
+SIZES["toggle"] = (1, 1)
 SIZES["past"] = (1, 0)
 STEP_SIZES = st.sampled_from([0.01, 0.05, 0.1, 0.25, 1.0])
 SOME = settings(max_examples=6, deadline=None)
@@ -342,6 +354,18 @@ def test_an_event_that_causes_another_is_followed_by_it(run_of, version, level):
     passed = table["time"].values > level + 1e-9
     assert np.array_equal(table["m.n0"], passed)
     assert np.array_equal(table["m.n1"], passed)
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])  # FMI 1.0 has an event in its initialisation
+@pytest.mark.parametrize("step_size", [0.1, 0.25, 5.0])
+def test_an_indicator_that_changes_its_meaning_with_the_event_causes_one(
+    run_of, version, step_size
+):
+    table = run_of("toggle", version, 5.0, step_size, high=1.0, low=0.5)
+    t = table["time"].values
+    # Up to 1, then a triangle between 1 and 0.5 of period 1.
+    exact = np.where(t < 1.0, t, 0.5 + np.abs(0.5 - (t - 1.0) % 1.0))
+    assert np.allclose(table["m.x"], exact, atol=1e-6)
 
 
 @pytest.mark.parametrize("version", VERSIONS)
