@@ -319,6 +319,7 @@ class ModelExchange(LibrarySlave):
         The states go on along their derivatives, over a time that doubles until a sign changes. Where none does, the
         indicator touches zero or stays there: then nothing moves.
         """
+        assert self._solver is not None  # since the initialisation
         self._events.may_be_zero = False
         start = self._time
         states = np.ctypeslib.as_array(self._states, (max(self.n_states, 1),))
@@ -334,9 +335,13 @@ class ModelExchange(LibrarySlave):
             self._set_time_and_states(self._time, self._states)
             if self._events.has_changed():
                 return True
+        stays = (self._events.signs() == 0.0).any()
         self._time = start
         states[:] = before
         self._set_time_and_states(start, self._states)
+        # From a new start the solver leaves out an indicator that stays at zero; else it would refuse to go on.
+        if stays:
+            self._solver.start(start, self._nominals)
         return self._events.has_come_to_zero()
 
     def _go_back_to(self, time):

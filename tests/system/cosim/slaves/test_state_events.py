@@ -125,6 +125,20 @@ static void equations(M* m) { m->r[1] = m->i[0] ? 1 : -1; }
 static void indicators(M* m, double* z) { z[0] = m->i[0] ? m->r[2] - m->r[0] : m->r[0] - m->r[3]; }
 static void event(M* m) { if (m->i[2]) m->i[0] = !m->i[0]; m->i[2] = 1; }
 """,
+    # Its indicator is zero from r[2] to r[3], and times r[4] elsewhere; r[5] is where the event was that saw it positive.
+    "flat": """
+#define NX 1
+#define NZ 1
+#define STATES {0}
+static void start(M* m) {}
+static void equations(M* m) { m->r[1] = 1; }
+static double zone(M* m) {
+  double x = m->r[0];
+  return m->r[4] * (x < m->r[2] ? x - m->r[2] : x < m->r[3] ? 0 : x - m->r[3]);
+}
+static void indicators(M* m, double* z) { z[0] = zone(m); }
+static void event(M* m) { if (zone(m) > 0 && !m->i[0]) { m->i[0] = 1; m->r[5] = m->r[0]; } }
+""",
     # It announces its next event at r[2] s for ever.
     "past": """
 #define NX 1
@@ -168,6 +182,11 @@ VARIABLES = {
     "relay": X + RATE + _parameters(2, level=0.3) + COUNTS[:1],
     "undefined": X + RATE + _parameters(2, until=0.5),
     "cascade": X + RATE + _parameters(2, level=0.5) + COUNTS[:2],
+    "flat": X
+    + RATE
+    + _parameters(2, low=0.3, high=0.6, scale=1.0)
+    + [("at", 5, "output", "Real", None)]
+    + COUNTS[:1],
     "toggle": X + RATE + _parameters(2, high=1.0, low=0.5) + COUNTS[:1],
     "past": X + RATE + _parameters(2, next=0.5),
 }
@@ -175,6 +194,7 @@ SIZES = {"thermostat": (1, 2), "levels": (1, 1), "pair": (1, 2), "block": (2, 3)
 SIZES["windows"] = (1, 3)
 SIZES["undefined"] = (1, 2)
 SIZES["cascade"] = (1, 2)
+SIZES["flat"] = (1, 1)
 SIZES["toggle"] = (1, 1)
 SIZES["past"] = (1, 0)
 STEP_SIZES = st.sampled_from([0.01, 0.05, 0.1, 0.25, 1.0])
@@ -354,6 +374,18 @@ def test_an_event_that_causes_another_is_followed_by_it(run_of, version, level):
     passed = table["time"].values > level + 1e-9
     assert np.array_equal(table["m.n0"], passed)
     assert np.array_equal(table["m.n1"], passed)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("low", [0.3, 0.6])
+@pytest.mark.parametrize("scale", [1.0, 1e-300, 1e300])
+@pytest.mark.parametrize("step_size", [0.1, 1.0])
+def test_an_indicator_that_stays_at_zero_or_is_of_any_size_is_located(
+    run_of, version, low, scale, step_size
+):
+    # The solver refuses to go on from such a zero, and does not see a product of tiny values change its sign.
+    table = run_of("flat", version, 1.0, step_size, low=low, high=0.6, scale=scale)
+    assert float(table["m.at"][-1]) == pytest.approx(0.6, abs=2e-6 * step_size)
 
 
 @pytest.mark.parametrize("version", ["2.0", "3.0"])  # FMI 1.0 has an event in its initialisation
