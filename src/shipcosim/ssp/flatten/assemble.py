@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from os import PathLike
 
+from shipcosim.errors import shortened
 from shipcosim.ssp.flatten.array_sizes import RESIZE, resized, sizes_wanted
 from shipcosim.ssp.flatten.bindings import apply_set
 from shipcosim.ssp.flatten.connections import Connection, connect
@@ -16,7 +17,7 @@ from shipcosim.ssp.flatten.system import Component, System, alias_remarks
 from shipcosim.ssp.flatten.walk import take_in
 from shipcosim.ssp.read.package import Package
 from shipcosim.ssp.read.parameters import ParameterSet, ParameterSets, read_parameter_set
-from shipcosim.ssp.read.structure import Structure, label
+from shipcosim.ssp.read.structure import Structure
 from shipcosim.ssp.read.structure_reader import read_structure
 from shipcosim.ssp.xml.document import Findings, read_document
 
@@ -129,12 +130,12 @@ def _remark_replaced(
     components: Mapping[str, Component], connections: Iterable[Connection], findings: Findings
 ) -> None:
     """Remark values of variables that are connected, since a connection replaces them at the start."""
-    for connection in connections:
-        component, name = connection.target
-        if connection.source[0] is not None and component in components:
-            if name in components[component].start:
-                message = f"{label(connection.source)} is connected to it; the value that is set for it is not used."
-                findings.remark(label(connection.target), message, "Take one of them out.")
+    fed = {line.target for line in connections if line.source[0] is not None}
+    for name, component in components.items():
+        replaced = [variable for variable in component.start if (name, variable) in fed]
+        if replaced:
+            message = f"Connections replace the values that are set for {shortened(replaced)}."
+            findings.remark(name, message, "Take the values or the connections out.")
 
 
 def components_of(tree: Hierarchy, settings: Settings) -> dict[str, Component]:

@@ -230,7 +230,7 @@ def test_a_value_that_a_connection_replaces_is_a_remark(ship, real):
     parts += ship.component("hull", "hull", "parameter mass", more=inline(real("mass", "1")))
     ship.ssd(parts, ship.connection("scale.m", "hull.mass"))
     remarks = "\n".join(map(str, ship.read().remarks))
-    assert "hull.mass: scale.m is connected to it; the value that is set" in remarks
+    assert "hull: Connections replace the values that are set for mass." in remarks
 
 
 def test_an_enumeration_is_mapped_by_the_names_of_its_items(ship):
