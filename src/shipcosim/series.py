@@ -402,6 +402,11 @@ def _open_netcdf(path: Path) -> xarray.Dataset:
     engine = "scipy" if is_classic else "h5netcdf"
     with xarray.open_dataset(path, engine=engine, decode_times=False) as table:
         table = table.load()
+    # A file may hold texts that are no UTF-8, which no page can show.
+    for attributes in (table.attrs, *(variable.attrs for variable in table.variables.values())):
+        for key, value in attributes.items():
+            if isinstance(value, str):
+                attributes[key] = _NO_TEXT.sub("\ufffd", value)
     for variable in table.variables.values():
         if "units" in variable.attrs:
             variable.attrs["units"] = str(variable.attrs["units"])  # a plain 1 is no text
