@@ -115,7 +115,7 @@ def _other_kind(annotation: str, value: Any) -> str:
     is_none = "NoneType" in names and "None" in kinds
     if not set(kinds) <= set(KINDS) or set(kinds) >= TIME or is_none:
         return ""
-    for kind in kinds:
+    for kind in () if "bytes" in names else kinds:
         # An empty path is the folder one is in to Python.
         is_empty = (kind, value) == ("AnyPath", "")
         fits = kind in names or (isinstance(value, KINDS[kind][0]) and not is_empty)

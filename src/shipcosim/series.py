@@ -17,6 +17,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from functools import cache
 from importlib.util import find_spec
+from mmap import ACCESS_READ, mmap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
@@ -63,6 +64,8 @@ MOST_PACKED = 100
 
 OWN_NAME = "own_name"
 """Attribute of a variable whose name NetCDF cannot have."""
+HEAP = b"GCOL\1\0\0\0"
+"""Signature and version of a global heap of HDF5."""
 
 _NO_TEXT = re.compile("[\0\ud800-\udfff]")
 """Signs that neither HDF5 nor UTF-8 can hold."""
@@ -350,11 +353,32 @@ def _cells_of(values: np.ndarray) -> Iterable[str]:
     return (repr(number).removesuffix(".0") for number in numbers.tolist())
 
 
+def _check_heaps(path: Path) -> None:
+    """Raise ValueError at an object without a size in a global heap: HDF5 goes round it for ever, in C.
+
+    Reference: HDF5 File Format Specification 3.0, section III.E.
+    """
+    with path.open("rb") as file, mmap(file.fileno(), 0, access=ACCESS_READ) as content:
+        start = content.find(HEAP)
+        while start >= 0:
+            end = start + int.from_bytes(content[start + 8 : start + 16], "little")
+            place = start + 16
+            while place + 16 <= min(end, len(content)):
+                # Number, count of references, size, content up to a multiple of 8; 0 is the free space, head included.
+                is_free = content[place : place + 2] == b"\0\0"
+                size = int.from_bytes(content[place + 8 : place + 16], "little")
+                if size > end - place or (is_free and size == 0):
+                    raise ValueError("the heap with its texts and references is damaged")
+                place += size if is_free else 16 + -(-size // 8) * 8
+            start = content.find(HEAP, place)
+
+
 def _check_declared(path: Path) -> None:
     """Raise ValueError where a file declares more values than are read; declaring needs no room in the file."""
     import h5py
 
     with h5py.File(path) as file:
+        _check_heaps(path)
         # Where this attribute cannot be read, h5netcdf leaves a half-made file that prints a traceback when it goes.
         file.attrs.get("_nc3_strict")
         declared = sum(part.nbytes for part in file.values() if isinstance(part, h5py.Dataset))
@@ -378,6 +402,11 @@ def _open_netcdf(path: Path) -> xarray.Dataset:
     engine = "scipy" if is_classic else "h5netcdf"
     with xarray.open_dataset(path, engine=engine, decode_times=False) as table:
         table = table.load()
+    # A file may hold texts that are no UTF-8, which no page can show.
+    for attributes in (table.attrs, *(variable.attrs for variable in table.variables.values())):
+        for key, value in attributes.items():
+            if isinstance(value, str):
+                attributes[key] = _NO_TEXT.sub("\ufffd", value)
     for variable in table.variables.values():
         if "units" in variable.attrs:
             variable.attrs["units"] = str(variable.attrs["units"])  # a plain 1 is no text

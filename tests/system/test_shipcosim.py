@@ -160,6 +160,7 @@ WRONG_KINDS = [
     ("engine", [], "engine = .* Give a text"),
     ("parameters", [3], "parameters: 3 is neither a path nor a name"),
     ("parameters", 3, "parameters = 3. Give a path or name or a list"),
+    ("parameters", b"x.ssv", "parameters = b'x.ssv'. Give a path or name or a list"),
     ("record", 3.5, "record = 3.5. Give a path or name or a list"),
     ("events", 3, "events = 3. Give a list"),
     ("events", sc.Scenario, "events = .* Give a list"),
@@ -193,7 +194,7 @@ def test_folders_of_fmus_that_are_none_are_refused(folders):
 
 @pytest.mark.parametrize("failures", [[5], b"bus", [None, "port"]])
 def test_failures_that_are_no_names_are_refused(failures):
-    with pytest.raises(sc.ShipcosimError, match="neither a path nor a name"):
+    with pytest.raises(sc.ShipcosimError, match="neither a path nor a name|b'bus'. Give a list"):
         sc.capability(failures=failures)
 
 

@@ -305,6 +305,29 @@ def test_a_column_that_is_there_twice_is_an_error(tmp_path):
         read_columns(tmp_path / "t.csv")
 
 
+def test_attributes_of_netcdf_that_are_no_utf8_become_texts_that_can_be_written(table, tmp_path):
+    write_table(table, tmp_path / "t.nc")
+    with h5py.File(tmp_path / "t.nc", "a") as file:
+        file.attrs["description"] = b"20 \xb0C"
+        file["vessel.x"].attrs["long_name"] = b"\xff"
+    again = read_table(tmp_path / "t.nc")
+    assert again.attrs["description"] == "20 \ufffdC"
+    assert again["vessel.x"].attrs["long_name"] == "\ufffd"
+
+
+def test_netcdf_whose_texts_are_blotted_out_is_refused_and_not_read_for_ever(table, tmp_path):
+    # HDF5 goes round an object of no size in a heap, where neither a signal nor a test's own limit ends it.
+    table.attrs["parameters"] = "p" * 5000
+    write_table(table, tmp_path / "t.nc")
+    whole = (tmp_path / "t.nc").read_bytes()
+    heap = whole.index(b"GCOL")
+    (tmp_path / "t.nc").write_bytes(whole[: heap + 16] + bytes(64) + whole[heap + 80 :])
+    read = "import sys; from shipcosim.series import read_table; read_table(sys.argv[1])"
+    command = [sys.executable, "-c", read, tmp_path / "t.nc"]
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert "t.nc: cannot be read: the heap" in ended.stderr
+
+
 def test_netcdf_is_what_xarray_writes_and_reads(table, tmp_path):
     """The file is written by h5py for speed; a reader of NetCDF must see no difference."""
     table["logical"] = ("time", table["time"].values > 0.5, {"units": "1", "long_name": "a truth"})

@@ -202,7 +202,7 @@ def diagnose(
     from shipcosim.diagnose.joint_pipeline import diagnose_jointly
     from shipcosim.diagnose.pipeline import diagnose
 
-    several = isinstance(log, Sequence) and not isinstance(log, str)
+    several = isinstance(log, Sequence) and not isinstance(log, (str, bytes))
     sources, channels = sources_of(log if several else [log], channels)
     check_inputs(sources, channels, causes)
     if learn or length is not None:
@@ -402,7 +402,7 @@ def calibrate(
     """
     from shipcosim.diagnose.calibration_pipeline import calibrate
 
-    several = logs if isinstance(logs, Sequence) and not isinstance(logs, str) else [logs]
+    several = logs if isinstance(logs, Sequence) and not isinstance(logs, (str, bytes)) else [logs]
     sources, channels = sources_of(several, channels)
     check_inputs(sources, channels, causes)
     if learn or length is not None:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from shipcosim.errors import error_at, it_has
 from shipcosim.keywords import with_known_keywords
 from shipcosim.series import write_file, write_json
 from shipcosim.staging import staged
@@ -234,7 +235,11 @@ class LikeTable:
     table: xarray.Dataset
 
     def __getitem__(self, name: Hashable) -> xarray.DataArray:
-        return self.table[name]
+        try:
+            return self.table[name]
+        except KeyError:
+            remedy = it_has(str(name), map(str, self.table.variables))
+            raise error_at(str(name), "It is no signal of this table.", remedy) from None
 
     def __contains__(self, name: object) -> bool:
         return name in self.table

@@ -154,6 +154,10 @@ def time_complaints(
             nearest = since + max(1, round(steps_in(time - since, step))) * step
             message = message.replace(" s.", f" s after {since:g} s.") if since else message
             yield keys, message, f"The nearest would be {nearest:g} s.", "error"
+        elif keys[0] == "output_interval" and whole_steps(stop - start_time, time) is None:
+            last = start_time + floor(steps_in(stop - start_time, time)) * time
+            message = f"{stop - start_time:g} s are no multiple of {time:g} s: the last row is at {last:g} s."
+            yield keys, message, "What comes after it is neither kept nor judged.", "remark"
         elif keys[0] == "events" and time >= stop:
             # An event at or after the end has no effect: worth a remark.
             yield (

@@ -220,8 +220,9 @@ class Store:
         return pyarrow.table(columns)
 
     def _write_tracks(self) -> None:
-        """Write tracks.parquet from the parts of finished runs; without parts it stays."""
+        """Write tracks.parquet from the parts of finished runs and what it holds of others; without parts it stays."""
         import pyarrow
+        import pyarrow.compute
         import pyarrow.parquet as parquet
 
         # Only tracks whose runs are written too: others belong to runs that will be repeated.
@@ -230,8 +231,13 @@ class Store:
         if self._plan.study.tracks is None or not parts:
             return
         table = pyarrow.concat_tables([parquet.read_table(path) for path in parts])
+        file = self.folder / "tracks.parquet"
+        if self._tracked():
+            others = ~pyarrow.compute.field("run").isin(table["run"].unique())
+            earlier = parquet.read_table(file, columns=table.column_names).cast(table.schema)
+            table = pyarrow.concat_tables([earlier.filter(others), table])
         ordered = table.sort_by([("run", "ascending"), ("time", "ascending")])
-        _write(ordered, self.folder / "tracks.parquet", compression="zstd")
+        _write(ordered, file, compression="zstd")
 
     def _collected(self) -> pyarrow.Table:
         """Rows of all parts and of the existing table, each once, in the order of the plan."""
@@ -244,11 +250,15 @@ class Store:
         is_planned = (number >= 0) & (number < len(self._plan))
         tables = [schema.empty_table()]
         files = sorted(self._parts.glob("runs-*.parquet"))
-        # A damaged table is skipped: its runs count as not done. So do runs whose tracks are lost.
-        for path in [self.folder / "runs.parquet"][: self._has_tracks()] + files:
+        # A damaged table is skipped: its runs count as not done. So do runs whose tracks are lost; failed ones have none.
+        earlier = self.folder / "runs.parquet"
+        for path in [earlier, *files]:
+            is_kept = is_planned
+            if path == earlier and self._plan.study.tracks is not None:
+                is_kept &= (pyarrow.compute.field("error") != "") | number.isin(self._tracked())
             try:
                 table = parquet.read_table(path, columns=schema.names).select(schema.names)
-                tables.append(table.cast(schema).filter(is_planned))
+                tables.append(table.cast(schema).filter(is_kept))
             except (OSError, pyarrow.ArrowException, KeyError):
                 continue
         table = pyarrow.concat_tables(tables)
@@ -256,18 +266,17 @@ class Store:
         _, first = np.unique(table["run"].to_numpy(), return_index=True)
         return table.take(first)
 
-    def _has_tracks(self) -> bool:
-        """Whether the tracks of the runs in the table are there, or none are asked for."""
+    def _tracked(self) -> list[int]:
+        """Runs whose tracks are in tracks.parquet; none where it is damaged."""
         import pyarrow
         import pyarrow.parquet as parquet
 
-        if self._plan.study.tracks is None:
-            return True
         try:
-            names = parquet.read_schema(self.folder / "tracks.parquet").names
+            file = parquet.ParquetFile(self.folder / "tracks.parquet")
+            complete = set(self._tracks([]).column_names) <= set(file.schema_arrow.names)
+            return file.read(["run"])["run"].unique().to_pylist() if complete else []
         except (OSError, pyarrow.ArrowException):
-            return False
-        return {"run", "time", *self._plan.study.tracks.signals} <= set(names)
+            return []
 
     def _write_runs(self, table: pyarrow.Table) -> None:
         """Write runs.parquet and runs.csv, a group of rows at a time."""

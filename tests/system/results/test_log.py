@@ -20,6 +20,12 @@ def test_a_log_reads_like_its_table(log):
     )
 
 
+@pytest.mark.parametrize("call", [sc.diagnose, sc.calibrate])
+def test_bytes_are_no_log_and_no_list_of_logs(call):
+    with pytest.raises(sc.ShipcosimError, match="b'log' is neither a path nor a name"):
+        call(b"log")
+
+
 def test_the_card_lists_channels_and_faults(log):
     card = log._repr_html_()
     assert "Channels" in card and "heading" in card and "data:image/svg+xml" in card

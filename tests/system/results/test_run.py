@@ -64,6 +64,8 @@ def test_a_run_reads_like_its_table(gust):
     assert gust.sel(time=5.0).identical(table.sel(time=5.0)) and gust.attrs == table.attrs
     with pytest.raises(AttributeError, match="'Dataset' object has no attribute 'vesel'"):
         gust.vesel  # noqa: B018
+    with pytest.raises(sc.ShipcosimError, match="vesel.x: It is no signal .* mean 'vessel.x'"):
+        gust["vesel.x"]
 
 
 def test_functions_on_tables_take_a_run(gust, tmp_path):

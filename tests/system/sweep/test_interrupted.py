@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import pandas
+import pyarrow.compute
 import pytest
 from pyarrow import parquet
 
@@ -157,6 +158,12 @@ def test_a_study_whose_files_were_edited_does_again_what_they_lack(project, stud
     assert done("tracks.parquet", Path.unlink) == 0
     assert done("tracks.parquet", lambda file: file.write_bytes(b"PAR1")) == 0
     assert done("tracks.parquet", edited(lambda table: without(table, "lag.y"))) == 0
+    # The tracks of some runs are lost: these alone are done again, and the others keep theirs.
+    lose = edited(lambda table: table.filter(pyarrow.compute.field("run") > 3))
+    assert done("tracks.parquet", lose) == 8
+    shipcosim.sweep(path, out="edited", engine="fmpy", workers=1)
+    tracks = [pandas.read_parquet(f"{folder}/tracks.parquet") for folder in ("edited", "whole")]
+    pandas.testing.assert_frame_equal(*tracks)
     for content in STUDIES:
         assert done("study.json", lambda file, content=content: file.write_bytes(content)) == 0
 

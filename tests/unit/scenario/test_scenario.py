@@ -293,10 +293,24 @@ def test_a_window_has_a_row_or_is_an_error(begin, length, interval):
     )
     rows = np.arange(0.0, 10.0 + 1e-6, interval or 0.1)
     has_row = ((rows > window[0] - 1e-6) & (rows < window[1] + 1e-6)).any()
-    said = [problem.found for problem in check_times(scenario)]
+    said = [problem.found for problem in check_times(scenario) if problem.severity == "error"]
     assert has_row or "lies between two rows" in said[0]
     near_a_row = np.abs(rows[:, None] - window).min() < 1e-5
     assert not said or not has_row or near_a_row
+
+
+@pytest.mark.parametrize(
+    ("interval", "found"),
+    [
+        (0.7, ["2 s are no multiple of 0.7 s: the last row is at 1.4 s."]),
+        (3.0, ["2 s are no multiple of 3 s: the last row is at 0 s."]),
+        (0.5, []),
+        (2.0, []),
+    ],
+)
+def test_an_interval_that_leaves_the_end_without_a_row_is_a_remark(interval, found):
+    scenario = Scenario(stop_time=2.0, step_size=0.1, output_interval=interval)
+    assert [problem.found for problem in check_times(scenario)] == found
 
 
 EXTREMES = [5e-324, 1e-320, 1e-300, 1e-13, 1e-9, 0.1, 1.0, 1e9, 1e300, 1.7e308]

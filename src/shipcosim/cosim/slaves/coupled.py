@@ -118,6 +118,12 @@ class CoupledModels:
         # The slices follow the order of the members.
         first = 0
         for name, slave in self._members.items():
+            # A group sees no events of state; its members were chosen by what their descriptions list.
+            if slave.n_indicators:
+                raise SlaveError(
+                    f"{name} has {slave.n_indicators} event indicators that its modelDescription.xml does not list. "
+                    "Add an EventIndicator for each to its ModelStructure."
+                )
             self._slices[name] = slice(first, first + slave.n_states)
             first += slave.n_states
         # The strictest member decides the tolerance of the common solver.

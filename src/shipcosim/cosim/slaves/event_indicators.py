@@ -15,6 +15,9 @@ PARTS = 8
 ENDS = np.linspace(0.0, 1.0, PARTS + 1)
 """Where these parts end, from 0 at the start of the step to 1."""
 
+HALVINGS = 20
+"""Of such a part, to find where an indicator passes zero: to a ten millionth of the step."""
+
 
 class EventIndicators:
     """Signs of the event indicators at the last event, and what has become of them.
@@ -43,8 +46,19 @@ class EventIndicators:
 
     def keep(self) -> None:
         """Keep the signs of now, for which the discrete states have settled."""
-        self._signs = np.sign(self._of_now())
+        self._signs = self.signs()
         self.may_be_zero = bool(np.any(self._signs == 0.0))
+
+    def signs(self) -> np.ndarray:
+        """Signs of now, an (n,) array."""
+        return np.sign(self._of_now())
+
+    def has_followed(self, before: np.ndarray) -> bool:
+        """Whether an update of the discrete states, with signs `before` it, has moved an indicator past zero.
+
+        One that the update brings back to its sign of the last event caused it, and means something else from now on.
+        """
+        return bool((self._differ(self._of_now()) & (self.signs() != before)).any())
 
     def has_changed(self) -> bool:
         """Whether one is past zero, on another side than at the last event."""
@@ -53,7 +67,7 @@ class EventIndicators:
     def change_within(
         self, start: float, end: float, go_to: Callable[[float], None]
     ) -> float | None:
-        """Time within a step at which one has passed zero, even if it is back at the end; None where none has.
+        """Time within a step just after one has passed zero, even if it is back at the end; None where none has.
 
         Parameters
         ----------
@@ -75,18 +89,31 @@ class EventIndicators:
         _refuse_undefined(values)
         is_past = self._differ(values[1:-1]).any(axis=1)
         if is_past.any():
-            return float(times[1 + is_past.argmax()])
+            row = int(is_past.argmax())
+            return self._narrowed(float(times[row]), float(times[row + 1]), go_to)
         # A shorter way past zero and back has a peak between these times: the vertex of a parabola through three of them.
-        before = np.abs(values[:-2]) - np.abs(values[1:-1])
-        after = np.abs(values[2:]) - np.abs(values[1:-1])
-        is_peak = np.abs(before - after) < 2.0 * (before + after)
+        with np.errstate(invalid="ignore"):  # an infinite value has no peak
+            before = np.abs(values[:-2]) - np.abs(values[1:-1])
+            after = np.abs(values[2:]) - np.abs(values[1:-1])
+            is_peak = np.abs(before - after) < 2.0 * (before + after)
         for row, column in np.argwhere(is_peak):
             left, right = before[row, column], after[row, column]
             time = times[row + 1] + 0.5 * (times[1] - start) * (left - right) / (left + right)
             go_to(time)
             if start < time < end and self._differ(self._of_now()).any():
-                return float(time)
+                return self._narrowed(float(times[row]), float(time), go_to)
         return None
+
+    def _narrowed(self, low: float, high: float, go_to: Callable[[float], None]) -> float:
+        """Time just past the first zero between two times, of which only the later is past one, by bisection. [s]"""
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            go_to(middle)
+            if self._differ(self._of_now()).any():
+                high = middle
+            else:
+                low = middle
+        return high
 
     def _differ(self, values):
         """Which values are past zero, on another side than at the last event."""

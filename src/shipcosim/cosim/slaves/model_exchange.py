@@ -91,8 +91,8 @@ class ModelExchange(LibrarySlave):
         Event mode, continuous-time mode, or None before the end of the initialisation.
     next_event : float
         Time of its next event; infinite where it knows none. [s]
-    n_states : int
-        Number of continuous states; known from the end of the initialisation on.
+    n_states, n_indicators : int
+        Numbers of continuous states and of event indicators; known from the end of the initialisation on.
     """
 
     _form = "Model"
@@ -157,17 +157,17 @@ class ModelExchange(LibrarySlave):
 
         # Number of states and indicators may depend on parameters, so ask now.
         self._leave_initialisation()
-        self.n_states, self._n_indicators = self._sizes()
+        self.n_states, self.n_indicators = self._sizes()
         if self.n_states > MOST_STATES:
             raise SlaveError(
                 f"It has {self.n_states} continuous states; at most {MOST_STATES} are integrated."
             )
         self._close_solver()
         self._solver = solver = Cvode(
-            self.n_states, self._derivatives, self._n_indicators, self._indicators, self.tolerance
+            self.n_states, self._derivatives, self.n_indicators, self._indicators, self.tolerance
         )
         self._states = solver.states.ctypes.data_as(POINTER(c_double))
-        self._events = EventIndicators(self._n_indicators, self._indicator_getter)
+        self._events = EventIndicators(self.n_indicators, self._indicator_getter)
         # Discrete states must settle before continuous time begins (FMI, event iteration).
         self._iterate_event()
 
@@ -226,6 +226,13 @@ class ModelExchange(LibrarySlave):
                 "GetContinuousStates", states.ctypes.data_as(POINTER(c_double)), self.n_states
             )
             self.call(self.NOMINALS, nominals.ctypes.data_as(POINTER(c_double)), self.n_states)
+            usable = np.isfinite(nominals) & (nominals != 0.0)
+            if not usable.all():
+                number = int(usable.argmin())
+                raise SlaveError(
+                    f"The nominal value of its continuous state {number + 1} is {nominals[number]:g}. "
+                    "It has to be a positive number."
+                )
 
     def _close_solver(self):
         if self.close_group is not None:
@@ -271,10 +278,12 @@ class ModelExchange(LibrarySlave):
                 )
             if n_events % MOST_EVENTS_AT_ONCE == 0:
                 if self._time - counted_from <= SHORTEST_TIME * (end - time):
+                    remedy = "It needs a hysteresis, or a state in which it slides or rests."
+                    if self.next_event <= self._time + near:
+                        remedy = f"It announces one for t = {self.next_event:.9g} s; the next has to lie ahead."
                     raise SlaveError(
                         f"It chatters at t = {self._time:.9g} s: {MOST_EVENTS_AT_ONCE} events within "
-                        f"{self._time - counted_from:.1g} s, each of which causes the next. It needs a hysteresis, "
-                        "or a state in which it slides or rests."
+                        f"{self._time - counted_from:.1g} s, each of which causes the next. {remedy}"
                     )
                 counted_from = self._time
 
@@ -310,6 +319,7 @@ class ModelExchange(LibrarySlave):
         The states go on along their derivatives, over a time that doubles until a sign changes. Where none does, the
         indicator touches zero or stays there: then nothing moves.
         """
+        assert self._solver is not None  # since the initialisation
         self._events.may_be_zero = False
         start = self._time
         states = np.ctypeslib.as_array(self._states, (max(self.n_states, 1),))
@@ -325,9 +335,13 @@ class ModelExchange(LibrarySlave):
             self._set_time_and_states(self._time, self._states)
             if self._events.has_changed():
                 return True
+        stays = (self._events.signs() == 0.0).any()
         self._time = start
         states[:] = before
         self._set_time_and_states(start, self._states)
+        # From a new start the solver leaves out an indicator that stays at zero; else it would refuse to go on.
+        if stays:
+            self._solver.start(start, self._nominals)
         return self._events.has_come_to_zero()
 
     def _go_back_to(self, time):
@@ -337,7 +351,7 @@ class ModelExchange(LibrarySlave):
     def _indicator_getter(self, values):
         """Prepared call that fills an (n_indicators,) array with the event indicators of now."""
         function, component = self._function("GetEventIndicators"), self.component
-        pointer, n = values.ctypes.data_as(POINTER(c_double)), self._n_indicators
+        pointer, n = values.ctypes.data_as(POINTER(c_double)), self.n_indicators
 
         def get():
             self.check("GetEventIndicators", function(component, pointer, n))
@@ -347,10 +361,12 @@ class ModelExchange(LibrarySlave):
     def _iterate_event(self):
         """Event iteration: update the discrete states until they no longer change."""
         for _ in range(MOST_ITERATIONS):
+            before = self._events.signs()
             needs_update, terminates, self.next_event = self._update_discrete_states()
             if terminates:
                 raise RunEnded
-            if not needs_update:
+            # What the update changed may have moved another indicator past zero: that is the next event, of the same time.
+            if not needs_update and not self._events.has_followed(before):
                 self._is_event_done = True
                 return
         raise SlaveError(
@@ -395,7 +411,7 @@ class ModelExchange(LibrarySlave):
 
     def _indicators(self, time, states, values):
         self._set_time_and_states(time, states)
-        return self._status_for_solver("GetEventIndicators", values, self._n_indicators)
+        return self._status_for_solver("GetEventIndicators", values, self.n_indicators)
 
     def _set_time_and_states(self, time, states):
         self.call("SetTime", time)

@@ -180,6 +180,8 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _without_page(self, run: int, page: Path) -> str:
         """Simulate a run without a page; return why it has none afterwards."""
+        if not (self.server.folder / "report.html").is_file():
+            return f"{self.server.folder} has been moved or removed; a run would make it again."
         # Errors are shown on the page; the server goes on.
         try:
             if not page.is_file():
@@ -196,7 +198,9 @@ class _Handler(BaseHTTPRequestHandler):
     def _is_ours(self) -> bool:
         """True if the request uses this server's name; other names may be another site's."""
         port = self.server.server_port
-        if self.headers.get("Host") in (f"{ADDRESS}:{port}", f"localhost:{port}"):
+        names = [f"{ADDRESS}:{port}"], [f"localhost:{port}"]
+        # One name only, and none in the address, which would count instead of it.
+        if self.headers.get_all("Host") in names and self.path.startswith("/"):
             return True
         self._refuse(HTTPStatus.FORBIDDEN, f"This server answers to {ADDRESS}:{port} only.")
         return False

@@ -1,9 +1,10 @@
 """From a package to a system ready to run: flatten, set values, check."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from os import PathLike
 
+from shipcosim.errors import shortened
 from shipcosim.ssp.flatten.array_sizes import RESIZE, resized, sizes_wanted
 from shipcosim.ssp.flatten.bindings import apply_set
 from shipcosim.ssp.flatten.connections import Connection, connect
@@ -102,6 +103,7 @@ def _system(tree: Hierarchy, structure: Structure, file: str, findings: Findings
         for problem in resized(component):
             findings.error(component.name, problem, RESIZE)
     findings.problems += alias_remarks(components, connections)
+    _remark_replaced(components, connections, findings)
     # With errors the rest cannot be relied on; the components suffice for further messages.
     name = structure.name or structure.system.name
     if findings.errors:
@@ -122,6 +124,18 @@ def _system(tree: Hierarchy, structure: Structure, file: str, findings: Findings
         swapped={name: str(file) for name, file in tree.swapped.items()},
         _packages=tuple(tree.library.packages),
     )
+
+
+def _remark_replaced(
+    components: Mapping[str, Component], connections: Iterable[Connection], findings: Findings
+) -> None:
+    """Remark values of variables that are connected, since a connection replaces them at the start."""
+    fed = {line.target for line in connections if line.source[0] is not None}
+    for name, component in components.items():
+        replaced = [variable for variable in component.start if (name, variable) in fed]
+        if replaced:
+            message = f"Connections replace the values that are set for {shortened(replaced)}."
+            findings.remark(name, message, "Take the values or the connections out.")
 
 
 def components_of(tree: Hierarchy, settings: Settings) -> dict[str, Component]:

@@ -130,7 +130,11 @@ def _remark_left_out(
         for variable in fmu.variables
     }
     for name, value in by_name.items():
-        if name in named or name not in variables:
+        if name in named:
+            continue
+        # Another binding may use it, so the whole system decides.
+        if name not in variables:
+            tree.left_out[value.place] = name
             continue
         element = ".".join(path) or "The system"
         message = f"{element} has a parameter '{name}', but the mapping does not name it; the value is not used."

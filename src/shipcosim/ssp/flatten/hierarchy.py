@@ -51,6 +51,8 @@ class Hierarchy:
         All connections, in the order in which they were found.
     settings : list of Setting
         All values set, in the order in which they are applied.
+    left_out : dict of place to name
+        Values that a mapping does not name and that nothing else asks for by their name.
     arrays : dict of path to dict of str to tuple of int
         Dimensions of an element's connectors that are arrays, by their names.
     references : dict of Key to Key
@@ -71,6 +73,7 @@ class Hierarchy:
         self.ports: dict[Key, Port] = {}
         self.wires: list[Wire] = []
         self.settings: list[Setting] = []
+        self.left_out: dict[str, str] = {}
         self.arrays: dict[ElementPath, dict[str, tuple[int, ...]]] = {}
         self.references: dict[Key, Key] = {}
         self.library = Library(findings)

@@ -10,9 +10,9 @@ from collections.abc import Iterable
 from dataclasses import replace
 from difflib import get_close_matches
 
-from shipcosim.errors import LONGEST_NAME, MOST_COMPARED, it_has, suggestion
+from shipcosim.errors import LONGEST_NAME, MOST_COMPARED, it_has, shortened, suggestion
 from shipcosim.ssp.flatten.conversions import Flow, advance
-from shipcosim.ssp.flatten.hierarchy import Hierarchy
+from shipcosim.ssp.flatten.hierarchy import ElementPath, Hierarchy
 from shipcosim.ssp.flatten.ports import SOURCES_INSIDE, Key, Port, Setting, Wire, variable_port
 from shipcosim.ssp.flatten.swapped import WHERE
 from shipcosim.ssp.fmu.description import Variable
@@ -52,6 +52,9 @@ class Settings:
         self.tolerances = defaultdict(dict)
         self.system_start = {}
         self.tolerance = None  # of the value that is being delivered
+        self.origin: tuple[ElementPath, str] = (), ""  # of that value: element and file
+        # Where the present start values come from: a second value from there is no override of one level by another.
+        self.origins: dict[Key, tuple[ElementPath, str]] = {}
         # Wires by their source: values set on a system connector go on along them.
         self.outgoing = defaultdict(list)
         for wire in tree.wires:
@@ -88,15 +91,28 @@ class Settings:
             value = setting.value
             flow = Flow(value.kind, value.unit)
             self.tolerance = value.tolerance
+            self.origin = setting.path, value.place.partition(", line")[0]
             for key in keys:
                 self._deliver(value.value, flow, setting, key, value.place)
         for name, unused in self.unused.items():
             message = f"{self.tree.swapped[name].name} takes its place and has no {', '.join(dict.fromkeys(unused))}."
             self.findings.remark(f"{WHERE}, {name}", message, "These values are not used.")
+        self._remark_left_out()
         for (_, element), places in self.astray.items():
             what = "the value is" if len(places) == 1 else f"its {len(places)} values are"
             message = f"There is no element '{element}' in this system; {what} not used."
             self.findings.remark(places[0], message)
+
+    def _remark_left_out(self) -> None:
+        """Remark the values that mappings leave out, once for each file, unless another binding uses them."""
+        used = {setting.value.place for setting in self.tree.settings}
+        files: dict[str, dict[str, str]] = defaultdict(dict)
+        for place, name in self.tree.left_out.items():
+            if place not in used:
+                files[place.partition(", line")[0]][place] = name
+        for unused in files.values():
+            message = f"No mapping names {shortened(unused.values())}; not used."
+            self.findings.remark(next(iter(unused)), message)
 
     def _deliver(
         self, value: Value, flow: Flow, step: Wire | Setting, key: Key, place: str
@@ -182,8 +198,12 @@ class Settings:
         convert = flow.in_unit(port.variable_unit or port.unit)
         if check_bounds(convert(value), variable, place, str(key), self.findings):
             # In the order of application: of two names of one variable the last one set holds.
-            self.start[key.path].pop(key.name, None)
-            self.start[key.path][key.name] = convert(value)
+            earlier = self.start[key.path].pop(key.name, None)
+            latest = self.start[key.path][key.name] = convert(value)
+            if earlier not in (None, latest) and self.origins[key] == self.origin:
+                message = f"{key} has got {earlier} from here already; {latest} is used."
+                self.findings.remark(place, message, "Keep one of them.")
+            self.origins[key] = self.origin
             self.tolerances[key.path].pop(key.name, None)
             # The tolerance is a difference: the offset of the unit must not enter.
             if self.tolerance is not None and type(value) in (

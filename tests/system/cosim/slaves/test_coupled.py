@@ -14,9 +14,10 @@ from conformance.c_parts import build_c
 from conformance.texts import SPACES
 
 import shipcosim as sc
+from shipcosim.cosim import RunError, simulate
 from shipcosim.cosim.master.groups import exchanged_at_steps, inner_connections
 from shipcosim.cosim.master.plan import make_plan
-from shipcosim.ssp import read_system
+from shipcosim.ssp import Component, Connection, System, read_fmu, read_system
 
 W, K = 5.0, 2.0
 
@@ -120,6 +121,31 @@ def test_components_with_event_indicators_are_integrated_by_themselves_and_that_
     assert inner_connections(plan) == []
     (remark,) = exchanged_at_steps(plan, [], "", 0.125)
     assert "not as one system: b can have events of state (event indicators)." in remark
+
+
+SWITCH = """
+#define NX 0
+#define NZ 1
+#define STATES {0}
+static void start(M* m) {}
+static void equations(M* m) {}
+static void indicators(M* m, double* z) { z[0] = m->r[0] - 0.5; }
+static void event(M* m) { m->r[1] = m->r[0] > 0.5; }
+static int completed(M* m) { return 0; }
+"""
+
+
+def test_event_indicators_that_a_description_does_not_list_are_refused_in_a_group(tmp_path, needs):
+    # FMI 3.0 tells their number only while it runs; a group would never look at them.
+    if c_fmus.compiler() is None:
+        needs("a C compiler")
+    ends = [("u", 0, "input", "Real", 0.0), ("y", 1, "output", "Real", None)]
+    text = c_fmus.describe("switch", "3.0", ends)
+    fmu = read_fmu(c_fmus.build(tmp_path, "switch", "3.0", SWITCH, text, "ModelExchange"))
+    parts = {name: Component(name, fmu) for name in "ab"}
+    system = System("two", "two.ssd", parts, (Connection(("a", "y"), ("b", "u")),))
+    with pytest.raises(RunError, match="a has 1 event indicators that its modelDescription.xml"):
+        simulate(system, sc.Scenario(stop_time=1.0, step_size=0.5))
 
 
 def test_run_again_it_is_the_same(oscillator):

@@ -102,6 +102,53 @@ static void equations(M* m) { m->r[1] = m->i[0] ? 1 : -1; }
 static void indicators(M* m, double* z) { z[0] = m->r[0] - m->r[2]; }
 static void event(M* m) { m->i[0] = m->r[0] <= m->r[2]; }
 """,
+    # Passing r[2] shifts the second indicator past zero; the event sees one of them at a time and does not ask again.
+    "cascade": """
+#define NX 1
+#define NZ 2
+#define STATES {0}
+static void start(M* m) {}
+static void equations(M* m) { m->r[1] = 1; }
+static void indicators(M* m, double* z) { z[0] = m->r[0] - m->r[2]; z[1] = m->r[0] + m->i[0] - 1.2; }
+static void event(M* m) {
+  if (m->i[0] != m->r[0] > m->r[2]) m->i[0] = m->r[0] > m->r[2];
+  else m->i[1] = m->r[0] + m->i[0] > 1.2;
+}
+""",
+    # Each event but the first switches it, and its indicator then stands for the other level, on its old side.
+    "toggle": """
+#define NX 1
+#define NZ 1
+#define STATES {0}
+static void start(M* m) { m->i[0] = 1; }
+static void equations(M* m) { m->r[1] = m->i[0] ? 1 : -1; }
+static void indicators(M* m, double* z) { z[0] = m->i[0] ? m->r[2] - m->r[0] : m->r[0] - m->r[3]; }
+static void event(M* m) { if (m->i[2]) m->i[0] = !m->i[0]; m->i[2] = 1; }
+""",
+    # Its indicator is zero from r[2] to r[3], and times r[4] elsewhere; r[5] is where the event was that saw it positive.
+    "flat": """
+#define NX 1
+#define NZ 1
+#define STATES {0}
+static void start(M* m) {}
+static void equations(M* m) { m->r[1] = 1; }
+static double zone(M* m) {
+  double x = m->r[0];
+  return m->r[4] * (x < m->r[2] ? x - m->r[2] : x < m->r[3] ? 0 : x - m->r[3]);
+}
+static void indicators(M* m, double* z) { z[0] = zone(m); }
+static void event(M* m) { if (zone(m) > 0 && !m->i[0]) { m->i[0] = 1; m->r[5] = m->r[0]; } }
+""",
+    # It announces its next event at r[2] s for ever.
+    "past": """
+#define NX 1
+#define NZ 0
+#define STATES {0}
+static void start(M* m) {}
+static void equations(M* m) { m->r[1] = 1; }
+static void indicators(M* m, double* z) {}
+static void event(M* m) { m->next = m->r[2]; }
+""",
     # Its second indicator is NaN from r[2] s on.
     "undefined": """
 #define NX 1
@@ -134,10 +181,22 @@ VARIABLES = {
     + COUNTS[:1],
     "relay": X + RATE + _parameters(2, level=0.3) + COUNTS[:1],
     "undefined": X + RATE + _parameters(2, until=0.5),
+    "cascade": X + RATE + _parameters(2, level=0.5) + COUNTS[:2],
+    "flat": X
+    + RATE
+    + _parameters(2, low=0.3, high=0.6, scale=1.0)
+    + [("at", 5, "output", "Real", None)]
+    + COUNTS[:1],
+    "toggle": X + RATE + _parameters(2, high=1.0, low=0.5) + COUNTS[:1],
+    "past": X + RATE + _parameters(2, next=0.5),
 }
 SIZES = {"thermostat": (1, 2), "levels": (1, 1), "pair": (1, 2), "block": (2, 3), "relay": (1, 1)}
 SIZES["windows"] = (1, 3)
 SIZES["undefined"] = (1, 2)
+SIZES["cascade"] = (1, 2)
+SIZES["flat"] = (1, 1)
+SIZES["toggle"] = (1, 1)
+SIZES["past"] = (1, 0)
 STEP_SIZES = st.sampled_from([0.01, 0.05, 0.1, 0.25, 1.0])
 SOME = settings(max_examples=6, deadline=None)
 """Several times as many at night."""
@@ -306,3 +365,43 @@ def test_chattering_ends_the_run_and_says_so(run_of, version, level, step_size):
 def test_an_indicator_without_a_value_is_named(run_of, version, until):
     with pytest.raises(RunError, match="Its event indicator 2 is no number"):
         run_of("undefined", version, 1.0, 0.1, until=until)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("level", [0.25, 0.5, 0.73])
+def test_an_event_that_causes_another_is_followed_by_it(run_of, version, level):
+    table = run_of("cascade", version, 1.0, 0.1, level=level)
+    passed = table["time"].values > level + 1e-9
+    assert np.array_equal(table["m.n0"], passed)
+    assert np.array_equal(table["m.n1"], passed)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("low", [0.3, 0.6])
+@pytest.mark.parametrize("scale", [1.0, 1e-300, 1e300])
+@pytest.mark.parametrize("step_size", [0.1, 1.0])
+def test_an_indicator_that_stays_at_zero_or_is_of_any_size_is_located(
+    run_of, version, low, scale, step_size
+):
+    # The solver refuses to go on from such a zero, and does not see a product of tiny values change its sign.
+    table = run_of("flat", version, 1.0, step_size, low=low, high=0.6, scale=scale)
+    assert float(table["m.at"][-1]) == pytest.approx(0.6, abs=2e-6 * step_size)
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])  # FMI 1.0 has an event in its initialisation
+@pytest.mark.parametrize("step_size", [0.1, 0.25, 5.0])
+def test_an_indicator_that_changes_its_meaning_with_the_event_causes_one(
+    run_of, version, step_size
+):
+    table = run_of("toggle", version, 5.0, step_size, high=1.0, low=0.5)
+    t = table["time"].values
+    # Up to 1, then a triangle between 1 and 0.5 of period 1.
+    exact = np.where(t < 1.0, t, 0.5 + np.abs(0.5 - (t - 1.0) % 1.0))
+    assert np.allclose(table["m.x"], exact, atol=1e-6)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("next_event", [-1.0, 0.0, 0.25])
+def test_an_event_announced_for_the_past_is_refused(run_of, version, next_event):
+    with pytest.raises(RunError, match=f"It announces one for t = {next_event:g} s"):
+        run_of("past", version, 1.0, 0.1, next=next_event)

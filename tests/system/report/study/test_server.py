@@ -105,6 +105,13 @@ def test_errors_are_told_and_the_server_stays(ask):
     assert ask("POST", "/run/6", OURS)[0] == 200
 
 
+def test_a_study_that_has_gone_is_not_made_again(ask, simulations):
+    simulations.folder.rename(simulations.folder.with_name("elsewhere"))
+    status, body = ask("POST", "/run/1", OURS)
+    assert status == 500 and "has been moved or removed" in json.loads(body)["error"]
+    assert ask("GET", "/")[0] == 404 and not simulations.folder.exists()
+
+
 def test_one_simulation_at_a_time_while_files_are_served(ask, simulations):
     first = []
     thread = threading.Thread(target=lambda: first.append(ask("POST", "/run/3", OURS)))
@@ -225,11 +232,13 @@ def test_other_methods_are_refused(ask, method):
         b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n",
         b"GET / HTTP/9.9\r\n\r\n",
         b"GET / HTTP/1.1\r\n" + b"X-A: b\r\n" * 500 + b"\r\n",
+        b"GET / HTTP/1.1\r\nHost: %h\r\nHost: evil.example\r\n\r\n",
+        b"GET http://evil.example/ HTTP/1.1\r\nHost: %h\r\n\r\n",
     ],
 )
 def test_nonsense_is_refused_and_the_server_stays(ask, server, simulations, sent):
     with socket.create_connection(("127.0.0.1", server.server_port), timeout=120.0) as connection:
-        connection.sendall(sent)
+        connection.sendall(sent.replace(b"%h", f"127.0.0.1:{server.server_port}".encode()))
         answer = connection.recv(4096)
     assert answer.split(b" ")[1:2] != [b"200"] and simulations.asked == []
     assert ask("GET", "/")[0] == 200

@@ -195,6 +195,44 @@ def test_a_mapping_renames_transforms_and_leaves_out_what_it_does_not_name(ship,
     assert "The parameter set 'numbers' has no 'mm'." in ship.refused()
 
 
+def test_values_that_no_mapping_names_are_one_remark_and_those_of_another_binding_none(ship, real):
+    ship.ssv("".join(real(name, "2") for name in ("m", "a", "b", "c")))
+    ship.ssm('<ssm:MappingEntry source="m" target="hull.mass"/>')
+    ship.ssm('<ssm:MappingEntry source="b" target="hull.mass"/>', "resources/more.ssm")
+    bindings = "".join(
+        f'<ssd:ParameterBinding source="resources/numbers.ssv"><ssd:ParameterMapping source="resources/{name}.ssm"/>'
+        "</ssd:ParameterBinding>"
+        for name in ("names", "more")
+    )
+    head = f"<ssd:ParameterBindings>{bindings}</ssd:ParameterBindings>"
+    ship.ssd(ship.component("hull", "hull"), head=head)
+    remarks = [str(remark) for remark in ship.read().remarks if "mapping" in remark.found]
+    assert len(remarks) == 1
+    assert "a: No mapping names a, c; not used." in remarks[0]
+
+
+def test_two_values_from_one_place_for_one_parameter_are_a_remark(ship, real):
+    # Once by the system's own connector, once by the component's name; overrides of a level by another are none.
+    connectors = '<ssd:Connectors><ssd:Connector name="q" kind="parameter"/></ssd:Connectors>'
+    hull = ship.component("hull", "hull", "parameter mass", more=inline(real("mass", "1")))
+    line = ship.connection("q", "hull.mass")
+    ship.ssd(hull, line, head=connectors + inline(real("hull.mass", "7")))
+    assert [str(r) for r in ship.read().remarks if "already" in r.found] == []
+    ship.ssd(hull, line, head=connectors + inline(real("hull.mass", "7") + real("q", "2")))
+    (remark,) = (str(r) for r in ship.read().remarks if "already" in r.found)
+    assert "q: hull.mass has got 7.0 from here already; 2.0 is used." in remark
+    assert start(ship) == {"mass": 2.0}
+
+
+def test_a_value_that_a_connection_replaces_is_a_remark(ship, real):
+    ship.fmu("scale", "calculatedParameter m Real m")
+    parts = ship.component("scale", "scale", "calculatedParameter m")
+    parts += ship.component("hull", "hull", "parameter mass", more=inline(real("mass", "1")))
+    ship.ssd(parts, ship.connection("scale.m", "hull.mass"))
+    remarks = "\n".join(map(str, ship.read().remarks))
+    assert "hull: Connections replace the values that are set for mass." in remarks
+
+
 def test_an_enumeration_is_mapped_by_the_names_of_its_items(ship):
     value = '<ssv:Parameter name="state"><ssv:Enumeration value="alive"/></ssv:Parameter>'
     mapping = (
