@@ -6,8 +6,14 @@ from dataclasses import dataclass
 
 from shipcosim.cosim.master.plan import Plan, label
 from shipcosim.cosim.master.result import recorded_ends
+from shipcosim.cosim.master.time_grid import TimeGrid
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.ssp import System
+
+LONGEST = 86400.0
+"""A run ends after a day at the latest. [s]"""
+MOST_STEPS, MOST_ROWS = 2_000_000, 400_000
+"""It ends earlier where memory for its times and rows would not do: 1 GB for rows of 300 signals."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +45,11 @@ def changeable_inputs(system: System) -> list[str]:
         if (variable.causality == "input" or variable.variability == "tunable")
         and variable.kind in ("Real", "Integer", "Boolean")
     ]
+
+
+def last_step(grid: TimeGrid, step_size: float) -> int:
+    """Steps after which a run without end ends."""
+    return min(int(LONGEST / step_size), MOST_STEPS, MOST_ROWS * grid.steps_per_row)
 
 
 def kinds_of(plan: Plan) -> list[str]:

@@ -10,7 +10,7 @@ from typing import Any
 
 from xarray import Dataset
 
-from shipcosim.cosim.interactive import kinds_of, row_signals, start_values_of
+from shipcosim.cosim.interactive import kinds_of, last_step, row_signals, start_values_of
 from shipcosim.cosim.master.events import changes
 from shipcosim.cosim.master.plan import Plan, label
 from shipcosim.cosim.master.time_grid import time_grid_of
@@ -132,6 +132,7 @@ def _description(plan: Plan, scenario: Scenario, written: Scenario) -> JsonObjec
         "step": [step.numerator, step.denominator],
         "steps_per_row": grid.steps_per_row,
         "most_steps": MOST_STEPS,
+        "last_step": last_step(grid, scenario.step_size),
         "columns": [row_signals(plan, kind) for kind in kinds],
         "kinds": kinds,
         "signals": dict(_signals(plan)),

@@ -148,6 +148,20 @@ def test_a_start_value_is_typed_with_a_comma_and_a_whole_one_stays_whole(craft, 
     assert worst < SAME
 
 
+def test_a_run_ends_before_its_rows_fill_the_memory_and_can_be_saved_then(craft):
+    assert craft.ask("return desk.live.about.last_step") == 864_000  # a day
+    craft.ask("desk.live.about.last_step = 150; scene.setSpeed(Infinity); scene.play()")
+    craft.wait("return !scene.playing")
+    assert "reached 15 s, the longest run" in craft.text("#failure")
+    assert craft.ask("return desk.live.time.last") == 14.5
+    assert saved(craft)["stop_time"] == 15.0
+    rows = craft.ask("return desk.csv().text()").splitlines()
+    assert len(rows) == 1 + 30
+    assert rows[0].startswith("time [s],")
+    craft.ask("desk.live.back(5); desk.live.reach(8)")
+    assert craft.ask("return desk.live.time.last") == 8.0
+
+
 def test_what_is_done_while_the_past_is_shown_brings_the_view_to_the_end(craft):
     craft.ask("desk.live.reach(20); scene.grown(20); scene.go(5); desk.act('override', 'speed', 1)")
     assert craft.ask("return scene.time") == 20
@@ -276,6 +290,47 @@ def test_the_time_line_marks_what_was_done(craft):
     marks = "return [...document.querySelectorAll('#scene-marks line')].map((line) => parseFloat(line.getAttribute('x1')))"
     craft.wait(f"{marks}.length >= 4")
     assert craft.ask(marks)[:4] == pytest.approx([10.0, 25.5, 35.0, 45.0])
+
+
+def test_thousands_of_changes_by_a_joystick_hold_up_no_frame(craft):
+    craft.ask(
+        "for (let k = 0; k < 3000; k++) {"
+        " desk.act('override', 'craft.x_set', Math.sin(k)); desk.live.reach(desk.live.end + 0.5); }"
+        "scene.grown(desk.live.end); scene.go(desk.live.end)"
+    )
+    marks = "return document.querySelectorAll('#scene-marks line').length"
+    craft.wait(f"{marks} > 500")
+    assert craft.ask(marks) <= 1001
+    # The last change of each signal is found once, and not by every field.
+    craft.ask(
+        "const before = Array.prototype.filter; window.looked = 0;"
+        "Array.prototype.filter = function (...given) { looked += this.length; return before.apply(this, given); };"
+        "scene.paint(); Array.prototype.filter = before"
+    )
+    assert craft.ask("return looked") < 5 * 3000
+
+
+def test_a_finger_drags_the_set_point_and_not_the_page(craft):
+    send = craft.driver.execute_cdp_cmd
+    send("Emulation.setTouchEmulationEnabled", {"enabled": True})
+    try:
+        craft.ask(
+            "desk.act('override', 'craft.x_set', 100); desk.live.reach(2); scene.grown(2); scene.go(2); scene.follow(true)"
+        )
+        craft.wait("return scene.drawn.find((one) => one.what === 'set point').north === 100")
+        x, y, far = craft.ask(
+            "const chart = document.getElementById('scene-chart'); chart.scrollIntoView({ block: 'center' });"
+            "const { left, top } = chart.getBoundingClientRect();"
+            "const { north, east } = scene.drawn.find((one) => one.what === 'set point');"
+            "const [x, y] = scene.pixel(east, north), [, further] = scene.pixel(east, north - 1);"
+            "return [left + x, top + y, further - y]"
+        )
+        for kind, share in [("Start", 0.0), *(("Move", k / 8) for k in range(1, 9)), ("End", None)]:
+            points = [] if share is None else [{"x": x, "y": y + share * far}]
+            send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": points})
+    finally:
+        send("Emulation.setTouchEmulationEnabled", {"enabled": False})
+    assert saved(craft)["events"][-2]["override"]["craft.x_set"] == pytest.approx(99.0, abs=0.1)
 
 
 def test_keys_go_through_all_speeds_and_back(craft):

@@ -222,6 +222,15 @@ def test_a_foreign_fmu_that_fails_is_named_and_its_run_is_saved(
         assert worst < SAME
 
 
+def test_a_run_at_a_server_ends_in_words(craft_project, monkeypatch):
+    monkeypatch.chdir(craft_project)
+    monkeypatch.setattr("shipcosim.cosim.interactive.MOST_STEPS", 150)
+    with serving(craft_project) as server, socket(server) as first:
+        told(first, "run")
+        first.send(advance(200))
+        assert "it has reached 15 s" in told(first, "failed")["failed"]
+
+
 def test_a_second_page_shows_the_run_and_changes_nothing(served, browse):
     with socket(served) as first:
         assert told(first, "steers")["steers"] is True

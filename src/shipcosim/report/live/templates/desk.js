@@ -320,7 +320,7 @@
     const columns = [...live.raw], head = ["time [s]", ...columns.map(([name]) => `${name}${about.signals[name]?.unit ? ` [${about.signals[name].unit}]` : ""}`)];
     const cell = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text), lines = [head.map(cell).join(",")];
     live.time.values.forEach((t, row) => lines.push([t, ...columns.map(([, column]) => column.all[row])].join(",")));
-    return `${lines.join("\n")}\n`;
+    return new Blob(lines.map((line) => `${line}\n`), { type: "text/csv" });  // a text of ten hours would be longer than texts may be
   }
 
   function netcdf() {

@@ -76,7 +76,8 @@ report.live = await (async () => {
     const spacing = Math.max(Math.round((EVERY * about.step[1]) / about.step[0]), 1);
     try {
       while (engine.step() < to) {
-        const from = engine.step(), next = Math.min(to, from + spacing, from + about.most_steps);
+        if (engine.step() >= about.last_step) throw new Error(`it has reached ${engine.seconds(about.last_step)} s, the longest run of a page`);  // its rows fill the memory
+        const from = engine.step(), next = Math.min(to, about.last_step, from + spacing, from + about.most_steps);
         let first = Math.ceil(from / about.steps_per_row) * about.steps_per_row;
         engine.advance(next, done, (tables) => { take(tables, first); first = Math.ceil(engine.step() / about.steps_per_row) * about.steps_per_row; });
         remember();
@@ -108,8 +109,19 @@ report.live = await (async () => {
   }
 
   function acted(changes) {  // in the page that steers
-    done.push(...changes.map((change) => [...change, true]));
+    done = [...done, ...changes.map((change) => [...change, true])];
     dispatchEvent(new Event("live-arrived"));
+  }
+
+  // The last change of each signal up to the next step, found anew once something was done or a step was made.
+  let latest = {};
+  function latestOf(name) {
+    const step = engine.step();
+    if (latest.done !== done || latest.step !== step) {
+      latest = { done, step, changes: new Map() };
+      for (const change of done) if (change[0] <= step && !(latest.changes.get(change[2])?.[0] > change[0])) latest.changes.set(change[2], change);
+    }
+    return latest.changes.get(name);
   }
 
   const lastTime = () => (time.length ? time.last : 0);
@@ -171,7 +183,7 @@ report.live = await (async () => {
     now: () => engine.step(),
     value: (name) => raw.get(name)?.last,
     held(name) {  // what the last change of a signal says, or null
-      const last = done.filter(([step, , of]) => of === name && step <= engine.step()).sort((a, b) => a[0] - b[0]).pop();
+      const last = latestOf(name);
       return last && last[1] !== "reset" ? last : null;
     },
     coming: (steps) => done.filter(([step]) => step >= engine.step() && step < engine.step() + steps),
