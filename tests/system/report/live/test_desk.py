@@ -148,6 +148,22 @@ def test_a_start_value_is_typed_with_a_comma_and_a_whole_one_stays_whole(craft, 
     assert worst < SAME
 
 
+def test_what_is_done_in_a_pause_acts_in_the_saved_scenario(craft, craft_project):
+    # 14.4 s is no row: the next step is the one of the row at 14.5 s.
+    craft.ask("desk.live.reach(20); desk.live.back(14.4); desk.act('override', 'gear', 3)")
+    scenario = saved(craft)
+    assert scenario["events"][-1]["time"] == 14.5
+    assert scenario["stop_time"] == 15.0
+    assert repeated(craft, craft_project / "scenarios")["gear"].values[-1] == 3
+
+
+def test_a_scenario_that_was_saved_before_keeps_its_description(craft):
+    description = saved(craft)["description"]
+    assert description.endswith("as it was run in the page")
+    craft.ask("desk.live.about.scenario.description = arguments[0]", description)
+    assert saved(craft)["description"] == description
+
+
 def test_a_run_ends_before_its_rows_fill_the_memory_and_can_be_saved_then(craft):
     assert craft.ask("return desk.live.about.last_step") == 864_000  # a day
     craft.ask("desk.live.about.last_step = 150; scene.setSpeed(Infinity); scene.play()")

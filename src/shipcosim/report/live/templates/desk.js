@@ -300,16 +300,18 @@
     const { set, ...head } = about.scenario, now = live.now(), lines = [];
     const values = { ...set };
     for (const [place, value] of Object.entries(live.starts)) values[about.starts[place][1]] = value;
-    lines.push(`description = ${quoted(`${head.description || head.system}, as it was run in the page`)}`, `system = ${quoted(head.system)}`);
+    const description = head.description || head.system, tail = ", as it was run in the page";
+    lines.push(`description = ${quoted(description.endsWith(tail) ? description : description + tail)}`, `system = ${quoted(head.system)}`);
     if (head.parameters?.length) lines.push(`parameters = [${head.parameters.map(quoted).join(", ")}]`);
-    const rows = Math.ceil(now / about.steps_per_row) * about.steps_per_row;
-    lines.push(`stop_time = ${seconds(live.engine.seconds(Math.max(rows, about.steps_per_row)))}`, `step_size = ${seconds(head.step_size)}`);
+    // What was done in a pause acts on the next step, so the run goes on to the row after it.
+    const stop = Math.ceil((now + Number(live.pending.length > 0)) / about.steps_per_row) * about.steps_per_row;
+    lines.push(`stop_time = ${seconds(live.engine.seconds(Math.max(stop, about.steps_per_row)))}`, `step_size = ${seconds(head.step_size)}`);
     if (head.output_interval) lines.push(`output_interval = ${seconds(head.output_interval)}`);
     if (head.order) lines.push(`order = ${quoted(head.order)}`);
     const swapped = Object.entries(head.components || {});
     if (swapped.length) lines.push("", "[components]", ...swapped.map(([name, fmu]) => `${quoted(name)} = ${quoted(fmu)}`));
     lines.push("", "[set]", ...Object.entries(values).map(([name, value]) => `${quoted(name)} = ${written(value)}`));
-    for (const [step, action, name, value] of [...live.done].sort((a, b) => a[0] - b[0])) {
+    for (const [step, action, name, value] of live.before(stop).sort((a, b) => a[0] - b[0])) {
       lines.push("", "[[events]]", `time = ${seconds(live.engine.seconds(step))}`);
       lines.push(action === "reset" ? `reset = [${quoted(name)}]` : `${action} = { ${quoted(name)} = ${valueOf[about.signals[name].kind](value)} }`);
     }

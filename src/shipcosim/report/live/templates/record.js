@@ -188,7 +188,8 @@ report.live = await (async () => {
     },
     coming: (steps) => done.filter(([step]) => step >= engine.step() && step < engine.step() + steps),
     get pending() { return self.coming(1); },  // what the next step begins with
-    get done() { return done.filter(([step, , , , byHand]) => byHand || step < engine.step()); },
+    before: (end) => done.filter(([step, , , , byHand]) => byHand || step < end),
+    get done() { return self.before(engine.step()); },
     get starts() { return starts; },
     states: () => states.length,
   };
