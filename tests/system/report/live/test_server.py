@@ -231,6 +231,18 @@ def test_a_run_at_a_server_ends_in_words(craft_project, monkeypatch):
         assert "it has reached 15 s" in told(first, "failed")["failed"]
 
 
+def test_a_page_whose_server_has_gone_keeps_what_was_done(craft_project, browse, monkeypatch):
+    monkeypatch.chdir(craft_project)
+    with serving(craft_project) as server:
+        craft = opened(browse, server)
+        reach(craft, 12)
+    craft.wait("return desk.live.stopped")
+    said = craft.text("#failure")
+    assert said.endswith("refuses this page. Save what was done so far.")
+    worst, _ = largest_difference(craft, repeated(craft, craft_project / "scenarios"))
+    assert worst < SAME
+
+
 def test_a_second_page_shows_the_run_and_changes_nothing(served, browse):
     with socket(served) as first:
         assert told(first, "steers")["steers"] is True

@@ -49,7 +49,7 @@
   reset.addEventListener("click", () => { scene.pause(); live.reset(); go(); changed(); });
   minute.addEventListener("click", () => { scene.pause(); scene.go(scene.time - 60); });
   back.addEventListener("click", () => { scene.pause(); live.back(scene.time); go(); changed(); });
-  addEventListener("live-failed", ({ detail }) => { const place = by("failure"); place.hidden = false; place.textContent = `The run stopped: ${detail.replace(/\.$/, "")}. ${noWay() ? "Start again" : "Go back"}, or save what was done so far.`; });
+  addEventListener("live-failed", ({ detail }) => { const place = by("failure"); place.hidden = false; place.textContent = `The run stopped: ${detail.replace(/\.$/, "")}. ${live.engine.gone ? "Save" : `${noWay() ? "Start again" : "Go back"}, or save`} what was done so far.`; });
 
   // A server that cannot go back says why. Its rows come when they are there; who looks at the end goes on looking there.
   const noWay = () => live.engine.noWayBack;

@@ -56,13 +56,14 @@ report.live = await (async () => {
 
   // ---- what was done, and states to go back to
 
-  const EVERY = 5, RECENT = 60, MOST = 80;  // s between states, s of them that are all kept, and their number: 3 MB each
+  // s between states, and ms of the clock, in which a fast run comes there again; s of them that are all kept, and their number: 3 MB each.
+  const EVERY = 5, SOON = 50, RECENT = 60, MOST = 80;
   let done = about.events.slice(), states = [], starts = {}, failure = "";
 
   function remember() {
-    const now = engine.seconds(engine.step());
-    if (states.length && now - states[states.length - 1].time < EVERY - 1e-9) return;
-    states.push({ time: now, rows: time.length, bytes: engine.state() });
+    const now = engine.seconds(engine.step()), clock = performance.now(), before = states.at(-1);
+    if (before && (now - before.time < EVERY - 1e-9 || clock - before.clock < SOON)) return;
+    states.push({ time: now, clock, rows: time.length, bytes: engine.state() });
     if (states.length > MOST) states = states.filter(({ time }, k) => now - time <= RECENT || k % 2 === 0);  // the older ones farther apart
   }
 

@@ -74,7 +74,7 @@ function connectEngine(about, record) {
         } else record.arrive(rowsOf(numbers));
       }
     };
-    socket.onclose = () => { record.fail("the server has gone, or refuses this page"); reject(new Error("The server does not answer.")); };
+    socket.onclose = () => { engine.gone = true; record.fail("the server has gone, or refuses this page"); reject(new Error("The server does not answer.")); };
   });
   return engine;
 }
