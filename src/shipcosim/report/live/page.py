@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import astuple, dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import astuple, dataclass, replace
 from fractions import Fraction
 from math import degrees
 from typing import Any
@@ -35,15 +35,27 @@ class LivePage(Page):
     ----------
     code : str
         WebAssembly, compressed and in letters; empty where a server runs the system.
+    others : sequence of LivePage
+        The same for the system with other FMUs.
+    labels : sequence of str
+        What the reader chooses from, this page first; empty where there is nothing to choose.
     """
 
     code: str
+    others: Sequence[LivePage] = ()
+    labels: Sequence[str] = ()
 
 
-def render_live(
+def render(pages: Sequence[LivePage], labels: Sequence[str]) -> str:
+    """HTML of a page that runs one of several systems, the first unless another one is chosen."""
+    page = replace(pages[0], others=pages[1:], labels=labels)
+    return render_template("live/templates/live.html.jinja", page)
+
+
+def page_of(
     plan: Plan, code: bytes, table: Dataset, scenario: Scenario, written: Scenario
-) -> str:
-    """The page as HTML.
+) -> LivePage:
+    """The page of one system.
 
     Parameters
     ----------
@@ -69,7 +81,7 @@ def render_live(
     if run is None:
         message = "Nothing in it has a position and a heading, so there is no ship to show."
         raise error_at(plan.system.name, message, "Run it with `shipcosim run`.")
-    page = LivePage(
+    return LivePage(
         title=written.description or f"Simulation of {plan.system.name}",
         facts=_facts(written),
         outcome=Outcome("", "", ""),
@@ -80,7 +92,6 @@ def render_live(
         },
         code=packed_bytes(code) if code else "",
     )
-    return render_template("live/templates/live.html.jinja", page)
 
 
 def _facts(written: Scenario) -> tuple[Fact, ...]:

@@ -6,6 +6,7 @@ import tomllib
 import numpy as np
 import pytest
 import xarray as xr
+from report.live.conftest import PILOT
 from report.live.test_live import SAME, largest_difference, repeated
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
@@ -257,6 +258,29 @@ def test_out_is_a_folder_or_the_file_itself(craft_project, tmp_path, monkeypatch
         assert found.exit_code == 0, found.output
     assert (tmp_path / "new" / "ship.html").is_file()
     assert (tmp_path / "folder" / "odd.html").is_file()
+
+
+def test_a_page_starts_again_with_another_component(craft_project, browse, monkeypatch):
+    monkeypatch.chdir(craft_project)
+    file = craft_project / "late_pilot.py"
+    file.write_text(PILOT.replace("0.05", "0.02").replace("class Pilot", "class LatePilot"))
+    fmu = str(build_fmu(file, craft_project))
+    made = ["export", "page", "scenarios/odd.toml", "--swap", f"pilot={fmu}", "--out", "swap.html"]
+    found = CliRunner().invoke(app, made)
+    assert found.exit_code == 0, found.output
+    craft = browse(craft_project / "swap.html")
+    assert "pilot: late_pilot" in craft.text("#systems")
+    for chosen, components in ((0, None), (1, {"pilot": fmu})):
+        craft.ask(f"document.getElementById('systems').value = {chosen}; window.old = true")
+        craft.ask("document.getElementById('systems-start').click()")
+        craft.wait("return Boolean(!window.old && window.desk && window.scene)")
+        craft.ask("desk.act('override', 'wish', 1); desk.live.reach(20)")
+        assert saved(craft).get("components") == components
+        worst, count = largest_difference(craft, repeated(craft, craft_project / "scenarios"))
+        assert count > 15
+        assert worst < SAME
+    assert craft.ask("return document.getElementById('systems').value") == "1"
+    assert craft.errors() == []
 
 
 RINGS = '''

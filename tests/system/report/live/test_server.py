@@ -428,6 +428,17 @@ def test_the_command_starts_a_server_where_no_page_can_run_the_system(foreign_pr
     assert not (foreign_project / "results").exists()
 
 
+def test_no_server_takes_the_place_of_a_page_with_swaps(
+    craft_project, foreign_project, monkeypatch
+):
+    monkeypatch.chdir(craft_project)
+    fmu = foreign_project / "ssp" / "craft" / "resources" / "pilot.fmu"
+    given = ["live", "scenarios/odd.toml", "--no-open", "--swap", f"pilot={fmu}"]
+    found = CliRunner().invoke(app, given)
+    assert found.exit_code == 2
+    assert "pilot" in found.output and "has no native code" in found.output
+
+
 @pytest.mark.parametrize(
     "asked",
     [
