@@ -114,8 +114,10 @@ def test_what_is_done_at_a_server_is_repeated_by_the_saved_scenario(served, brow
     craft.ask("desk.act('reset', 'gear'); desk.act('reset', 'craft.engaged')")
     reach(craft, 18)
     # What came after the time to which it goes back is forgotten, also by the server.
-    craft.ask("desk.live.back(14)")
+    # A click is not lost while the server goes back.
+    craft.ask("desk.live.back(14); desk.act('override', 'craft.y_set', 2)")
     craft.wait("return desk.live.end === 14")
+    assert craft.ask("return desk.live.held('craft.y_set')[3]") == 2
     craft.ask("desk.act('override', 'craft.push', 1e300); desk.act('override', 'craft.push', 0.25)")
     reach(craft, 20)
     table = repeated(craft, craft_project / "scenarios")

@@ -58,6 +58,7 @@ report.live = await (async () => {
 
   // s between states, and ms of the clock, in which a fast run comes there again; s of them that are all kept, and their number: 3 MB each.
   const EVERY = 5, SOON = 50, RECENT = 60, MOST = 80;
+  const early = [];  // what was done before a server had gone back or begun again
   let done = about.events.slice(), states = [], starts = {}, failure = "";
 
   function remember() {
@@ -100,6 +101,7 @@ report.live = await (async () => {
     failure = "";
     arrive(tables);
     if (run.failure) fail(run.failure);
+    for (const change of early.splice(0)) self.act(...change);
   }
 
   function arrive(tables) {
@@ -174,6 +176,7 @@ report.live = await (async () => {
     },
     act(action, name, value) {  // from the next step on
       if (remote && !engine.steers) return;
+      if (remote && engine.waits) { early.push([action, name, value]); return; }
       // Of several changes of a signal before the next step the last one holds.
       const now = engine.step();
       done = done.filter(([step, , of, , byHand]) => !(byHand && step === now && of === name));
