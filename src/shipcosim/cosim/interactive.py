@@ -64,11 +64,18 @@ def row_signals(plan: Plan, kind: str) -> list[str]:
 
 
 def start_values_of(plan: Plan) -> list[StartValue]:
-    """All start values, in the order in which the FMUs get them."""
+    """All start values, in the order in which the FMUs get them; parameters without one have their FMU's number."""
     values = []
     for component in plan.system.components.values():
-        for name, value in component.start.items():
-            variable = component.fmu.variables[name]
+        variables = component.fmu.variables
+        numbers = {
+            name: variable.start
+            for name, variable in variables.items()
+            if variable.causality == "parameter" and isinstance(variable.start, int | float)
+        }
+        # The values of the system in their order, then those that only an FMU gives.
+        for name, value in (component.start | numbers | component.start).items():
+            variable = variables[name]
             kind = "String" if isinstance(value, str) else plan.kind(variable) or ""
             signal = label((component.name, name))
             values.append(StartValue(len(values), signal, value, variable.unit or "", kind))

@@ -156,7 +156,8 @@
   // ---- other start values
 
   const starts = about.starts.filter(([, , value]) => typeof value === "number"), choice = by("start-name"), typed = by("start-value");
-  starts.sort((a, b) => /seed$/.test(b[1]) - /seed$/.test(a[1]) || a[1].localeCompare(b[1]));
+  const rank = (name) => [/\.seed$/, /\.(significant_wave_height|peak_period|waves_from|\w+_start)$/, /./].findIndex((form) => form.test(name));  // what one tries first
+  starts.sort(([, a], [, b]) => rank(a) - rank(b) || a.localeCompare(b));
   const signals = new Map(starts.map(([place, , value, unit, kind]) => [String(place), { value, unit, kind }]));
   for (const [place, name] of starts) { const unit = unitOf(signals.get(String(place))); choice.append(new Option(`${name}${unit ? ` [${unit}]` : ""}`, place)); }
   const before = () => live.starts[choice.value] ?? signals.get(choice.value).value;
