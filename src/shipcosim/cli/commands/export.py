@@ -199,7 +199,8 @@ def _systems(
     given = parsed_components(components or ())
     systems = [_system_and_scenario(what, options, times)]
     for swap in swaps or ():
-        swapped = [f"{name}={fmu}" for name, fmu in (given | parsed_components([swap])).items()]
+        fmus = given | parsed_components([swap], "--swap")
+        swapped = [f"{name}={fmu}" for name, fmu in fmus.items()]
         systems.append(_system_and_scenario(what, (parameters, swapped, *rest), times))
     return systems
 

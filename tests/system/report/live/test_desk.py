@@ -282,6 +282,9 @@ def test_a_page_starts_again_with_another_component(craft_project, browse, monke
         assert count > 15
         assert worst < SAME
     assert craft.ask("return document.getElementById('systems').value") == "1"
+    wrong = CliRunner().invoke(app, ["export", "page", "scenarios/odd.toml", "--swap", "pilot"])
+    assert wrong.exit_code == 2
+    assert "--swap" in wrong.output and "'pilot' swaps nothing" in wrong.output
     assert craft.errors() == []
 
 
