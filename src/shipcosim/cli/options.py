@@ -50,6 +50,14 @@ Components = Annotated[
         "repeatable.",
     ),
 ]
+Swaps = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--swap",
+        metavar="COMPONENT=FMU",
+        help="Let the page start again with this FMU in a component's place, too; repeatable.",
+    ),
+]
 Fmus = Annotated[
     list[Path] | None,
     typer.Option(

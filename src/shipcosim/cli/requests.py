@@ -40,8 +40,8 @@ def parsed_settings(settings: Iterable[str]) -> dict[str, Any]:
     return values
 
 
-def parsed_components(given: Iterable[str]) -> dict[str, str]:
-    """FMUs of ``--component component=FMU``, each a path or a name.
+def parsed_components(given: Iterable[str], option: str = "--component") -> dict[str, str]:
+    """FMUs of ``--component component=FMU`` or another option, each a path or a name.
 
     Raises
     ------
@@ -53,11 +53,11 @@ def parsed_components(given: Iterable[str]) -> dict[str, str]:
     for pair in given:
         name, sign, fmu = (part.strip() for part in pair.partition("="))
         if sign and name and fmu:
-            problems += _of_twice("--component", name, components)
+            problems += _of_twice(option, name, components)
             components[name] = fmu
         else:
             problems.append(
-                Problem("--component", f"'{pair}' swaps nothing.", "Right would be component=FMU.")
+                Problem(option, f"'{pair}' swaps nothing.", "Right would be component=FMU.")
             )
     raise_errors(problems)
     return components

@@ -6,8 +6,14 @@ from dataclasses import dataclass
 
 from shipcosim.cosim.master.plan import Plan, label
 from shipcosim.cosim.master.result import recorded_ends
+from shipcosim.cosim.master.time_grid import TimeGrid
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.ssp import System
+
+LONGEST = 86400.0
+"""A run ends after a day at the latest. [s]"""
+MOST_STEPS, MOST_ROWS = 2_000_000, 400_000
+"""It ends earlier where memory for its times and rows would not do: 1 GB for rows of 300 signals."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +47,11 @@ def changeable_inputs(system: System) -> list[str]:
     ]
 
 
+def last_step(grid: TimeGrid, step_size: float) -> int:
+    """Steps after which a run without end ends."""
+    return min(int(LONGEST / step_size), MOST_STEPS, MOST_ROWS * grid.steps_per_row)
+
+
 def kinds_of(plan: Plan) -> list[str]:
     """Kinds of values that are exchanged, in the order of the tables of rows."""
     layouts = plan.layouts
@@ -53,11 +64,18 @@ def row_signals(plan: Plan, kind: str) -> list[str]:
 
 
 def start_values_of(plan: Plan) -> list[StartValue]:
-    """All start values, in the order in which the FMUs get them."""
+    """All start values, in the order in which the FMUs get them; parameters without one have their FMU's number."""
     values = []
     for component in plan.system.components.values():
-        for name, value in component.start.items():
-            variable = component.fmu.variables[name]
+        variables = component.fmu.variables
+        numbers = {
+            name: variable.start
+            for name, variable in variables.items()
+            if variable.causality == "parameter" and isinstance(variable.start, int | float)
+        }
+        # The values of the system in their order, then those that only an FMU gives.
+        for name, value in (component.start | numbers | component.start).items():
+            variable = variables[name]
             kind = "String" if isinstance(value, str) else plan.kind(variable) or ""
             signal = label((component.name, name))
             values.append(StartValue(len(values), signal, value, variable.unit or "", kind))

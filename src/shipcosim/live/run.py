@@ -136,7 +136,8 @@ class LiveRun:
         while True:
             try:
                 self._master.run(self._grid, {}, (), simulation.recorders, None, self._between)
-                self._fail(f"It has reached {self._grid.stop_time:g} s. Save it, and start again.")
+                end = self._grid.times[self._grid.last]
+                self._fail(f"it has reached {end:g} s, the longest run of a page")
             except (Failure, Ended) as failure:
                 self._fail(str(failure))
 

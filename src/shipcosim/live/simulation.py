@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.cosim.interactive import changeable_inputs
+from shipcosim.cosim.interactive import LONGEST, changeable_inputs, last_step
 from shipcosim.cosim.master.algorithm import Master
 from shipcosim.cosim.master.events import modifiers_of
 from shipcosim.cosim.master.run import Simulation
@@ -20,11 +20,6 @@ from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.options import TIMEOUT, RunOptions
 from shipcosim.scenario import Scenario, step_times
 from shipcosim.ssp import System
-
-LONGEST = 86400.0
-"""A run ends after a day at the latest. [s]"""
-MOST_STEPS, MOST_ROWS = 2_000_000, 400_000
-"""It ends earlier where memory for its times and rows would not do: 1 GB for rows of 300 signals."""
 
 Change = tuple[int, str, str, Any]
 """Step before which it acts; override, bias or reset; signal; value."""
@@ -43,7 +38,7 @@ def endless_grid(scenario: Scenario) -> TimeGrid:
     """Time grid of a run that ends when nobody can want it any more."""
     grid = time_grid_of(scenario)
     step = scenario.step_size
-    last = min(int(LONGEST / step), MOST_STEPS, MOST_ROWS * grid.steps_per_row)
+    last = last_step(grid, step)
     # The step of a slow component may go beyond the end.
     times = step_times(step, 0, last + int(LONGEST / 24 / step))
     return TimeGrid(0.0, float(times[-1]), 0, last, times, grid.steps_per_row)

@@ -17,6 +17,7 @@ from shipcosim.cli.options import (
     ScenariosStepSize,
     ScenariosStopTime,
     Strict,
+    Swaps,
     SystemOrScenario,
     out_option,
     time_option,
@@ -24,6 +25,7 @@ from shipcosim.cli.options import (
 from shipcosim.cli.terminal import say
 
 if TYPE_CHECKING:
+    from shipcosim.report.live.export import Others
     from shipcosim.scenario import Scenario
     from shipcosim.ssp import System
 
@@ -100,6 +102,7 @@ def page(
     step_size: ScenariosStepSize = None,
     parameters: Parameters = None,
     components: Components = None,
+    swaps: Swaps = None,
     fmus: Fmus = None,
     strict: Strict = False,
     force: Force = False,
@@ -113,10 +116,9 @@ def page(
     """
     from shipcosim.cli.console import shown_path
 
-    system, scenario = _system_and_scenario(
-        what, (parameters, components, fmus, strict), (stop_time, step_size)
-    )
-    say(shown_path(_write_page(system, scenario, out, force=force)))
+    times = stop_time, step_size
+    first, *others = _systems(what, (parameters, components, fmus, strict), times, swaps)
+    say(shown_path(_write_page(first, others, out, force=force)))
 
 
 def live(
@@ -129,6 +131,7 @@ def live(
     step_size: ScenariosStepSize = None,
     parameters: Parameters = None,
     components: Components = None,
+    swaps: Swaps = None,
     fmus: Fmus = None,
     strict: Strict = False,
     no_open: Annotated[
@@ -144,16 +147,17 @@ def live(
     from shipcosim.cli.console import print_problems, shown_path
     from shipcosim.cosim.webassembly import NotForPages
 
-    system, scenario = _system_and_scenario(
-        what, (parameters, components, fmus, strict), (stop_time, step_size)
-    )
+    times = stop_time, step_size
+    first, *others = _systems(what, (parameters, components, fmus, strict), times, swaps)
     try:
-        path = _write_page(system, scenario, out, force=True)
+        path = _write_page(first, others, out, force=True)
     except NotForPages as reason:
+        if others:  # a server runs one system
+            raise
         print_problems(
             replace(problem, severity="remark", remedy="") for problem in reason.problems
         )
-        _serve(system, scenario, no_open)
+        _serve(*first, no_open)
         return
     say(shown_path(path))
     _open(path.resolve().as_uri(), no_open)
@@ -180,6 +184,25 @@ def _open(address: str, no_open: bool) -> None:
 
     if not no_open and not webbrowser.open(address):
         say("No browser was found: open this address in one.")
+
+
+def _systems(
+    what: str,
+    options: tuple[Parameters, Components, Fmus, Strict],
+    times: tuple[float | None, float | None],
+    swaps: Swaps,
+) -> Others:
+    """The system of a page with its scenario, and the same for each swap."""
+    from shipcosim.cli.requests import parsed_components
+
+    parameters, components, *rest = options
+    given = parsed_components(components or ())
+    systems = [_system_and_scenario(what, options, times)]
+    for swap in swaps or ():
+        fmus = given | parsed_components([swap], "--swap")
+        swapped = [f"{name}={fmu}" for name, fmu in fmus.items()]
+        systems.append(_system_and_scenario(what, (parameters, swapped, *rest), times))
+    return systems
 
 
 def _system_and_scenario(
@@ -214,14 +237,15 @@ def _system_and_scenario(
     return system, scenario.model_copy(update=given)
 
 
-def _write_page(system: System, scenario: Scenario, out: Path, *, force: bool) -> Path:
-    """Write the page that runs a system; return its path."""
+def _write_page(first: tuple[System, Scenario], others: Others, out: Path, *, force: bool) -> Path:
+    """Write the page that runs a system, or another in its place; return its path."""
     from shipcosim.cli.console import progress_of
     from shipcosim.report.live import live_page
     from shipcosim.staging import staged
 
     with progress_of("Compiling") as progress:
-        html = live_page(system, scenario, progress)
+        html = live_page(*first, progress, others)
+    system, scenario = first
     # An earlier page is set aside at the end: where nothing could be made, it stays.
     name = f"{scenario.name or system.name}.html"
     if out.suffix.lower() in (".html", ".htm") and not out.is_dir():

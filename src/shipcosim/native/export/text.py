@@ -218,10 +218,32 @@ class ModelWriter(Writer):
         return "".join(f"{statement} " for statement in statements)
 
     def _other(self, symbol, expected):
-        message = f'say(o, "this native FMU was built where a number that shapes its code is "); say_float(o, {expected});'
-        message += f' say(o, ", and not for "); say_float(o, {self.operand(symbol)});'
-        message += ' say(o, ": take the FMU in Python, or build it again"); o->is_for_others = 1;'
+        # The variables lie first in the memory; what lies behind them is the state.
+        said = [
+            f'say(o, {place} < N_VARIABLES ? variables[{place}].name : "a number of its state");'
+            for place in self._loaded(symbol)
+        ]
+        names = ' say(o, " and "); '.join(said) or 'say(o, "a number");'
+        message = f'say(o, "this FMU was compiled for another value of "); {names}'
+        message += (
+            ' say(o, ": take the FMU in Python, or build this one again"); o->is_for_others = 1;'
+        )
         return f"{{ {message} return GIVEN_UP; }}"
+
+    def _loaded(self, symbol: Symbol) -> list[int]:
+        """Places in the memory on which a value depends."""
+        waiting = [symbol]
+        seen = {symbol.number}
+        places = set()
+        while waiting:
+            value = waiting.pop()
+            if value.op == "load":
+                places.add(self._place(value.operands[0]))
+            for operand in value.operands:
+                if isinstance(operand, Symbol) and operand.number not in seen:
+                    seen.add(operand.number)
+                    waiting.append(operand)
+        return sorted(places)
 
     def _value(self, symbol: Symbol, depth):
         if symbol.op != "primitive":
@@ -250,6 +272,9 @@ class _Procedure(ModelWriter):
     """Writes a function with cached results: arguments in `m`, results in `k`."""
 
     results_in = "k"
+
+    def _loaded(self, symbol: Symbol) -> list[int]:
+        return []  # its memory holds arguments, which have no names
 
     def __init__(self, procedure: Any, words: Callable, others: dict[str, str]):
         super().__init__(procedure, "kept", words, lambda place: place, 0, others)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import astuple, dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import astuple, dataclass, replace
 from fractions import Fraction
 from math import degrees
 from typing import Any
 
 from xarray import Dataset
 
-from shipcosim.cosim.interactive import kinds_of, row_signals, start_values_of
+from shipcosim.cosim.interactive import kinds_of, last_step, row_signals, start_values_of
 from shipcosim.cosim.master.events import changes
 from shipcosim.cosim.master.plan import Plan, label
 from shipcosim.cosim.master.time_grid import time_grid_of
@@ -35,15 +35,27 @@ class LivePage(Page):
     ----------
     code : str
         WebAssembly, compressed and in letters; empty where a server runs the system.
+    others : sequence of LivePage
+        The same for the system with other FMUs.
+    labels : sequence of str
+        What the reader chooses from, this page first; empty where there is nothing to choose.
     """
 
     code: str
+    others: Sequence[LivePage] = ()
+    labels: Sequence[str] = ()
 
 
-def render_live(
+def render(pages: Sequence[LivePage], labels: Sequence[str]) -> str:
+    """HTML of a page that runs one of several systems, the first unless another one is chosen."""
+    page = replace(pages[0], others=pages[1:], labels=labels)
+    return render_template("live/templates/live.html.jinja", page)
+
+
+def page_of(
     plan: Plan, code: bytes, table: Dataset, scenario: Scenario, written: Scenario
-) -> str:
-    """The page as HTML.
+) -> LivePage:
+    """The page of one system.
 
     Parameters
     ----------
@@ -69,7 +81,7 @@ def render_live(
     if run is None:
         message = "Nothing in it has a position and a heading, so there is no ship to show."
         raise error_at(plan.system.name, message, "Run it with `shipcosim run`.")
-    page = LivePage(
+    return LivePage(
         title=written.description or f"Simulation of {plan.system.name}",
         facts=_facts(written),
         outcome=Outcome("", "", ""),
@@ -80,7 +92,6 @@ def render_live(
         },
         code=packed_bytes(code) if code else "",
     )
-    return render_template("live/templates/live.html.jinja", page)
 
 
 def _facts(written: Scenario) -> tuple[Fact, ...]:
@@ -132,6 +143,7 @@ def _description(plan: Plan, scenario: Scenario, written: Scenario) -> JsonObjec
         "step": [step.numerator, step.denominator],
         "steps_per_row": grid.steps_per_row,
         "most_steps": MOST_STEPS,
+        "last_step": last_step(grid, scenario.step_size),
         "columns": [row_signals(plan, kind) for kind in kinds],
         "kinds": kinds,
         "signals": dict(_signals(plan)),

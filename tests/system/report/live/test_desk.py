@@ -6,6 +6,7 @@ import tomllib
 import numpy as np
 import pytest
 import xarray as xr
+from report.live.conftest import PILOT
 from report.live.test_live import SAME, largest_difference, repeated
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
@@ -142,10 +143,42 @@ def test_a_start_value_is_typed_with_a_comma_and_a_whole_one_stays_whole(craft, 
     assert "whole" in start("craft.seed", "1,5")
     assert start("craft.seed", "4") == ""
     assert start("craft.x_start", "12,5") == ""
-    assert saved(craft)["set"] == {"craft.seed": 4, "craft.x_start": 12.5}
+    # The system gives this one no value: that of its FMU was taken.
+    assert start("craft.factor", "3") == ""
+    assert saved(craft)["set"] == {"craft.seed": 4, "craft.x_start": 12.5, "craft.factor": 3.0}
     craft.ask("desk.live.reach(5)")
     worst, _ = largest_difference(craft, repeated(craft, craft_project / "scenarios"))
     assert worst < SAME
+
+
+def test_what_is_done_in_a_pause_acts_in_the_saved_scenario(craft, craft_project):
+    # 14.4 s is no row: the next step is the one of the row at 14.5 s.
+    craft.ask("desk.live.reach(20); desk.live.back(14.4); desk.act('override', 'gear', 3)")
+    scenario = saved(craft)
+    assert scenario["events"][-1]["time"] == 14.5
+    assert scenario["stop_time"] == 15.0
+    assert repeated(craft, craft_project / "scenarios")["gear"].values[-1] == 3
+
+
+def test_a_scenario_that_was_saved_before_keeps_its_description(craft):
+    description = saved(craft)["description"]
+    assert description.endswith("as it was run in the page")
+    craft.ask("desk.live.about.scenario.description = arguments[0]", description)
+    assert saved(craft)["description"] == description
+
+
+def test_a_run_ends_before_its_rows_fill_the_memory_and_can_be_saved_then(craft):
+    assert craft.ask("return desk.live.about.last_step") == 864_000  # a day
+    craft.ask("desk.live.about.last_step = 150; scene.setSpeed(Infinity); scene.play()")
+    craft.wait("return !scene.playing")
+    assert "reached 15 s, the longest run" in craft.text("#failure")
+    assert craft.ask("return desk.live.time.last") == 14.5
+    assert saved(craft)["stop_time"] == 15.0
+    rows = craft.ask("return desk.csv().text()").splitlines()
+    assert len(rows) == 1 + 30
+    assert rows[0].startswith("time [s],")
+    craft.ask("desk.live.back(5); desk.live.reach(8)")
+    assert craft.ask("return desk.live.time.last") == 8.0
 
 
 def test_what_is_done_while_the_past_is_shown_brings_the_view_to_the_end(craft):
@@ -229,6 +262,32 @@ def test_out_is_a_folder_or_the_file_itself(craft_project, tmp_path, monkeypatch
     assert (tmp_path / "folder" / "odd.html").is_file()
 
 
+def test_a_page_starts_again_with_another_component(craft_project, browse, monkeypatch):
+    monkeypatch.chdir(craft_project)
+    file = craft_project / "late_pilot.py"
+    file.write_text(PILOT.replace("0.05", "0.02").replace("class Pilot", "class LatePilot"))
+    fmu = str(build_fmu(file, craft_project))
+    made = ["export", "page", "scenarios/odd.toml", "--swap", f"pilot={fmu}", "--out", "swap.html"]
+    found = CliRunner().invoke(app, made)
+    assert found.exit_code == 0, found.output
+    craft = browse(craft_project / "swap.html")
+    assert "pilot: late_pilot" in craft.text("#systems")
+    for chosen, components in ((0, None), (1, {"pilot": fmu})):
+        craft.ask(f"document.getElementById('systems').value = {chosen}; window.old = true")
+        craft.ask("document.getElementById('systems-start').click()")
+        craft.wait("return Boolean(!window.old && window.desk && window.scene)")
+        craft.ask("desk.act('override', 'wish', 1); desk.live.reach(20)")
+        assert saved(craft).get("components") == components
+        worst, count = largest_difference(craft, repeated(craft, craft_project / "scenarios"))
+        assert count > 15
+        assert worst < SAME
+    assert craft.ask("return document.getElementById('systems').value") == "1"
+    wrong = CliRunner().invoke(app, ["export", "page", "scenarios/odd.toml", "--swap", "pilot"])
+    assert wrong.exit_code == 2
+    assert "--swap" in wrong.output and "'pilot' swaps nothing" in wrong.output
+    assert craft.errors() == []
+
+
 RINGS = '''
 import os
 import signal
@@ -276,6 +335,47 @@ def test_the_time_line_marks_what_was_done(craft):
     marks = "return [...document.querySelectorAll('#scene-marks line')].map((line) => parseFloat(line.getAttribute('x1')))"
     craft.wait(f"{marks}.length >= 4")
     assert craft.ask(marks)[:4] == pytest.approx([10.0, 25.5, 35.0, 45.0])
+
+
+def test_thousands_of_changes_by_a_joystick_hold_up_no_frame(craft):
+    craft.ask(
+        "for (let k = 0; k < 3000; k++) {"
+        " desk.act('override', 'craft.x_set', Math.sin(k)); desk.live.reach(desk.live.end + 0.5); }"
+        "scene.grown(desk.live.end); scene.go(desk.live.end)"
+    )
+    marks = "return document.querySelectorAll('#scene-marks line').length"
+    craft.wait(f"{marks} > 500")
+    assert craft.ask(marks) <= 1001
+    # The last change of each signal is found once, and not by every field.
+    craft.ask(
+        "const before = Array.prototype.filter; window.looked = 0;"
+        "Array.prototype.filter = function (...given) { looked += this.length; return before.apply(this, given); };"
+        "scene.paint(); Array.prototype.filter = before"
+    )
+    assert craft.ask("return looked") < 5 * 3000
+
+
+def test_a_finger_drags_the_set_point_and_not_the_page(craft):
+    send = craft.driver.execute_cdp_cmd
+    send("Emulation.setTouchEmulationEnabled", {"enabled": True})
+    try:
+        craft.ask(
+            "desk.act('override', 'craft.x_set', 100); desk.live.reach(2); scene.grown(2); scene.go(2); scene.follow(true)"
+        )
+        craft.wait("return scene.drawn.find((one) => one.what === 'set point').north === 100")
+        x, y, far = craft.ask(
+            "const chart = document.getElementById('scene-chart'); chart.scrollIntoView({ block: 'center' });"
+            "const { left, top } = chart.getBoundingClientRect();"
+            "const { north, east } = scene.drawn.find((one) => one.what === 'set point');"
+            "const [x, y] = scene.pixel(east, north), [, further] = scene.pixel(east, north - 1);"
+            "return [left + x, top + y, further - y]"
+        )
+        for kind, share in [("Start", 0.0), *(("Move", k / 8) for k in range(1, 9)), ("End", None)]:
+            points = [] if share is None else [{"x": x, "y": y + share * far}]
+            send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": points})
+    finally:
+        send("Emulation.setTouchEmulationEnabled", {"enabled": False})
+    assert saved(craft)["events"][-2]["override"]["craft.x_set"] == pytest.approx(99.0, abs=0.1)
 
 
 def test_keys_go_through_all_speeds_and_back(craft):

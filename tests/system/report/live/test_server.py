@@ -114,8 +114,10 @@ def test_what_is_done_at_a_server_is_repeated_by_the_saved_scenario(served, brow
     craft.ask("desk.act('reset', 'gear'); desk.act('reset', 'craft.engaged')")
     reach(craft, 18)
     # What came after the time to which it goes back is forgotten, also by the server.
-    craft.ask("desk.live.back(14)")
+    # A click is not lost while the server goes back.
+    craft.ask("desk.live.back(14); desk.act('override', 'craft.y_set', 2)")
     craft.wait("return desk.live.end === 14")
+    assert craft.ask("return desk.live.held('craft.y_set')[3]") == 2
     craft.ask("desk.act('override', 'craft.push', 1e300); desk.act('override', 'craft.push', 0.25)")
     reach(craft, 20)
     table = repeated(craft, craft_project / "scenarios")
@@ -220,6 +222,27 @@ def test_a_foreign_fmu_that_fails_is_named_and_its_run_is_saved(
         reach(craft, 5)
         worst, _ = largest_difference(craft, repeated(craft, foreign_project / "scenarios"))
         assert worst < SAME
+
+
+def test_a_run_at_a_server_ends_in_words(craft_project, monkeypatch):
+    monkeypatch.chdir(craft_project)
+    monkeypatch.setattr("shipcosim.cosim.interactive.MOST_STEPS", 150)
+    with serving(craft_project) as server, socket(server) as first:
+        told(first, "run")
+        first.send(advance(200))
+        assert "it has reached 15 s" in told(first, "failed")["failed"]
+
+
+def test_a_page_whose_server_has_gone_keeps_what_was_done(craft_project, browse, monkeypatch):
+    monkeypatch.chdir(craft_project)
+    with serving(craft_project) as server:
+        craft = opened(browse, server)
+        reach(craft, 12)
+    craft.wait("return desk.live.stopped")
+    said = craft.text("#failure")
+    assert said.endswith("refuses this page. Save what was done so far.")
+    worst, _ = largest_difference(craft, repeated(craft, craft_project / "scenarios"))
+    assert worst < SAME
 
 
 def test_a_second_page_shows_the_run_and_changes_nothing(served, browse):
@@ -405,6 +428,17 @@ def test_the_command_starts_a_server_where_no_page_can_run_the_system(foreign_pr
     assert "pilot" in found.output and "has no native code" in found.output
     assert re.search(r"http://127\.0\.0\.1:\d+/[\w-]{32}/", found.output)
     assert not (foreign_project / "results").exists()
+
+
+def test_no_server_takes_the_place_of_a_page_with_swaps(
+    craft_project, foreign_project, monkeypatch
+):
+    monkeypatch.chdir(craft_project)
+    fmu = foreign_project / "ssp" / "craft" / "resources" / "pilot.fmu"
+    given = ["live", "scenarios/odd.toml", "--no-open", "--swap", f"pilot={fmu}"]
+    found = CliRunner().invoke(app, given)
+    assert found.exit_code == 2
+    assert "pilot" in found.output and "has no native code" in found.output
 
 
 @pytest.mark.parametrize(

@@ -55,11 +55,11 @@
 
   // ---- pointer
 
-  const NEAR = 14, STILL = 4;  // pixels: from its cross, and between press and release of a click
+  const NEAR = 14, FINGER = 24, STILL = 4;  // pixels: from its cross, and between press and release of a click
   let dragged = null, pressed = [0, 0];
   const pointer = (event) => { const box = chart.getBoundingClientRect(); return [event.clientX - box.left, event.clientY - box.top]; };
   const apart = ([x, y], [u, v]) => Math.hypot(x - u, y - v);
-  const isNear = (event) => apart(pointer(event), scene.pixel(aim(1), aim(0))) < NEAR;
+  const isNear = (event) => apart(pointer(event), scene.pixel(aim(1), aim(0))) < (event.pointerType === "touch" ? FINGER : NEAR);
 
   chart.addEventListener("pointerdown", (event) => {
     pressed = pointer(event);
@@ -80,6 +80,7 @@
     dragged = null;
     scene.refresh();
   });
+  chart.addEventListener("touchstart", (event) => { if (dragged) event.preventDefault(); }, { passive: false });  // else the page scrolls
   chart.addEventListener("pointercancel", () => { dragged = null; scene.refresh(); });
 
   move.addEventListener("click", () => move.setAttribute("aria-pressed", String(move.ariaPressed !== "true")));

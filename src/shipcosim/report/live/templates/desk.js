@@ -49,7 +49,7 @@
   reset.addEventListener("click", () => { scene.pause(); live.reset(); go(); changed(); });
   minute.addEventListener("click", () => { scene.pause(); scene.go(scene.time - 60); });
   back.addEventListener("click", () => { scene.pause(); live.back(scene.time); go(); changed(); });
-  addEventListener("live-failed", ({ detail }) => { const place = by("failure"); place.hidden = false; place.textContent = `The run stopped: ${detail.replace(/\.$/, "")}. ${noWay() ? "Start again" : "Go back"}, or save what was done so far.`; });
+  addEventListener("live-failed", ({ detail }) => { const place = by("failure"); place.hidden = false; place.textContent = `The run stopped: ${detail.replace(/\.$/, "")}. ${live.engine.gone ? "Save" : `${noWay() ? "Start again" : "Go back"}, or save`} what was done so far.`; });
 
   // A server that cannot go back says why. Its rows come when they are there; who looks at the end goes on looking there.
   const noWay = () => live.engine.noWayBack;
@@ -156,7 +156,8 @@
   // ---- other start values
 
   const starts = about.starts.filter(([, , value]) => typeof value === "number"), choice = by("start-name"), typed = by("start-value");
-  starts.sort((a, b) => /seed$/.test(b[1]) - /seed$/.test(a[1]) || a[1].localeCompare(b[1]));
+  const rank = (name) => [/\.seed$/, /\.(significant_wave_height|peak_period|waves_from|\w+_start)$/, /./].findIndex((form) => form.test(name));  // what one tries first
+  starts.sort(([, a], [, b]) => rank(a) - rank(b) || a.localeCompare(b));
   const signals = new Map(starts.map(([place, , value, unit, kind]) => [String(place), { value, unit, kind }]));
   for (const [place, name] of starts) { const unit = unitOf(signals.get(String(place))); choice.append(new Option(`${name}${unit ? ` [${unit}]` : ""}`, place)); }
   const before = () => live.starts[choice.value] ?? signals.get(choice.value).value;
@@ -300,16 +301,18 @@
     const { set, ...head } = about.scenario, now = live.now(), lines = [];
     const values = { ...set };
     for (const [place, value] of Object.entries(live.starts)) values[about.starts[place][1]] = value;
-    lines.push(`description = ${quoted(`${head.description || head.system}, as it was run in the page`)}`, `system = ${quoted(head.system)}`);
+    const description = head.description || head.system, tail = ", as it was run in the page";
+    lines.push(`description = ${quoted(description.endsWith(tail) ? description : description + tail)}`, `system = ${quoted(head.system)}`);
     if (head.parameters?.length) lines.push(`parameters = [${head.parameters.map(quoted).join(", ")}]`);
-    const rows = Math.ceil(now / about.steps_per_row) * about.steps_per_row;
-    lines.push(`stop_time = ${seconds(live.engine.seconds(Math.max(rows, about.steps_per_row)))}`, `step_size = ${seconds(head.step_size)}`);
+    // What was done in a pause acts on the next step, so the run goes on to the row after it.
+    const stop = Math.ceil((now + Number(live.pending.length > 0)) / about.steps_per_row) * about.steps_per_row;
+    lines.push(`stop_time = ${seconds(live.engine.seconds(Math.max(stop, about.steps_per_row)))}`, `step_size = ${seconds(head.step_size)}`);
     if (head.output_interval) lines.push(`output_interval = ${seconds(head.output_interval)}`);
     if (head.order) lines.push(`order = ${quoted(head.order)}`);
     const swapped = Object.entries(head.components || {});
     if (swapped.length) lines.push("", "[components]", ...swapped.map(([name, fmu]) => `${quoted(name)} = ${quoted(fmu)}`));
     lines.push("", "[set]", ...Object.entries(values).map(([name, value]) => `${quoted(name)} = ${written(value)}`));
-    for (const [step, action, name, value] of [...live.done].sort((a, b) => a[0] - b[0])) {
+    for (const [step, action, name, value] of live.before(stop).sort((a, b) => a[0] - b[0])) {
       lines.push("", "[[events]]", `time = ${seconds(live.engine.seconds(step))}`);
       lines.push(action === "reset" ? `reset = [${quoted(name)}]` : `${action} = { ${quoted(name)} = ${valueOf[about.signals[name].kind](value)} }`);
     }
@@ -320,7 +323,7 @@
     const columns = [...live.raw], head = ["time [s]", ...columns.map(([name]) => `${name}${about.signals[name]?.unit ? ` [${about.signals[name].unit}]` : ""}`)];
     const cell = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text), lines = [head.map(cell).join(",")];
     live.time.values.forEach((t, row) => lines.push([t, ...columns.map(([, column]) => column.all[row])].join(",")));
-    return `${lines.join("\n")}\n`;
+    return new Blob(lines.map((line) => `${line}\n`), { type: "text/csv" });  // a text of ten hours would be longer than texts may be
   }
 
   function netcdf() {

@@ -56,13 +56,15 @@ report.live = await (async () => {
 
   // ---- what was done, and states to go back to
 
-  const EVERY = 5, RECENT = 60, MOST = 80;  // s between states, s of them that are all kept, and their number: 3 MB each
+  // s between states, and ms of the clock, in which a fast run comes there again; s of them that are all kept, and their number: 3 MB each.
+  const EVERY = 5, SOON = 50, RECENT = 60, MOST = 80;
+  const early = [];  // what was done before a server had gone back or begun again
   let done = about.events.slice(), states = [], starts = {}, failure = "";
 
   function remember() {
-    const now = engine.seconds(engine.step());
-    if (states.length && now - states[states.length - 1].time < EVERY - 1e-9) return;
-    states.push({ time: now, rows: time.length, bytes: engine.state() });
+    const now = engine.seconds(engine.step()), clock = performance.now(), before = states.at(-1);
+    if (before && (now - before.time < EVERY - 1e-9 || clock - before.clock < SOON)) return;
+    states.push({ time: now, clock, rows: time.length, bytes: engine.state() });
     if (states.length > MOST) states = states.filter(({ time }, k) => now - time <= RECENT || k % 2 === 0);  // the older ones farther apart
   }
 
@@ -76,7 +78,8 @@ report.live = await (async () => {
     const spacing = Math.max(Math.round((EVERY * about.step[1]) / about.step[0]), 1);
     try {
       while (engine.step() < to) {
-        const from = engine.step(), next = Math.min(to, from + spacing, from + about.most_steps);
+        if (engine.step() >= about.last_step) throw new Error(`it has reached ${engine.seconds(about.last_step)} s, the longest run of a page`);  // its rows fill the memory
+        const from = engine.step(), next = Math.min(to, about.last_step, from + spacing, from + about.most_steps);
         let first = Math.ceil(from / about.steps_per_row) * about.steps_per_row;
         engine.advance(next, done, (tables) => { take(tables, first); first = Math.ceil(engine.step() / about.steps_per_row) * about.steps_per_row; });
         remember();
@@ -98,6 +101,7 @@ report.live = await (async () => {
     failure = "";
     arrive(tables);
     if (run.failure) fail(run.failure);
+    for (const change of early.splice(0)) self.act(...change);
   }
 
   function arrive(tables) {
@@ -108,8 +112,19 @@ report.live = await (async () => {
   }
 
   function acted(changes) {  // in the page that steers
-    done.push(...changes.map((change) => [...change, true]));
+    done = [...done, ...changes.map((change) => [...change, true])];
     dispatchEvent(new Event("live-arrived"));
+  }
+
+  // The last change of each signal up to the next step, found anew once something was done or a step was made.
+  let latest = {};
+  function latestOf(name) {
+    const step = engine.step();
+    if (latest.done !== done || latest.step !== step) {
+      latest = { done, step, changes: new Map() };
+      for (const change of done) if (change[0] <= step && !(latest.changes.get(change[2])?.[0] > change[0])) latest.changes.set(change[2], change);
+    }
+    return latest.changes.get(name);
   }
 
   const lastTime = () => (time.length ? time.last : 0);
@@ -161,6 +176,7 @@ report.live = await (async () => {
     },
     act(action, name, value) {  // from the next step on
       if (remote && !engine.steers) return;
+      if (remote && engine.waits) { early.push([action, name, value]); return; }
       // Of several changes of a signal before the next step the last one holds.
       const now = engine.step();
       done = done.filter(([step, , of, , byHand]) => !(byHand && step === now && of === name));
@@ -171,12 +187,13 @@ report.live = await (async () => {
     now: () => engine.step(),
     value: (name) => raw.get(name)?.last,
     held(name) {  // what the last change of a signal says, or null
-      const last = done.filter(([step, , of]) => of === name && step <= engine.step()).sort((a, b) => a[0] - b[0]).pop();
+      const last = latestOf(name);
       return last && last[1] !== "reset" ? last : null;
     },
     coming: (steps) => done.filter(([step]) => step >= engine.step() && step < engine.step() + steps),
     get pending() { return self.coming(1); },  // what the next step begins with
-    get done() { return done.filter(([step, , , , byHand]) => byHand || step < engine.step()); },
+    before: (end) => done.filter(([step, , , , byHand]) => byHand || step < end),
+    get done() { return self.before(engine.step()); },
     get starts() { return starts; },
     states: () => states.length,
   };

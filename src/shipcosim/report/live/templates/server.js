@@ -30,6 +30,7 @@ function connectEngine(about, record) {
   const engine = {
     steers: true, noWayBack: "",
     step: () => asked, seconds: (steps) => steps * about.step[0] / about.step[1],
+    get waits() { return waits; },
     ready: () => !waits && asked - arrived < 2 * engine.stride(),
     stride: () => Math.max(Math.round(pace * LOOK), 1),
     ahead: () => AHEAD * scene.speed,
@@ -74,7 +75,7 @@ function connectEngine(about, record) {
         } else record.arrive(rowsOf(numbers));
       }
     };
-    socket.onclose = () => { record.fail("the server has gone, or refuses this page"); reject(new Error("The server does not answer.")); };
+    socket.onclose = () => { engine.gone = true; record.fail("the server has gone, or refuses this page"); reject(new Error("The server does not answer.")); };
   });
   return engine;
 }

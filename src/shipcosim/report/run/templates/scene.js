@@ -198,9 +198,9 @@ const scene = (() => {
 
   const faster = (by) => { speed.selectedIndex = Math.min(Math.max(speed.selectedIndex + by, 0), speed.options.length - 1); self.speed = +speed.value; };
 
-  // Lines at the times at which something happens.
-  self.mark = (times) => by("marks").replaceChildren(...times.map((t) => {
-    const line = document.createElementNS("http://www.w3.org/2000/svg", "line"), x = `${(100 * (t - start)) / (end - start || 1)}%`;
+  // Lines at the times at which something happens; a joystick makes more of them than there are places.
+  self.mark = (times) => by("marks").replaceChildren(...[...new Set(times.map((t) => ((100 * (t - start)) / (end - start || 1)).toFixed(1)))].map((share) => {
+    const line = document.createElementNS("http://www.w3.org/2000/svg", "line"), x = `${share}%`;
     for (const [key, v] of Object.entries({ x1: x, x2: x, y1: 0, y2: "100%" })) line.setAttribute(key, v);
     return line;
   }));
