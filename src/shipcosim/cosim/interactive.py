@@ -74,7 +74,7 @@ def start_values_of(plan: Plan) -> list[StartValue]:
             if variable.causality == "parameter" and isinstance(variable.start, int | float)
         }
         # The values of the system in their order, then those that only an FMU gives.
-        for name, value in (component.start | numbers | component.start).items():
+        for name, value in {**component.start, **numbers, **component.start}.items():
             variable = variables[name]
             kind = "String" if isinstance(value, str) else plan.kind(variable) or ""
             signal = label((component.name, name))

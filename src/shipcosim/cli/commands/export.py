@@ -195,13 +195,13 @@ def _systems(
     """The system of a page with its scenario, and the same for each swap."""
     from shipcosim.cli.requests import parsed_components
 
-    parameters, components, *rest = options
+    parameters, components, fmus, strict = options
     given = parsed_components(components or ())
     systems = [_system_and_scenario(what, options, times)]
     for swap in swaps or ():
-        fmus = given | parsed_components([swap], "--swap")
-        swapped = [f"{name}={fmu}" for name, fmu in fmus.items()]
-        systems.append(_system_and_scenario(what, (parameters, swapped, *rest), times))
+        taken = given | parsed_components([swap], "--swap")
+        swapped = [f"{name}={fmu}" for name, fmu in taken.items()]
+        systems.append(_system_and_scenario(what, (parameters, swapped, fmus, strict), times))
     return systems
 
 

@@ -56,7 +56,7 @@ def numbers_of(system: System, component: str, thrusters: Collection[str]) -> di
     dict of str to int
     """
     return {
-        connection.target[0]: int(connection.source[1].removeprefix("thrust_share_")) - 1
+        name: int(connection.source[1].removeprefix("thrust_share_")) - 1
         for connection in system.connections
-        if connection.source[0] == component and connection.target[0] in thrusters
+        if connection.source[0] == component and (name := connection.target[0]) in thrusters
     }
