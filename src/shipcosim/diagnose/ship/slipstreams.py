@@ -55,8 +55,7 @@ def numbers_of(system: System, component: str, thrusters: Collection[str]) -> di
     -------
     dict of str to int
     """
+    fed = {c.target[0]: c.source[1] for c in system.connections if c.source[0] == component}
     return {
-        name: int(connection.source[1].removeprefix("thrust_share_")) - 1
-        for connection in system.connections
-        if connection.source[0] == component and (name := connection.target[0]) in thrusters
+        name: int(fed[name].removeprefix("thrust_share_")) - 1 for name in thrusters if name in fed
     }
