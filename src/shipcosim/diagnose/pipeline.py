@@ -232,7 +232,9 @@ def read_measurements(
     """A log by the roles of its columns, with the ship of a system or of a reference, and the causes of a catalogue."""
     ship = ship_by(system, reference)
     if channels is None:
-        numbers = {path: ship.get(path) for path in ship.numbers}
+        # Where a thruster's neighbour is, the ship knows by itself.
+        paths = [path for path in ship.numbers if ".neighbour_" not in path]
+        numbers = {path: ship.get(path) for path in paths}
         log = run_as_log(log, ship.vessel, ship.thrusters, numbers)
     drives = {name: ship.drives(name) for name in ship.thrusters}
     return ReadLog(read_log(log, channels, drives), ship, read_catalogue(causes))

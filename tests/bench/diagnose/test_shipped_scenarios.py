@@ -45,3 +45,22 @@ def test_nothing_is_named_that_is_not_there(name, tmp_path):
     diagnosis = sc.diagnose(run, out=tmp_path / "diagnosis")
     assert {finding.cause for finding in diagnosis.findings} <= right
     assert diagnosis.verdict != "named" or diagnosis.findings
+
+
+PLANTED = {
+    ("port.thrust_loss", 0.25): "thrust_loss",
+    ("tunnel.thrust_loss", 0.15): "thrust_loss",
+    ("port.azimuth_offset", 0.17): "azimuth_offset",
+    ("vessel.wind_load_scale", 1.5): "wind_scale",
+    ("vessel.mass_scale", 1.25): "mass",
+    ("vessel.cross_flow_scale", 1.6): "crossflow",
+}
+"""A number that a run gets otherwise, beside the current of its scenario: its cause."""
+
+
+@pytest.mark.parametrize("planted", PLANTED)
+def test_a_number_that_a_run_had_otherwise_is_named(planted, tmp_path):
+    number, value = planted
+    run = sc.run("four_corner", set={number: value}, out=tmp_path / "run").table
+    diagnosis = sc.diagnose(run, out=tmp_path / "diagnosis")
+    assert {finding.cause for finding in diagnosis.findings} == {"current", PLANTED[planted]}

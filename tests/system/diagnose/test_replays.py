@@ -66,6 +66,14 @@ def test_the_velocity_is_along_the_heading_that_waves_turn(run):
     np.testing.assert_allclose(log["sway"], -ahead, atol=1e-12)
 
 
+def test_the_folder_of_a_run_stands_for_its_table(run, tmp_path):
+    write_table(run, tmp_path / "result.nc")
+    log = run_as_log(tmp_path, "vessel", ["propeller"])
+    np.testing.assert_array_equal(
+        log["heading"], run_as_log(run, "vessel", ["propeller"])["heading"]
+    )
+
+
 def test_a_run_of_a_ship_with_other_thrusters_is_refused(run):
     with pytest.raises(ShipcosimError, match="another ship: her thrusters are propeller"):
         run_as_log(run, "vessel", ["left", "right"])

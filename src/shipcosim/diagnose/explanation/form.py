@@ -71,11 +71,13 @@ def with_settled_form(explained: ExplainedLog) -> ExplainedLog:
     best = explained.fits[0]
     if not identification.problem.model.form_scale:
         return explained
-    # A full search with the plain form, where another cause may take what the learnt form took; that one is kept
-    # only where it gains its cost.
+    # The same causes with the plain form: the learnt one is kept only where it gains its cost.
     plain = of_scale(identification.problem, 0.0, best.hypotheses, best.values)
+    same = fitted(plain, best.hypotheses, best.values).score
+    to_beat = best.score - FORM_COST if same > best.score - FORM_COST else best.score
+    # A full search with the plain form: another cause may take all that the learnt form took.
     fits = tuple(explain(plain))
-    if fits[0].score + FORM_COST < best.score:
+    if fits[0].score < to_beat:
         return explained
     again = replace(
         identification, ship=replace(identification.ship, form_scale=0.0), problem=plain

@@ -15,13 +15,14 @@ from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fit
 from shipcosim.diagnose.inference.screening import Gain, screened
 from shipcosim.diagnose.inference.thresholds import ENOUGH
 from shipcosim.diagnose.inference.workers import each
+from shipcosim.diagnose.ship.model import ShipModel
 
 STRAIN = (
     2.5  # tolerances off, from which on a number's cause is fitted whatever it gains at first sight
 )
 FAR = 4.0
-"""Tolerances off, from which on every cause of the number's component is fitted: beside a current, say, the resistance to
-sway acts otherwise than at first sight. Healthy ships reach 3.4."""
+"""Tolerances off, from which on every cause of a number's component of the ship is fitted: beside a current, say, the
+resistance to sway acts otherwise than at first sight. Healthy ships reach 3.4."""
 _LIKELY = 6  # causes that are fitted first; beside a set of causes half as many
 _NEAR = 12.0
 """Causes this far below the best are still fitted, or 85 % of its gain: at first sight what is not linear, as a
@@ -99,7 +100,7 @@ def explain(
             # A number far outside its tolerance suggests a cause that the linear screening
             # underrates.
             strained = _strained(fit, STRAIN)
-            far = _components(_strained(fit, FAR))
+            far = _components(path for path in _strained(fit, FAR) if not ShipModel.is_of_day(path))
             for place, (gain, hypothesis, values) in enumerate(gains):
                 is_suspect = strained & hypothesis.paths or far & _components(hypothesis.paths)
                 if (place >= first or gain < least) and not is_suspect:

@@ -72,6 +72,8 @@ def run_as_log(
     ShipcosimError
         If it is the table of a run without this ship.
     """
+    if not isinstance(log, xarray.Dataset) and (Path(log) / "result.nc").is_file():
+        log = Path(log) / "result.nc"
     # Signals and units of the table, from memory or from a file.
     if isinstance(log, xarray.Dataset):
         signals = {str(name): value.values for name, value in log.data_vars.items()}
