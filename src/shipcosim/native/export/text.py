@@ -12,6 +12,7 @@ from shipcosim.native.array_statements import Term
 from shipcosim.native.error_texts import parts
 from shipcosim.native.export.calls import described, procedure_of
 from shipcosim.native.export.variants import Variant
+from shipcosim.native.expressions import merged
 from shipcosim.native.source import Writer, kept_sizes, literal
 from shipcosim.native.symbols import Symbol
 
@@ -174,7 +175,7 @@ class ModelWriter(Writer):
                 "{",
                 *self._tables("    "),
                 "    (void)m, (void)k, (void)o;",
-                *self.lines,
+                *merged(self.lines),
                 "}",
                 "",
             ]
