@@ -18,6 +18,7 @@ from shipcosim.native.array_statements import (
 )
 from shipcosim.native.blocks import Block, RecordedLoop, ends, results_of
 from shipcosim.native.error_texts import values_in_text
+from shipcosim.native.expressions import merged
 from shipcosim.native.number_rows import Flat
 from shipcosim.native.recording import Recording
 from shipcosim.native.symbols import Symbol, kind_of
@@ -140,7 +141,7 @@ class Writer:
         tables = self._tables()
         self._block(self.step.root, 1, self._finish)
         parameters = "double *restrict m, double *restrict k, Call call, void *host"
-        body = "\n".join(self.lines)
+        body = "\n".join(merged(self.lines))
         unused = "    (void)m; (void)k; (void)call; (void)host;"
         return "\n".join(
             [HEAD, *tables, "", f"EXPORT int step({parameters}) {{", unused, body, "}", ""]

@@ -12,6 +12,7 @@ import numpy as np
 
 from shipcosim.native.checking import within_bounds
 from shipcosim.native.export.targets import TARGETS, own_target
+from shipcosim.native.export.text import NOT_FOR_THESE
 from shipcosim.native.symbols import Untraceable
 
 STEPS = 40
@@ -28,9 +29,6 @@ FASTEST = 50.0
 
 SPREAD = 0.02
 """Standard deviation of random parameters, over the example's."""
-
-NOT_FOR_THESE = "this native FMU was built where"
-"""Message of an FMU in C on parameters that would change the shape of its state."""
 
 SIZES = {"N": 2e4, "N.m": 1e5, "W": 1e5, "rad": 0.7, "rpm": 60.0, "m": 3.0, "s": 1.0, "Pa": 1e3}
 """Size of random inputs by unit; 0.5 for other units."""

@@ -12,12 +12,15 @@ from shipcosim.native.array_statements import Term
 from shipcosim.native.error_texts import parts
 from shipcosim.native.export.calls import described, procedure_of
 from shipcosim.native.export.variants import Variant
+from shipcosim.native.expressions import merged
 from shipcosim.native.source import Writer, kept_sizes, literal
 from shipcosim.native.symbols import Symbol
 
 LEFT_OUT = 1e30
 RECORDER = str(Path(__file__).parents[1])
 """Folder of the code that records a model."""
+NOT_FOR_THESE = "this FMU was compiled for another value of "
+"""Message of an FMU in C on parameters that would change the shape of its state; their names follow."""
 MUCH = 3000
 """Lines of a function above which a compiler takes minutes to make it fast, where it is called seldom."""
 
@@ -174,7 +177,7 @@ class ModelWriter(Writer):
                 "{",
                 *self._tables("    "),
                 "    (void)m, (void)k, (void)o;",
-                *self.lines,
+                *merged(self.lines),
                 "}",
                 "",
             ]
@@ -224,7 +227,7 @@ class ModelWriter(Writer):
             for place in self._loaded(symbol)
         ]
         names = ' say(o, " and "); '.join(said) or 'say(o, "a number");'
-        message = f'say(o, "this FMU was compiled for another value of "); {names}'
+        message = f"say(o, {c_text(NOT_FOR_THESE)}); {names}"
         message += (
             ' say(o, ": take the FMU in Python, or build this one again"); o->is_for_others = 1;'
         )
