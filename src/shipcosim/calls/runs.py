@@ -102,8 +102,7 @@ class PreparedRun:
         # A long run must not end with results that cannot be written.
         state = self.options.store
         state_file = Path(state) if isinstance(state, (str, os.PathLike)) else None
-        if out is not None or state_file is not None:
-            check_targets(None if out is None else Path(out), state_file)
+        check_targets(None if out is None else Path(out), state_file)
 
         # The state is written after the results, so that earlier states are kept until there is a new one.
         snapshots: list[Snapshot] = []
@@ -524,15 +523,13 @@ def system_for(
     strict: bool = False,
 ) -> System:
     """The checked system that is given, or the scenario's, with the scenario's parameter sets and FMUs."""
-    if system is None and scenario is None:
+    if scenario is not None and not isinstance(system, System):
+        components = {**scenario.component_paths(), **(components or {})}
+        parameters = [*scenario.parameter_paths, *listed(parameters, "parameters")]
+        system = scenario.system_path if system is None else system
+    if system is None:
         raise error_at("simulate", "system is missing.", "Give a system or a scenario.")
-    if scenario is None or isinstance(system, System):
-        assert system is not None
-        return Reading(parameters=parameters, components=components, strict=strict).system(system)
-    swapped = {**scenario.component_paths(), **(components or {})}
-    sets = [*scenario.parameter_paths, *listed(parameters, "parameters")]
-    reading = Reading(parameters=sets, components=swapped, strict=strict)
-    return reading.system(scenario.system_path if system is None else system)
+    return Reading(parameters=parameters, components=components, strict=strict).system(system)
 
 
 def fed_by(

@@ -206,9 +206,9 @@ def _buses(system: System, thrusters: list[str]) -> dict[str, tuple[str, ...]]:
         names = {thruster: f"{thruster.rpartition('.')[2]}_bus" for thruster in thrusters}
         if part.variables.keys() >= set(names.values()):
             number = {thruster: int(_real(part, name)) for thruster, name in names.items()}
-            numbers = sorted(set(number.values()))
             return {
-                chr(ord("A") + k): tuple(t for t in thrusters if number[t] == k) for k in numbers
+                chr(ord("A") + k): tuple(t for t in thrusters if number[t] == k)
+                for k in sorted(set(number.values()))
             }
     return {}
 

@@ -13,7 +13,7 @@ QUOTED = re.compile(r'\s*"([^"]+)"\s*(=)(.*)', re.DOTALL)
 """A setting whose name is in quotes, as in a scenario: it may have an = in it."""
 
 
-def parsed_settings(settings: Iterable[str]) -> dict[str, Any]:
+def parsed_settings(settings: Iterable[str] | None) -> dict[str, Any]:
     """Values of ``--set component.name=value``, each read as TOML; what is no TOML is text.
 
     Examples
@@ -25,7 +25,7 @@ def parsed_settings(settings: Iterable[str]) -> dict[str, Any]:
     """
     values = {}
     problems = []
-    for setting in settings:
+    for setting in settings or ():
         quoted = QUOTED.fullmatch(setting)
         name, sign, text = quoted.groups() if quoted else setting.partition("=")
         if not sign or not name.strip():
@@ -40,7 +40,7 @@ def parsed_settings(settings: Iterable[str]) -> dict[str, Any]:
     return values
 
 
-def parsed_components(given: Iterable[str], option: str = "--component") -> dict[str, str]:
+def parsed_components(given: Iterable[str] | None, option: str = "--component") -> dict[str, str]:
     """FMUs of ``--component component=FMU`` or another option, each a path or a name.
 
     Raises
@@ -50,7 +50,7 @@ def parsed_components(given: Iterable[str], option: str = "--component") -> dict
     """
     components: dict[str, str] = {}
     problems = []
-    for pair in given:
+    for pair in given or ():
         name, sign, fmu = (part.strip() for part in pair.partition("="))
         if sign and name and fmu:
             problems += _of_twice(option, name, components)

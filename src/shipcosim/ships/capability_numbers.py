@@ -4,7 +4,7 @@ from shipcosim.ships.described import Described
 from shipcosim.ships.entries import Quantity
 from shipcosim.ships.estimates.capability import hull_particulars, thruster_particulars
 from shipcosim.ships.estimates.estimate import EstimatedNumber
-from shipcosim.ships.file import Particulars, number
+from shipcosim.ships.file import number
 from shipcosim.ships.numbers import ESTIMATED
 
 
@@ -21,7 +21,7 @@ def capability_entries(ship: Described) -> dict[str, dict[str, Quantity]]:
         By file and name. A thruster of which no diameter is given has none.
     """
     wind = ship.file.wind
-    breadth = number((ship.file.particulars or Particulars()).breadth)
+    breadth = number(ship.file.particulars.breadth)
     hull = hull_particulars(ship.form, breadth, number(wind.side_centre_x))
     entries = {"capability": {name: _entry(*entry) for name, entry in hull.items()}}
     # Areas that the file gives come before estimates.

@@ -51,7 +51,7 @@ def check_ship(path: str) -> list[Problem]:
     # Files without particulars describe a ship by parameter files: read these.
     try:
         content = read_file(file)
-        if content.particulars is None and not content.thrusters:
+        if "particulars" not in content.model_fields_set and not content.thrusters:
             return [*driven_by_water(f"{file}: vessel", _vessel(read_ship(file.parent).entries))]
         ship = describe(file, content)
     except ShipcosimError as error:
@@ -105,7 +105,6 @@ def _hull(ship: Described) -> Iterator[Problem]:
     form = ship.form
     p = ship.file.particulars
     m = ship.file.mass
-    assert p is not None
     where = f"{ship.path}: particulars"
     # Mass against the box of length, breadth and draught: the block coefficient that follows.
     box = form.density * form.hulls * form.length * form.breadth * form.draught
@@ -159,6 +158,7 @@ def _matrix(ship: Described) -> Iterator[Problem]:
     where = f"{ship.path}: mass"
     length = ship.form.length
     mass = value["mass"]
+    centre = value.get("centre_of_gravity_x", 0.0)
     # The mass matrix must be positive definite, or the motion is unstable.
     matrix = mass_matrix(ship)
     least = float(np.linalg.eigvalsh(0.5 * (matrix + matrix.T)).min())
@@ -174,7 +174,7 @@ def _matrix(ship: Described) -> Iterator[Problem]:
         )
         yield Problem(where, message, remedy)
     # Gyration radius about the centre of gravity, by Steiner's theorem.
-    about_centre = value["inertia_yaw"] - mass * value.get("centre_of_gravity_x", 0.0) ** 2
+    about_centre = value["inertia_yaw"] - mass * centre**2
     gyradius = np.sqrt(max(about_centre, 0.0) / mass) / length
     if not GYRADIUS[0] <= gyradius <= GYRADIUS[1]:
         low, high = (mass * (share * length) ** 2 for share in GYRADIUS)
@@ -185,10 +185,8 @@ def _matrix(ship: Described) -> Iterator[Problem]:
             remedy,
         )
     # A ship with the centre of gravity far from midships would trim.
-    if abs(value.get("centre_of_gravity_x", 0.0)) > 0.2 * length:
-        message = (
-            f"the centre of gravity lies {value['centre_of_gravity_x']:g} m forward of midships."
-        )
+    if abs(centre) > 0.2 * length:
+        message = f"the centre of gravity lies {centre:g} m forward of midships."
         yield Problem(
             where,
             message,
@@ -203,7 +201,6 @@ def _matrix(ship: Described) -> Iterator[Problem]:
 
 def _thrusters(ship: Described) -> Iterator[Problem]:
     p = ship.file.particulars
-    assert p is not None
     length = ship.form.length
     breadth = number(p.breadth)
     draught = ship.form.draught
@@ -295,7 +292,7 @@ def _speed(ship: Described) -> Iterator[Problem]:
     form = ship.form
     p = ship.file.particulars
     entry = ship.vessel.get("X_uu")
-    if entry is None or p is None or p.service_speed is None:
+    if entry is None or p.service_speed is None:
         return
     where = f"{ship.path}: resistance"
     # Resistance at service speed against the bollard thrust of all thrusters that point ahead.

@@ -182,34 +182,22 @@ def _problem(path: Path, content: dict[str, Any], finding: Any) -> Problem:
     )
     # An unknown key: suggest a similar one of the same section.
     if kind == "extra_forbidden":
-        keys_there = record if len(keys) == 1 else type(_default(keys[0])).model_fields
+        keys_there = record if len(keys) == 1 else type(record[keys[0]].default).model_fields
         return Problem(where, f"unknown key '{last}'.", suggestion(last, keys_there))
     return Problem(where, *_words(finding))
 
 
-def _default(section: Any) -> Any:
-    """The record of a section, empty."""
-    from shipcosim.ships.file import Particulars
-
-    return (
-        Particulars() if section == "particulars" else ShipFile.model_fields[str(section)].default
-    )
-
-
 def _of_thruster(path: Path, content: dict[str, Any], keys: list, finding: Any) -> Problem:
     """Translate a finding in a thruster, called by its name."""
-    listed = content["thrusters"] if isinstance(content.get("thrusters"), list) else []
-    thruster = listed[keys[1]] if isinstance(keys[1], int) and keys[1] < len(listed) else {}
-    name = (
-        thruster.get("name", keys[1] + 1 if isinstance(keys[1], int) else "")
-        if isinstance(thruster, dict)
-        else ""
-    )
+    # pydantic numbers the entries of a list alone; one that is no table has neither name nor kind.
+    entry = content["thrusters"][keys[1]]
+    thruster = entry if isinstance(entry, dict) else {"name": ""}
+    name = thruster.get("name", keys[1] + 1)
     kind = finding["type"]
     where = f"{path}: thruster {name}"
     # An unknown or missing kind: pydantic cannot choose a record.
     if kind.startswith("union_tag"):
-        stated_kind = thruster.get("kind") if isinstance(thruster, dict) else None
+        stated_kind = thruster.get("kind")
         if stated_kind is None:
             return Problem(where, "nothing says its kind.", f"There is: {', '.join(KINDS)}.")
         return Problem(where, f"kind = {stated_kind!r}.", suggestion(str(stated_kind), KINDS))

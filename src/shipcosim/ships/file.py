@@ -189,7 +189,7 @@ class ShipFile(_Part):
     source: str = ""
     based_on: Annotated[list[str], BeforeValidator(lambda v: [v] if isinstance(v, str) else v)] = []
     systems: list[str] = []
-    particulars: Particulars | None = None
+    particulars: Particulars = Particulars()
     mass: Inertia = Inertia()
     resistance: Resistance = Resistance()
     drag: Drag = Drag()

@@ -216,22 +216,21 @@ def _about(folder: Path, problems: list[Problem]) -> dict[str, Any]:
             Problem(str(file), "there is no such file.", f"Ships: {suggestion(folder.name, near)}")
         )
         return {}
-    # Single names count as lists of one.
-    content = _toml(file, problems)
-    defaults = {
-        key: [value] if key == "based_on" and isinstance(value, str) else value
-        for key, value in content.items()
-    }
-    # Sections of a described ship are read elsewhere.
-    defaults = {key: value for key, value in defaults.items() if key not in _SECTIONS}
-    for key, value in defaults.items():
-        if not isinstance(value, _SHIP_KEYS.get(key, ())):
+    head = {}
+    for key, value in _toml(file, problems).items():
+        # Sections of a described ship are read elsewhere.
+        if key in _SECTIONS:
+            continue
+        # A single name counts as a list of one.
+        if key == "based_on" and isinstance(value, str):
+            value = [value]
+        if isinstance(value, _SHIP_KEYS.get(key, ())):
+            head[key] = value
+        else:
             problems.append(
                 Problem(f"{file}: {key}", f"found {value!r}.", suggestion(key, _SHIP_KEYS))
             )
-    return {
-        key: value for key, value in defaults.items() if isinstance(value, _SHIP_KEYS.get(key, ()))
-    }
+    return head
 
 
 def _toml(file: Path, problems: list[Problem]) -> dict[str, Any]:
@@ -246,13 +245,10 @@ def _read(file: Path, problems: list[Problem]) -> dict[str, Any]:
     """Entries of a parameter file by name, and ``like`` as a list; empty without a file."""
     if not file.is_file():
         return {}
-    entries = {
-        name: _entry(file, name, value, problems)
-        for name, value in _toml(file, problems).items()
-        if name != "like"
-    }
+    content = _toml(file, problems)
     # Components that this one is like.
-    like_entry = _toml(file, []).get("like", [])
+    like_entry = content.pop("like", [])
+    entries = {name: _entry(file, name, value, problems) for name, value in content.items()}
     like = [like_entry] if isinstance(like_entry, str) else like_entry
     if not isinstance(like, list) or not all(isinstance(name, str) for name in like):
         problems.append(
@@ -325,12 +321,11 @@ def _entries(
         entries |= {key: entry._replace(inherited=True) for key, entry in taken.items()}
     # Entries of the folders in turn; only the ship's own files must be known exactly.
     for layer in layers:
-        of_component = {key: entry for key, entry in layer.items() if key != "like"}
-        entries |= (
-            of_component
-            if layer is layers[-1]
-            else {key: e._replace(inherited=True) for key, e in of_component.items()}
-        )
+        entries |= {
+            key: entry._replace(inherited=layer is not layers[-1])
+            for key, entry in layer.items()
+            if key != "like"
+        }
     return entries
 
 

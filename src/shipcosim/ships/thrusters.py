@@ -165,13 +165,12 @@ def _unit(
     direction: float,
     screw: Screw | None = None,
 ) -> ShipThruster:
-    place = number(thruster.x), number(thruster.y)
     return ShipThruster(
         name=thruster.name,
         kind=thruster.kind,
         fmu=numbers.fmu,
-        x=place[0],
-        y=place[1],
+        x=number(thruster.x),
+        y=number(thruster.y),
         direction=direction,
         least=least,
         most=most,

@@ -53,7 +53,7 @@ def form_of(ship: ShipFile, where: str, problems: list[Problem]) -> HullDimensio
         Gets what is missing.
     """
     # Dimensions that nothing can replace.
-    p = ship.particulars or Particulars()
+    p = ship.particulars
     m = ship.mass
     needed = ["length", "breadth", "draught"] + (["hull_breadth"] if p.hulls > 1 else [])
     missing = [name for name in needed if getattr(p, name) is None]
@@ -64,10 +64,11 @@ def form_of(ship: ShipFile, where: str, problems: list[Problem]) -> HullDimensio
         )
     # Mass, displacement or block coefficient: one of them is needed.
     heavy = m.mass or p.displacement
-    if heavy is None and p.block_coefficient is None:
+    no_weight = heavy is None and p.block_coefficient is None
+    if no_weight:
         remedy = "Give mass.mass, particulars.displacement or particulars.block_coefficient."
         problems.append(Problem(f"{where}: mass", "nothing says how heavy she is.", remedy))
-    if missing or (heavy is None and p.block_coefficient is None):
+    if missing or no_weight:
         return None
     # Dimensions of one hull.
     L = number(p.length)
@@ -104,10 +105,10 @@ def vessel_of(
     # Coefficients of the file first; each step fills in what is still missing.
     numbers = Numbers("vessel", f"{file}: hull", file.parent, ship.source, problems)
     numbers.coefficients(ship.hull)
-    p = ship.particulars or Particulars()
+    p = ship.particulars
     for name in ("length", "breadth", "draught", "water_density"):
         numbers.give(name, getattr(p, name))
-    _inertia(numbers, ship.mass, ship.particulars or Particulars(), form)
+    _inertia(numbers, ship.mass, p, form)
     _resistance(numbers, ship, form)
     _across(numbers, ship, form)
     _linear(numbers, ship, form)
@@ -202,30 +203,30 @@ def _weather(numbers: Numbers, ship: ShipFile, form: HullDimensions) -> None:
     # Wind: a table, none, or Blendermann's formulae.
     w = ship.wind
     numbers.give("wind_load_scale", w.scale)
-    if w.table is not None and w.table != NONE:
-        numbers.table("wind_table", w.table)
+    if w.table is None:
+        _wind(numbers, ship, form)
     elif w.table == NONE:
         numbers.estimate(
             "wind_table", EstimatedNumber("0 0 0 0; 180 0 0 0", 0.0, "none, by the ship file")
         )
     else:
-        _wind(numbers, ship, form)
+        numbers.table("wind_table", w.table)
     # Waves: a table, none, or reflection at the hull.
-    if ship.waves.table is not None and ship.waves.table != NONE:
-        numbers.table("drift_table", ship.waves.table)
-    elif ship.waves.table == NONE:
-        numbers.estimate("drift_table", EstimatedNumber(_NO_WAVES, 0.0, "none, by the ship file"))
-    else:
-        breadth = number((ship.particulars or Particulars()).breadth)
+    if ship.waves.table is None:
+        breadth = number(ship.particulars.breadth)
         numbers.estimate(
             "drift_table", drift_table(form.length, breadth, form.draught, form.density)
         )
+    elif ship.waves.table == NONE:
+        numbers.estimate("drift_table", EstimatedNumber(_NO_WAVES, 0.0, "none, by the ship file"))
+    else:
+        numbers.table("drift_table", ship.waves.table)
 
 
 def _wind(numbers: Numbers, ship: ShipFile, form: HullDimensions) -> None:
     """Blendermann's wind loads with given or estimated areas."""
     w = ship.wind
-    breadth = number((ship.particulars or Particulars()).breadth)
+    breadth = number(ship.particulars.breadth)
     # Areas: given, or usual for her dimensions.
     both = (w.front_area, front_area(breadth)), (w.side_area, side_area(form.length))
     front, side = (float(area.value) if given is None else given.value for given, area in both)

@@ -154,11 +154,11 @@ def _over(base: Source, extending: Source) -> Source:
     files = [*extending.files, *base.files]
     shift = len(extending.files)
     # What the other study says, with the scenario that lies beside it by its path.
-    scenario = base.content.get("scenario")
-    neighbour = base.files[0][0].resolve().parent / scenario if isinstance(scenario, str) else None
-    anchored = base.content | (
-        {"scenario": str(neighbour)} if neighbour is not None and neighbour.is_file() else {}
-    )
+    anchored = dict(base.content)
+    if isinstance(anchored.get("scenario"), str):
+        neighbour = base.files[0][0].resolve().parent / anchored["scenario"]
+        if neighbour.is_file():
+            anchored["scenario"] = str(neighbour)
     content = _merged(anchored, extending.content)
     origins = {}
     # Lists merge by name: an item of the same name replaces the old one in its place, others are

@@ -63,7 +63,7 @@ def compare(
             stop_time=stop_time,
             step_size=step_size,
             parameters=parameters or [],
-            components=parsed_components(components or ()),
+            components=parsed_components(components),
             fmus=fmus or [],
             events=events,
             tolerance=tolerance,

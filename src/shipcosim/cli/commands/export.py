@@ -71,7 +71,7 @@ def fmu(
     from shipcosim.temporary import temporary_folder
 
     reading = Reading(
-        parameters=parameters or [], components=parsed_components(components or ()), strict=strict
+        parameters=parameters or [], components=parsed_components(components), strict=strict
     )
     keys = {} if step_size is None else {"step_size": step_size}
     system, scenario, _ = system_and_scenario(what, reading, keys, needs_end=False)
@@ -196,7 +196,7 @@ def _systems(
     from shipcosim.cli.requests import parsed_components
 
     parameters, components, fmus, strict = options
-    given = parsed_components(components or ())
+    given = parsed_components(components)
     systems = [_system_and_scenario(what, options, times)]
     for swap in swaps or ():
         taken = given | parsed_components([swap], "--swap")
@@ -218,7 +218,7 @@ def _system_and_scenario(
     from shipcosim.cli.requests import parsed_components
 
     parameters, components, fmus, strict = options
-    swapped = parsed_components(components or ())
+    swapped = parsed_components(components)
     reading = Reading(
         parameters=parameters or [], components=swapped, fmus=fmus or [], strict=strict
     )

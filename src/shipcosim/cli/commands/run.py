@@ -90,8 +90,8 @@ def run(
         "parameters": parameters or [],
         "fmus": fmus or [],
         "record": record or (),
-        "set": parsed_settings(settings or []),
-        "components": parsed_components(components or ()),
+        "set": parsed_settings(settings),
+        "components": parsed_components(components),
     }
     options |= {"strict": strict, "engine": engine, "order": order, "resume": resume}
     options |= {"stop_time": stop_time, "step_size": step_size, "until": until}

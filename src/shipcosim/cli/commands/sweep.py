@@ -95,7 +95,7 @@ def sweep(
     from shipcosim.cli.studies.runs import serve as show
     from shipcosim.cli.studies.sweeping import print_study, sweep_with_progress
 
-    planned = PlannedStudy(study, out=out, engine=engine, set=parsed_settings(settings or []))
+    planned = PlannedStudy(study, out=out, engine=engine, set=parsed_settings(settings))
     if number is not None:
         again = planned.run_again(
             number, lambda prepared, folder: run_with_progress(prepared, folder, force=True)

@@ -313,11 +313,12 @@ def _force(unit: DrawnThruster, columns: _Columns) -> list[str] | None:
         if None not in put_out:
             return [str(name) for name in put_out]
     # Else the thrust along its direction.
-    angle = None if unit.azimuth is None else in_unit(columns.table, unit.azimuth, "rad")
+    if unit.azimuth is None:
+        return None
+    angle = in_unit(columns.table, unit.azimuth, "rad")
     thrust = in_unit(columns.table, unit.thrust, "kN")
     if angle is None or thrust is None:
         return None
-    assert unit.azimuth is not None
     recipe = Recipe(unit.thrust, *columns.conversion_of(unit.thrust, "kN"), unit.azimuth)
     return [
         columns.put(

@@ -81,13 +81,12 @@ def file_names(fmu: FmuDescription) -> list[str]:
 
 def _file(fmu: FmuDescription, folder: Path, findings: Findings) -> Path | None:
     # Next to the FMU, then next to the system structure.
-    wanted, *others = file_names(fmu)
-    places = [fmu.path.parent, Path(folder)]
-    for name in (wanted, *others):
-        for place in places:
+    names = file_names(fmu)
+    for name in names:
+        for place in (fmu.path.parent, folder):
             if "/" not in name and (place / name).is_file():
-                if name != wanted:
-                    message = f"libcosim looks for {wanted} instead, by the model's name."
+                if name != names[0]:
+                    message = f"libcosim looks for {names[0]} instead, by the model's name."
                     findings.remark(str(place / name), message, "Rename the file.")
                 return place / name
     return None

@@ -149,11 +149,8 @@ def _connections(host: str, subject: Subject, system: System) -> tuple[str, Syst
         if ends in links and not connection.initial:
             # The same factor and offset, without a mapping: no deviation.
             (factor, offset), _ = links[ends]
-            same = (factor, offset) == (
-                connection.factor,
-                connection.offset,
-            ) and connection.mapping is None
-            if not same:
+            ours = (connection.factor, connection.offset)
+            if (factor, offset) != ours or connection.mapping is not None:
                 other.append(f"{name} is {_how(factor, offset, connection)}")
             taken.append(replace(connection, factor=factor, offset=offset, mapping=None))
         elif connection.source[0] is None or connection.target[0] is None:
@@ -169,11 +166,7 @@ def _connections(host: str, subject: Subject, system: System) -> tuple[str, Syst
 def _holds(place: str, lines: Container[str]) -> bool:
     """True if a connection's place is that of a transformation: in the same line or the next."""
     file, _, line = place.partition(": ")[0].rpartition(", line ")
-    return (
-        any(f"{file}, line {int(line) + more}" in lines for more in (0, 1))
-        if line.isdigit()
-        else False
-    )
+    return line.isdigit() and any(f"{file}, line {int(line) + more}" in lines for more in (0, 1))
 
 
 def _how(factor: float, offset: float, connection: Connection) -> str:

@@ -5,21 +5,21 @@ Each function takes a Subject and yields (place, description); an empty text: th
 
 from math import isclose
 
-from shipcosim.ssp.flatten.ports import Key
+from shipcosim.ssp.flatten.ports import Key, Port
 from shipcosim.ssp.portability.subject import Found, Subject, elements_of, types_of_2
+from shipcosim.ssp.read.parameters import Transformation
 from shipcosim.ssp.read.structure import label
 from shipcosim.ssp.xml.document import local
 
 
 def reversed_links(subject: Subject) -> Found:
     """A connection written from input to output."""
-    if subject.tree is not None:
-        # Compare with the direction in which values flow.
-        wires = {(wire.source, wire.target) for wire in subject.tree.wires}
-        for link, _, _ in subject.links:
-            start = Key((link.start_element or "",), link.start_connector)
-            if (Key((link.end_element or "",), link.end_connector), start) in wires:
-                yield link.place, ""
+    # Compare with the direction in which values flow.
+    wires = {(wire.source, wire.target) for wire in subject.tree.wires}
+    for link, _, _ in subject.links:
+        start = Key((link.start_element or "",), link.start_connector)
+        if (Key((link.end_element or "",), link.end_connector), start) in wires:
+            yield link.place, ""
 
 
 def undeclared_connectors(subject: Subject) -> Found:
@@ -66,23 +66,20 @@ def enumeration_connectors(subject: Subject) -> Found:
 def different_types(subject: Subject) -> Found:
     """A connection between different types."""
     for link, start, end in subject.links:
-        # Types as the FMUs declare them.
-        kinds = [
-            port.variable.kind
-            for port in (start, end)
-            if port is not None and port.variable is not None
-        ]
+        kinds = _kinds(start, end)
         if len(kinds) == 2 and kinds[0] != kinds[1]:
             yield link.place, f"a connection between {kinds[0]} and {kinds[1]}"
+
+
+def _kinds(*ports: Port | None) -> list[str]:
+    """Types of ports as the FMUs declare them, where they do."""
+    return [port.variable.kind for port in ports if port is not None and port.variable is not None]
 
 
 def enumeration_connections(subject: Subject) -> Found:
     """A connection of enumerations."""
     for link, *ports in subject.links:
-        if any(
-            p is not None and p.variable is not None and p.variable.kind == "Enumeration"
-            for p in ports
-        ):
+        if "Enumeration" in _kinds(*ports):
             yield link.place, ""
 
 
@@ -116,11 +113,10 @@ def unit_conversions(subject: Subject) -> Found:
     for link, _, _ in subject.links:
         start, end = link.ends
         whole = flat.get((start, end)) or flat.get((end, start))
-        how = link.transformation
-        if whole is None or (how is not None and how.kind != "Linear"):
+        how = link.transformation or Transformation()
+        if whole is None or how.kind != "Linear":
             continue
-        written = (how.factor, how.offset) if how is not None else (1.0, 0.0)
-        pairs = zip(written, (whole.factor, whole.offset), strict=True)
+        pairs = zip((how.factor, how.offset), (whole.factor, whole.offset), strict=True)
         if not all(isclose(first, other, rel_tol=1e-12) for first, other in pairs):
             yield (
                 link.place,

@@ -115,12 +115,12 @@ def _stated(subject: Subject) -> Iterator[str]:
 
 def osp_annotations(subject: Subject) -> Found:
     """OSP's algorithm with another prefix than osp:, or with the prefix declared on itself."""
-    for step in _osp_steps(subject) if subject.package is not None else ():
+    if subject.package is None:
+        return
+    for step in _osp_steps(subject):
         # The prefix must be declared further up, and be exactly osp:.
         algorithm = step.getparent()
-        declares = subject.package and DECLARING.search(
-            (subject.package.folder / subject.package.ssd).read_bytes()
-        )
+        declares = DECLARING.search((subject.package.folder / subject.package.ssd).read_bytes())
         if declares or algorithm.attrib or algorithm.prefix != "osp" or step.prefix != "osp":
             yield subject.document.place(algorithm), ""
 

@@ -1,7 +1,7 @@
 """Input to the portability checks: an SSP as written in its outermost file, and as resolved."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import lxml.etree as etree
@@ -44,15 +44,15 @@ class Subject:
         What an SSD says; None for an OspSystemStructure.xml.
     package : Package or None
         An SSP's files.
-    tree : Hierarchy or None
-        An SSP's ports and wires.
+    tree : Hierarchy
+        An SSP's ports and wires; empty for an OspSystemStructure.xml.
     """
 
     document: Document
     system: System
     structure: Structure | None = None
     package: Package | None = None
-    tree: Hierarchy | None = None
+    tree: Hierarchy = field(default_factory=lambda: Hierarchy(Findings()))
 
     @property
     def is_ssp(self) -> bool:
@@ -85,18 +85,14 @@ class Subject:
         return links
 
     def _port(self, element: str, connector: str) -> Port | None:
-        return None if self.tree is None else self.tree.ports.get(Key((element,), connector))
+        return self.tree.ports.get(Key((element,), connector))
 
     @cached_property
     def sets(self) -> list[tuple[ComponentElement, FmuDescription | None, Binding, ParameterSet]]:
         """(component element, FMU, binding, ParameterSet) of sets bound to components."""
         sets = []
         for part in self.components:
-            _, fmu = (
-                (None, None)
-                if self.tree is None
-                else self.tree.components.get((part.name,), (None, None))
-            )
+            _, fmu = self.tree.components.get((part.name,), (None, None))
             for binding in part.bindings:
                 document = binding.values.inline or self._file(binding)
                 if document is not None:
