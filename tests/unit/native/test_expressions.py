@@ -26,6 +26,12 @@ def merged_text(*lines):
         ("v1 < v2", "const int v9 = v8 & v3;", "const int v9 = (v1 < v2) & v3;"),
         ("v1 < v2", "const double v9 = v8 ? v1 : v2;", "const double v9 = (v1 < v2) ? v1 : v2;"),
         ("v1 < v2", "if (v8) {", "if (v1 < v2) {"),
+        (
+            "(v1 < v2) | (v2 != v3)",
+            "const int v9 = v8 & v4;",
+            "const int v9 = ((v1 < v2) | (v2 != v3)) & v4;",
+        ),
+        ("(-2.0) * v1", "const double v9 = v8 * v2;", "const double v9 = (-2.0) * v1 * v2;"),
         ("v1 + v2", "const int v9 = v8 < v3;", "const int v9 = v1 + v2 < v3;"),
     ],
 )
