@@ -145,21 +145,22 @@ def make(name: str, origin: Path | None, answers: Answers | None, force: bool) -
         stage = Path(folder)
         systems = make_systems(named, stage / "ssp", library.fmus())
         files = {f"ssp/{path.name}": path for path in systems}
-        has_dp = len(systems) > 1
-        scenario = _scenario(named, has_dp)
-        (stage / "scenario.toml").write_text(scenario, encoding="utf-8")
-        files[f"scenarios/{name}.toml"] = stage / "scenario.toml"
-        if has_dp:
-            (stage / "study.toml").write_text(_study(named), encoding="utf-8")
-            files[f"studies/{name}_failures.toml"] = stage / "study.toml"
+        kinds = [path.name.rpartition("_")[2] for path in systems]
+        texts = {f"scenarios/{name}.toml": _scenario(named, "dp" in kinds)}
+        if "dp" in kinds:
+            texts[f"studies/{name}_failures.toml"] = _study(named)
+        if "trials" in kinds:
+            texts |= _trials(named)
         again = source.resolve() == target.resolve() and origin is not None
         if not again:
-            (stage / "ship.toml").write_text(text, encoding="utf-8")
-            files[f"ships/{name}/ship.toml"] = stage / "ship.toml"
+            texts[f"ships/{name}/ship.toml"] = text
             files |= {f"ships/{name}/{table}": source.parent / table for table in _tables(ship)}
+        for number, (path, content) in enumerate(texts.items()):
+            files[path] = stage / f"{number}.toml"
+            files[path].write_text(content, encoding="utf-8")
         written = _put(project, files, force or again)
     remarks = [problem for problem in problems if problem.severity == "remark"]
-    _say(written, remarks, name, has_dp)
+    _say(written, remarks, name, kinds)
 
 
 def _tables(ship: Described) -> list[str]:
@@ -213,6 +214,26 @@ def _study(ship: Described) -> str:
     return FAILURES.format(name=ship.name, cases="\n".join(cases))
 
 
+def _trials(ship: Described) -> dict[str, str]:
+    """Scenarios of a turning circle and a zig-zag, by path, with the limits of IMO's MSC.137(76)."""
+    length = ship.form.length
+    passing = length / ship.form.speed  # s, in which she goes her length
+    circle = CIRCLE.format(
+        name=ship.name, until=35.0 * passing, advance=4.5 * length, diameter=5.0 * length
+    )
+    # A slow ship may overshoot further.
+    zig_zag = ZIG_ZAG.format(
+        name=ship.name,
+        until=45.0 * passing,
+        first=min(max(5.0 + 0.5 * passing, 10.0), 20.0),
+        second=min(max(17.5 + 0.75 * passing, 25.0), 40.0),
+    )
+    return {
+        f"scenarios/{ship.name}_circle.toml": circle,
+        f"scenarios/{ship.name}_zig_zag.toml": zig_zag,
+    }
+
+
 def _half_ahead(ship: Described) -> list[tuple[str, float]]:
     """Inputs that make her sail ahead, if the limits of her thrusters are known."""
     from shipcosim.ships.file import number
@@ -227,19 +248,24 @@ def _half_ahead(ship: Described) -> list[tuple[str, float]]:
     return inputs
 
 
-def _say(written: list[Path], remarks: list[Problem], name: str, has_dp: bool) -> None:
+def _say(written: list[Path], remarks: list[Problem], name: str, kinds: list[str]) -> None:
     for path in written:
         say(shown_path(path))
     print_problems(remarks)
-    dp = {
-        f"shipcosim capability {name}_dp": "the weather that her thrusters balance",
-        f"shipcosim sweep studies/{name}_failures.toml": "each thruster lost, wind from all sides",
-    }
+    has_dp = "dp" in kinds
+    more = {}
+    if has_dp:
+        more = {
+            f"shipcosim capability {name}_dp": "the weather that her thrusters balance",
+            f"shipcosim sweep studies/{name}_failures.toml": "each thruster lost, wind from all sides",
+        }
+    if "trials" in kinds:
+        more[f"shipcosim run {name}_circle"] = "her turning circle beside IMO's limits"
     say_next(
         {
             f"shipcosim run {name}": "she holds her place in wind" if has_dp else "she goes ahead",
             f"shipcosim check ships/{name}/ship.toml": "what is estimated, what cannot be",
-            **(dp if has_dp else {}),
+            **more,
             f"shipcosim new ship {name} --from ships/{name}/ship.toml --force": "makes the systems again",
         }
     )
@@ -309,5 +335,53 @@ output_interval = 0.5
 [[expect]]
 signal    = "vessel.u"
 at_least  = 0.01                   # m/s
+statistic = "final"
+"""
+CIRCLE = """\
+description = "{name} turns in a circle, 35 deg to starboard, at full ahead"
+system      = "{name}_trials"
+stop_time   = {until:.0f}
+step_size   = 0.05
+output_interval = 0.5
+
+[[expect]]                         # MSC.137(76), for ships of 100 m and more: 4.5 lengths
+signal    = "trial.advance_90"
+at_most   = {advance:.4g}                   # m
+statistic = "final"
+
+[[expect]]                         # 5 lengths
+signal    = "trial.tactical_diameter"
+at_most   = {diameter:.4g}                   # m
+statistic = "final"
+
+[[expect]]                         # she has turned so far, else they are not read off yet
+signal    = "trial.turned"
+at_least  = "180 deg"
+statistic = "final"
+"""
+ZIG_ZAG = """\
+description = "{name} in a zig-zag 10/10, first to starboard, at full ahead"
+system      = "{name}_trials"
+stop_time   = {until:.0f}
+step_size   = 0.05
+output_interval = 0.5
+
+[set]
+"trial.helm"  = "10 deg"
+"trial.check" = "10 deg"
+
+[[expect]]                         # MSC.137(76), for ships of 100 m and more, by length over speed
+signal    = "trial.overshoot_1"
+at_most   = "{first:.3g} deg"
+statistic = "final"
+
+[[expect]]
+signal    = "trial.overshoot_2"
+at_most   = "{second:.3g} deg"
+statistic = "final"
+
+[[expect]]                         # she has swung to both sides
+signal    = "trial.overshoot_2"
+at_least  = "0.1 deg"
 statistic = "final"
 """

@@ -1,7 +1,8 @@
-"""Systems of a described ship: open, for replays and diagnosis, and in a closed DP loop."""
+"""Systems of a described ship: open, for replays and diagnosis; in a closed DP loop; in steering trials."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.ships.control import COMPONENTS, dp_entries, units_for_dp, why_no_dp
@@ -18,6 +19,7 @@ LONG_RUN = 600.0
 SAID = {
     "open": "without control, thrusters and weather from outside, for replays",
     "dp": "in a closed DP loop, gains by rule",
+    "trials": "in steering trials, turning circles and zig-zags, on calm water",
 }
 """Kind of system: what it is."""
 WEATHER = ("wind_north", "wind_east", "current_north", "current_east")
@@ -51,7 +53,7 @@ def make_systems(
     out: AnyPath,
     fmus: Iterable[AnyPath],
 ) -> list[Path]:
-    """Parameter sets and systems of a ship: ``NAME_open``, and ``NAME_dp`` where her thrusters allow a DP.
+    """Parameter sets and systems of a ship: ``NAME_open``, and where her thrusters allow them ``NAME_dp``, ``NAME_trials``.
 
     Parameters
     ----------
@@ -75,8 +77,12 @@ def make_systems(
     described = ship if isinstance(ship, Described) else describe(Path(ship))
     folders = [Path(folder) for folder in fmus]
     made = []
-    # Every ship gets an open system; a DP system only if her thrusters allow it.
-    kinds = ["open"] if why_no_dp(described) else ["open", "dp"]
+    # Every ship gets an open system; a DP system and steering trials only if her thrusters allow them.
+    kinds = ["open"]
+    if not why_no_dp(described):
+        kinds.append("dp")
+    if steering_units(described):
+        kinds.append("trials")
     for kind in kinds:
         name = f"{described.name}_{kind}"
         entries = described.entries | (dp_entries(described) if kind == "dp" else {})
@@ -84,14 +90,16 @@ def make_systems(
         folder = Path(out) / name
         # Values of all components; estimates included.
         values = list(parameter_values(_as_ship(described, entries), _kinds(described, kind)))
-        # In an open system thrusters follow measured inputs instead of commands.
-        if kind == "open":
+        # Without a DP thrusters follow measured inputs instead of commands.
+        if kind != "dp":
             follow = "follows the inputs of the system, not a command"
             values += [
                 parameter(f"{u.name}.replay", True, None, follow)
                 for u in described.units
                 if u.fmu in REPLAYED
             ]
+        if kind == "trials":
+            values += _trial_values(described)
         # Write the structure, then the values, then bind them: the check needs both.
         system.write(folder, fmus=False)
         write_ssv(folder / "resources" / f"{described.name}.ssv", described.name, values)
@@ -123,7 +131,7 @@ def structure(ship: Described, kind: str, fmus: Iterable[Path]) -> SystemStructu
     ----------
     ship : Described
     kind : str
-        ``"open"`` or ``"dp"``.
+        ``"open"``, ``"dp"`` or ``"trials"``.
     fmus : iterable of Path
         Folders with the FMUs.
 
@@ -138,12 +146,13 @@ def structure(ship: Described, kind: str, fmus: Iterable[Path]) -> SystemStructu
     components = {"environment": "environment", "vessel": "vessel"} | {
         unit.name: unit.fmu for unit in ship.units
     }
-    components |= COMPONENTS if kind == "dp" else {}
+    components |= {"dp": COMPONENTS, "trials": {"trial": "steering_trial"}}.get(kind, {})
     with system.changes():
         for name, fmu in components.items():
             system.add_component(name, _fmu(fmu, folders))
-    # Wires of ship and weather, and those of the loop.
-    wires = [*_around(ship.units), *(_loop_wires(ship) if kind == "dp" else ())]
+    # Wires of ship and weather, and those of the loop or of the trials.
+    more = {"dp": _loop_wires, "trials": _trial_wires}.get(kind, lambda _: ())
+    wires = [*_around(ship.units), *more(ship)]
     with system.changes():
         for source, target in wires:
             system.connect(source, target)
@@ -241,6 +250,31 @@ def _loop_wires(ship: Described) -> Iterable[tuple[str, str]]:
             yield f"allocator.azimuth_cmd_{number}", f"{unit.name}.azimuth_cmd"
         yield f"{unit.name}.available", f"allocator.available_{number}"
         yield f"{unit.name}.available", f"consequences.available_{number}"
+
+
+def steering_units(ship: Described) -> list[ShipThruster]:
+    """Thrusters that steer her under way: rudders behind propellers, and azimuths at the stern."""
+    return [unit for unit in ship.units if unit.kind in ("azimuth", "rudder") and unit.x < 0.0]
+
+
+def _trial_wires(ship: Described) -> Iterable[tuple[str, str]]:
+    """Connections of the steering trials: her motion to the trial, its orders to the units that steer."""
+    yield from ((f"vessel.{name}", f"trial.{name}") for name in ("x", "y", "psi"))
+    for unit in steering_units(ship):
+        yield "trial.rpm", f"{unit.name}.rpm_in"
+        yield "trial.azimuth", f"{unit.name}.azimuth_in"
+
+
+def _trial_values(ship: Described) -> Iterable[Any]:
+    """Start values of the steering trials: full ahead at the service speed, ten lengths straight ahead first."""
+    unit = steering_units(ship)[0]
+    speed = ship.form.speed
+    yield parameter("vessel.u_start", speed, "m/s", "service speed")
+    yield parameter("trial.order_time", 10.0 * ship.form.length / speed, "s", "ten lengths")
+    if unit.screw:
+        yield parameter("trial.shaft_rpm", unit.screw.rpm, "rpm", "full ahead")
+    if unit.azimuth_rate:
+        yield parameter("trial.helm_rate", unit.azimuth_rate, "rad/s", "the azimuth's turning rate")
 
 
 def _kinds(ship: Described, kind: str) -> dict[str, tuple[type, ...]]:

@@ -138,7 +138,7 @@ def test_kinds_of_ship_are_all_listed_and_those_with_a_comma_are_quoted(project)
 def test_what_comes_next_stands_in_one_column(project):
     made = told("new", "ship", "tern", *ASKED, "--yes").stdout
     lines = made.partition("Go on with:\n")[2].splitlines()
-    assert len(lines) == 5 and len({line.rindex("   ") for line in lines}) == 1
+    assert len(lines) == 6 and len({line.rindex("   ") for line in lines}) == 1
 
 
 @pytest.mark.parametrize("propulsion", ["azimuths", "screws"])
@@ -149,6 +149,13 @@ def test_a_new_ship_has_a_capability_and_a_study_of_failures(project, propulsion
     intact, lost = numbers[0], numbers[-1]
     assert intact.min() >= 1 and intact[0] >= 4  # from ahead the propellers push
     assert (lost <= intact).all() and lost[0] == 0
+
+
+def test_a_new_ship_with_a_rudder_sails_a_turning_circle(project):
+    assert told("new", "ship", "gull", *ASKED, "--propulsion", "rudder", "--yes").exit_code == 0
+    assert told("check", "scenarios/gull_zig_zag.toml").exit_code == 0
+    circle = told("run", "gull_circle")
+    assert circle.exit_code == 0 and "trial.tactical_diameter" in circle.stdout, circle.output
 
 
 def test_a_file_beside_the_ship_file_replaces_an_estimate_of_the_capability(project):

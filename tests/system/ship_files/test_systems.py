@@ -33,7 +33,7 @@ def settled(folder, fmus):
 
 def test_a_ship_with_azimuths_and_a_tunnel_holds_her_place(written, fmus, tmp_path):
     made = make_systems(written(SUPPLY), tmp_path / "ssp", fmus)
-    assert [folder.name for folder in made] == ["tern_open", "tern_dp"]
+    assert [folder.name for folder in made] == ["tern_open", "tern_dp", "tern_trials"]
     assert (
         sc.read(made[1], fmus=fmus).description == "supply ship: in a closed DP loop, gains by rule"
     )
@@ -53,11 +53,33 @@ def test_two_screws_and_two_mapped_tunnels_hold_a_boat(written, fmus, tmp_path):
 
 
 def test_a_ship_with_a_rudder_has_an_open_system_that_turns_to_the_rudder(written, fmus, tmp_path):
-    (folder,) = make_systems(written(COASTER), tmp_path / "ssp", fmus)
+    folder = make_systems(written(COASTER), tmp_path / "ssp", fmus)[0]
     inputs = {"propeller_rpm": 120.0, "propeller_azimuth": 20.0, "vessel.u_start": 5.0}
     run = sc.simulate(read_system(folder, fmus=fmus), stop_time=60.0, step_size=0.1, set=inputs)
     assert (
         np.degrees(run["vessel.psi"].values[-1]) < -5.0 and 2.0 < run["vessel.u"].values[-1] < 7.0
+    )
+
+
+@pytest.mark.parametrize("craft", [SUPPLY, COASTER])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_steering_trials_turn_to_the_side_of_the_helm(craft, side, written, fmus, tmp_path):
+    """By rudder and by azimuths; a ship that is alike on both sides does the same to either."""
+    system = read_system(make_systems(written(craft), tmp_path / "ssp", fmus)[-1], fmus=fmus)
+    length = system.components["vessel"].start_value("length")
+    begun = round(system.components["trial"].start_value("order_time"))
+    helm = {"trial.helm": side * np.radians(35.0), "trial.order_time": float(begun)}
+    run = sc.simulate(system, stop_time=begun + 250.0, step_size=0.1, set=helm)
+    late = run.isel(time=-1)
+    assert 1.0 * length < late["trial.advance_90"] < 6.0 * length
+    # She sailed north until the order: what is read off stands in her track where she has turned so far.
+    turned = side * run["trial.turned"].values
+    quarter, half = (int(np.argmax(turned >= angle)) for angle in (0.5 * np.pi, np.pi))
+    ordered = run.sel(time=begun)
+    way = run["vessel.x"].values[quarter] - float(ordered["vessel.x"])
+    assert late["trial.advance_90"] == pytest.approx(way, abs=1.0)
+    assert late["trial.tactical_diameter"] == pytest.approx(
+        side * run["vessel.y"].values[half], abs=1.0
     )
 
 
@@ -72,7 +94,7 @@ def test_open_systems_follow_what_they_are_given(written, fmus, tmp_path):
 @pytest.mark.parametrize("name", CRAFT)
 def test_the_system_of_a_craft_is_what_her_file_makes(name, root, fmus, tmp_path):
     """Components, wires and numbers of ssp/NAME_open; its numbers are made of the same file."""
-    (folder,) = make_systems(root / "ssp" / "ships" / name, tmp_path, fmus)
+    folder = make_systems(root / "ssp" / "ships" / name, tmp_path, fmus)[0]
     made, committed = (sc.read(path, fmus=fmus) for path in (folder, root / "ssp" / f"{name}_open"))
     assert set(made.connections) == set(committed.connections)
     for system in (made, committed):

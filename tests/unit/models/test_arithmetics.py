@@ -38,6 +38,7 @@ from shipcosim.models.control import (
     observer,
     position_voting,
     reference,
+    steering_trial,
     voting,
     wave_filter,
 )
@@ -261,6 +262,10 @@ def of_failing_thruster(*row):
 
 def of_reference(*row):
     return reference.ReferenceState(*row[:12]), row[12:15]
+
+
+def of_trial(*row):
+    return steering_trial.TrialState(*row[:13]), 2.0, row[13:], 0.5
 
 
 def of_observer(*row):
@@ -740,6 +745,18 @@ CASES = [
         LOOP,
         of_reference,
         dict(h=0.05, parameters=replace(parameters(reference.ReferenceParameters), speed_max=0.3)),
+    ),
+    *(
+        Case(
+            steering_trial.step,
+            [
+                (1.0, -2.0, 3.0, 3.0, 0.1, 0.3, 1.0, 1.0, 5.0, 1.0, 1.0, 0.1, 0.0, 4.0, 1.0, -3.0),
+                (0.0, 0.0, 0.4, 2.4, 0.1, 2.0, -1.0, 2.0, 5.0, 1.0, 1.0, 0.1, 0.2, 4.0, 1.0, 2.5),
+            ],
+            of_trial,
+            dict(parameters=steering_trial.SteeringTrialParameters(check=check, order_time=begun)),
+        )
+        for check, begun in ((0.0, 0.0), (0.2, 1.0), (0.2, 9.0))
     ),
     Case(
         wave_filter.filter_at,
