@@ -18,6 +18,7 @@ from shipcosim.ssp.flatten.swapped import WHERE
 from shipcosim.ssp.fmu.description import Variable
 from shipcosim.ssp.xml.document import Findings
 from shipcosim.ssp.xml.values import Value
+from shipcosim.units import Unit
 
 SHORT = 2  # characters of a name of which a slip and another name look alike
 
@@ -69,6 +70,8 @@ class Settings:
         ] = {}  # of components that run another FMU: parameters which it does not have
         # Values for elements that do not exist, by file and element: one remark for all of them.
         self.astray: dict[tuple[str, str], list[str]] = defaultdict(list)
+        # Values with a unit for ports without one, "NAME in UNIT" by file and place: one remark for each file.
+        self.of_unknown_unit: dict[str, dict[str, str]] = defaultdict(dict)
 
     def _names(self) -> dict[str, list[Key]]:
         """Ports by full name; where element names have dots a name may mean several ports."""
@@ -98,6 +101,10 @@ class Settings:
             message = f"{self.tree.swapped[name].name} takes its place and has no {', '.join(dict.fromkeys(unused))}."
             self.findings.remark(f"{WHERE}, {name}", message, "These values are not used.")
         self._remark_left_out()
+        for taken in self.of_unknown_unit.values():
+            numbers = shortened(taken.values())
+            message = f"Taken as numbers, since no unit is stated where they go: {numbers}."
+            self.findings.remark(next(iter(taken)), message, "State it in the FMU or connector.")
         for (_, element), places in self.astray.items():
             what = "the value is" if len(places) == 1 else f"its {len(places)} values are"
             message = f"There is no element '{element}' in this system; {what} not used."
@@ -154,7 +161,7 @@ class Settings:
             return ()
         # The outermost system keeps the value itself, as the start of its input.
         if key.path == () and port.owner == "system":
-            self.system_start[key.name] = flow.in_unit(port.unit)(value)
+            self.system_start[key.name] = self._in_unit(flow, port.unit, key, place)(value)
         return [(value, flow, wire, wire.target) for wire in self.outgoing[key]]
 
     def _port(self, key: Key) -> Port:
@@ -183,6 +190,12 @@ class Settings:
         step = replace(step, transformation=None)
         return port.items.get(name), replace(flow, items=port.items), step
 
+    def _in_unit(self, flow: Flow, unit: Unit | None, key: Key, place: str) -> Flow:
+        """The value's way in the unit of its port; a port without one is noted, since any number may be meant."""
+        if unit is None and flow.unit is not None and flow.unit.name not in ("1", "-"):
+            self.of_unknown_unit[place.partition(", line")[0]][place] = f"{key} in {flow.unit.name}"
+        return flow.in_unit(unit)
+
     def _start(self, value: Value, flow: Flow, key: Key, port: Port, place: str) -> None:
         variable = port.variable
         if variable is None:
@@ -195,7 +208,7 @@ class Settings:
             self.findings.error(place, message, "Set parameters and inputs.")
             return
         # Convert to the FMU's own unit, then check its bounds.
-        convert = flow.in_unit(port.variable_unit or port.unit)
+        convert = self._in_unit(flow, port.variable_unit or port.unit, key, place)
         if check_bounds(convert(value), variable, place, str(key), self.findings):
             # In the order of application: of two names of one variable the last one set holds.
             earlier = self.start[key.path].pop(key.name, None)

@@ -224,6 +224,16 @@ def test_two_values_from_one_place_for_one_parameter_are_a_remark(ship, real):
     assert start(ship) == {"mass": 2.0}
 
 
+def test_a_value_in_a_unit_for_a_variable_that_has_none_is_a_remark(ship, real):
+    ship.fmu("scale", "parameter m Real", "parameter g Real")
+    values = real("scale.m", "3", "km") + real("scale.g", "4", "1")
+    ship.ssd(ship.component("scale", "scale"), head=inline(values))
+    system = ship.read()
+    assert system.components["scale"].start == {"m": 3.0, "g": 4.0}
+    (remark,) = (str(r) for r in system.remarks if "no unit" in r.found)
+    assert "since no unit is stated where they go: scale.m in km." in remark
+
+
 def test_a_value_that_a_connection_replaces_is_a_remark(ship, real):
     ship.fmu("scale", "calculatedParameter m Real m")
     parts = ship.component("scale", "scale", "calculatedParameter m")
