@@ -17,7 +17,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     COMMANDS_BEFORE,
     HUBER,
 )
-from shipcosim.diagnose.numerics import least_squares, running_sums
+from shipcosim.diagnose.numerics import least_squares, normal_size, running_sums
 
 
 def causal_support(
@@ -123,9 +123,7 @@ def _gained(left: np.ndarray, columns: np.ndarray) -> float:
     unit = columns / np.maximum(size, 1e-300)
     # Residuals of the least-squares fit with coefficients that are not negative.
     after = left - unit @ least_squares(unit, left)
-    bound = (
-        HUBER * 1.4826 * np.median(np.abs(after)) + 1e-300
-    )  # so that single jumps of a channel do not decide
+    bound = HUBER * normal_size(after) + 1e-300  # so that single jumps of a channel do not decide
 
     def loss(series):
         far = np.abs(series)

@@ -27,6 +27,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     THRUSTER_WIDTH,
     WAY_WIDTH,
 )
+from shipcosim.diagnose.numerics import normal_size
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.smoothing import froude_time
 
@@ -267,10 +268,7 @@ def _refined(measured, late, positive, prior, filter_):
         # Standard deviation of the innovations, outliers clipped at a multiple of the robust one.
         left = errors[0] - past @ filter_
         spread = (
-            float(
-                np.sqrt(np.minimum(left**2, (HUBER * 1.4826 * np.median(np.abs(left))) ** 2).mean())
-            )
-            + 1e-300
+            float(np.sqrt(np.minimum(left**2, (HUBER * normal_size(left)) ** 2).mean())) + 1e-300
         )
         # Gaussian log-likelihood with the prior of the coefficients; rounds need not improve it.
         likelihood = float(-left.size * np.log(spread) - 0.5 * ((coefficients / prior) ** 2).sum())

@@ -17,7 +17,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     STEADY,
 )
 from shipcosim.diagnose.finding import Discrepancy
-from shipcosim.diagnose.numerics import root_mean_square
+from shipcosim.diagnose.numerics import noise_by_differences, normal_size, root_mean_square
 from shipcosim.diagnose.ship.model import ShipModel
 
 FORCES = {"surge": "surge force", "sway": "side force", "yaw": "yaw moment"}
@@ -182,11 +182,8 @@ def _missing(axis: Axis, commanded: Commanded, noise: float, predicted: float) -
 
 def _noise(measured: MeasuredForce, model: ShipModel) -> np.ndarray:
     """Part of the needed load that comes from white noise of the velocities, (3,) array: by their third differences."""
-    # White noise from third differences, by the median: their variance is 20 times that of the
-    # noise.
     kernel = measured.kernel
-    third = np.asarray(np.diff(measured.velocity, 3, axis=1), float)
-    white = np.sqrt(np.median(third**2, axis=1) / 0.455 / 20.0)
+    white = normal_size(noise_by_differences(np.asarray(measured.velocity, float), 3), axis=1)
     # Derivative by a Gaussian kernel of n rows divides white noise by h sqrt(4 sqrt(pi) n^3);
     # inertia turns it into a load.
     rows = kernel.width / kernel.step

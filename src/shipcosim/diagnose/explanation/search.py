@@ -99,8 +99,9 @@ def explain(
             first = _LIKELY if stage == 0 else _LIKELY // 2
             # A number far outside its tolerance suggests a cause that the linear screening
             # underrates.
-            strained = _strained(fit, STRAIN)
-            far = _components(path for path in _strained(fit, FAR) if not ShipModel.is_of_day(path))
+            off = _in_tolerances(fit)
+            strained = {path for path in off if off[path] > STRAIN}
+            far = _components(p for p in off if off[p] > FAR and not ShipModel.is_of_day(p))
             for place, (gain, hypothesis, values) in enumerate(gains):
                 is_suspect = strained & hypothesis.paths or far & _components(hypothesis.paths)
                 if (place >= first or gain < least) and not is_suspect:
@@ -134,8 +135,8 @@ def _components(paths: Iterable[str]) -> set[str]:
     return {path.rpartition(".")[0] for path in paths}
 
 
-def _strained(fit: Fit, most: float) -> set[str]:
-    """Parameters estimated more tolerances off than some; the linearisation may fail there, as for a lag."""
+def _in_tolerances(fit: Fit) -> dict[str, float]:
+    """How many tolerances the estimate of each parameter is off; far off the linearisation may fail, as for a lag."""
     off = defaultdict(float)
     tolerated = defaultdict(float)
     # Sum the shifts of all columns that move a number, and the variance of their tolerances.
@@ -143,7 +144,7 @@ def _strained(fit: Fit, most: float) -> set[str]:
         for path, size in column.changes.items():
             off[path] += theta * size
             tolerated[path] += size**2
-    return {path for path, variance in tolerated.items() if off[path] ** 2 > most**2 * variance}
+    return {path: abs(off[path]) / tolerated[path] ** 0.5 for path in off if tolerated[path]}
 
 
 def at_first_sight(problem: IdentificationProblem) -> float:

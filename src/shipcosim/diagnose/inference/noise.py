@@ -7,6 +7,7 @@ import numpy as np
 from shipcosim.diagnose.inference.innovations import Noise, log_likelihoods, oscillation
 from shipcosim.diagnose.inference.linearisation import Linear
 from shipcosim.diagnose.inference.parts import InParts, explained
+from shipcosim.diagnose.numerics import noise_by_differences, normal_size
 from shipcosim.diagnose.ship.inputs import Record
 
 _GROUPS = (
@@ -47,11 +48,10 @@ def first_noise(record: Record, length: float) -> Noise:
     -------
     Noise
     """
-    # Third differences remove the motion; they have 20 times the variance of white noise (1 + 9 + 9
-    # + 1). The median is robust: that of a squared normal variable is 0.455 of its variance.
-    third = np.diff(record.measured, 3, axis=-2)
+    # Third differences remove the motion, and leave the noise.
+    third = noise_by_differences(record.measured, 3, axis=-2)
     silent = ~np.any(np.isfinite(third), axis=-2, keepdims=True)
-    white = np.sqrt(np.nanmedian(np.where(silent, 0.0, third**2), axis=-2) / 0.455 / 20.0)
+    white = normal_size(np.where(silent, 0.0, third), axis=-2)
     # A floor, as a rounded or constant channel would appear free of noise; a channel without
     # measurements gets 1.
     least = np.array([0.02, 0.02, 5e-4, 3e-3, 3e-3, 1e-4])

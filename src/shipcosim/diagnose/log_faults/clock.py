@@ -107,16 +107,21 @@ def _all_aspects_agree(problem, finding, of_ship):
     claimed = finding.parameters["rate"].estimate - 1.0
     # How far she comes at her speed, and how far she turns at her rate, hang on no force: both by themselves
     # must prefer this rate to a right clock. Forces that the model lacks, as of swell, look like a rate of speed.
-    weight = np.linalg.inv(covariance[np.ix_(_OF_MOTION, _OF_MOTION)])
-    mean = weight.sum(axis=0) @ rates[_OF_MOTION] / weight.sum()
+    mean, weight = _weighted_mean(rates[_OF_MOTION], covariance[np.ix_(_OF_MOTION, _OF_MOTION)])
     if 0.5 * weight.sum() * (mean**2 - (mean - claimed) ** 2) < MOTION_GAIN:
         return False
     # Chi-square test of equal rates, with some allowance for
     # model error; their common mean costs one degree of freedom.
     apart = ASPECT_APART * claimed
-    weight = np.linalg.inv(covariance + apart**2 * np.eye(len(ASPECTS)))
-    rest = rates - weight.sum(axis=0) @ rates / weight.sum()
+    mean, weight = _weighted_mean(rates, covariance + apart**2 * np.eye(len(ASPECTS)))
+    rest = rates - mean
     return survival(rest @ weight @ rest, len(ASPECTS) - 1) > ASPECT_CHANCE
+
+
+def _weighted_mean(rates, covariance):
+    """The mean of rates with a covariance that has the least variance, and the inverse of that covariance."""
+    weight = np.linalg.inv(covariance)
+    return weight.sum(axis=0) @ rates / weight.sum(), weight
 
 
 def with_rate(problem: IdentificationProblem, finding: Finding, log: xarray.Dataset) -> Finding:

@@ -13,6 +13,7 @@ from shipcosim.diagnose.numerics.root_mean_square import root_mean_square
 from shipcosim.diagnose.numerics.sequences import between, places, running_sums, runs
 from shipcosim.diagnose.numerics.splines import spline_integral
 from shipcosim.diagnose.numerics.tridiagonal import solve_tridiagonal
+from shipcosim.diagnose.numerics.white_noise import noise_by_differences, normal_size
 
 __all__ = [
     "Bands",
@@ -22,6 +23,8 @@ __all__ = [
     "least_squares",
     "log_survival",
     "moving_average",
+    "noise_by_differences",
+    "normal_size",
     "places",
     "quantile",
     "root_mean_square",

@@ -130,7 +130,7 @@ def trial_evidence(
     slopes = (features[1 : 1 + len(causes)] - features[1 + len(causes) : 1 + 2 * len(causes)]) / (
         2.0 * _PART
     )
-    of_ship_slopes = features[1 + 2 * len(causes) :] - features[0]
+    ship_slopes = features[1 + 2 * len(causes) :] - features[0]
     length = model.length
     # Covariance of features by how well trials repeat, independent between trials.
     noise = blocks([covariance_of(trial, length) for trial in trials])
@@ -142,7 +142,7 @@ def trial_evidence(
         measured,
         features[0],
         slopes,
-        of_ship_slopes,
+        ship_slopes,
         noise,
     )
     # How well they repeat is unknown: take the scale of largest evidence with up to two causes.

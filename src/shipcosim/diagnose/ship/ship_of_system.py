@@ -8,7 +8,7 @@ from shipcosim.diagnose.ship.environment import water_of
 from shipcosim.diagnose.ship.form import HullForm, ThrusterForm, WindForm, form_of
 from shipcosim.diagnose.ship.instruments import Instruments
 from shipcosim.diagnose.ship.model import OWN_THRUSTERS, ShipModel
-from shipcosim.diagnose.ship.slipstreams import Slipstreams, numbers_of
+from shipcosim.diagnose.ship.slipstreams import Slipstreams
 from shipcosim.diagnose.ship.third_party_fmu import part_of, problem_of, third_party_fmu_of
 from shipcosim.diagnose.ship.thrusters import fixed_of, neighbours_of, neighbours_placed
 from shipcosim.diagnose.ship.tolerances import tolerances_of
@@ -102,7 +102,15 @@ def _slipstreams(system: System, thrusters: list[str]) -> Slipstreams | None:
     for component in system.components.values():
         if not _holds(component, InteractionParameters):
             continue
-        numbers = numbers_of(system, component.name, thrusters)
+        # Each connection from its outputs `thrust_share_1`, ... to a thruster gives that one's number.
+        fed = {
+            c.target[0]: c.source[1] for c in system.connections if c.source[0] == component.name
+        }
+        numbers = {
+            name: int(fed[name].removeprefix("thrust_share_")) - 1
+            for name in thrusters
+            if name in fed
+        }
         return Slipstreams(_values(component, InteractionParameters), numbers)
     return None
 

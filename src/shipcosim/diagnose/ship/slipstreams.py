@@ -1,11 +1,16 @@
 """Thrust that the slipstreams of azimuth thrusters take from one another, where a system has an FMU for it."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 from shipcosim.models.core.maths import Arithmetic
-from shipcosim.models.propulsion.interaction import InteractionParameters, pairs, thrust_shares
-from shipcosim.ssp import System
+from shipcosim.models.propulsion.interaction import (
+    InteractionParameters,
+    Pair,
+    pairs,
+    thrust_shares,
+)
 
 
 @dataclass(frozen=True)
@@ -23,6 +28,15 @@ class Slipstreams:
     parameters: InteractionParameters
     numbers: dict[str, int]
 
+    @cached_property
+    def pairs_behind(self) -> dict[int, tuple[Pair, ...]]:
+        """By number of a unit the pairs in which it lies behind; made once, since a share is asked in every row."""
+        unit_pairs = pairs(self.parameters)
+        return {
+            number: tuple(pair for pair in unit_pairs if pair.behind == number)
+            for number in self.numbers.values()
+        }
+
     def share(self, name: str, units: Mapping[str, tuple[Arithmetic, Arithmetic]]) -> Arithmetic:
         """Share of its thrust that a thruster keeps, by speed [rev/s] and direction [rad] of all of them. [1]"""
         if name not in self.numbers:
@@ -35,27 +49,6 @@ class Slipstreams:
             speeds[number], azimuths[number] = units[other]
         washes = tuple(n * diameter for n, diameter in zip(speeds, diameters, strict=True))
         number = self.numbers[name]
-        here = tuple(pair for pair in pairs(self.parameters) if pair.behind == number)
+        behind = self.pairs_behind[number]
         scale = self.parameters.loss_scale
-        return thrust_shares(tuple(azimuths), washes, unit_pairs=here, loss_scale=scale)[number]
-
-
-def numbers_of(system: System, component: str, thrusters: Collection[str]) -> dict[str, int]:
-    """By thruster that our FMU of interaction gives its share of thrust, its number there, from 0.
-
-    Parameters
-    ----------
-    system : System
-    component : str
-        Name of that FMU's component.
-    thrusters : collection of str
-        Names of those that count.
-
-    Returns
-    -------
-    dict of str to int
-    """
-    fed = {c.target[0]: c.source[1] for c in system.connections if c.source[0] == component}
-    return {
-        name: int(fed[name].removeprefix("thrust_share_")) - 1 for name in thrusters if name in fed
-    }
+        return thrust_shares(tuple(azimuths), washes, unit_pairs=behind, loss_scale=scale)[number]

@@ -11,10 +11,10 @@ from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.measured_motion import at_rows
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.validation.thresholds import (
-    IDLE,
     MEASURED_WITHIN,
     MOVING,
     SETTLED,
+    STANDING,
     START_STEP,
     TRAINED,
     TURNING,
@@ -50,7 +50,7 @@ def is_idle(record: Record) -> np.ndarray:
     """Rows on which no thruster turns, (n,) bool array."""
     speeds = [np.abs(n) for n, _ in record.units.values() if np.any(n)]
     return (
-        np.all([n < IDLE * n.max() for n in speeds], axis=0)
+        np.all([n < STANDING * n.max() for n in speeds], axis=0)
         if speeds
         else np.ones(record.time.size, bool)
     )

@@ -19,8 +19,8 @@ TURNING = np.radians(15.0)
 """Turn within a prediction that makes it a turn. [rad]"""
 MOVING = 0.25
 """Mean speed that makes it a move. [m/s]"""
-IDLE = 0.05
-"""Share of its largest speed in the log below which a thruster is idle."""
+STANDING = 0.05
+"""Share of its largest speed in the log below which a thruster stands still."""
 LEAST_TRAINED = 0.5
 """Share of the rows that must be left to fit on where a condition is held out."""
 FEWEST_PREDICTIONS = 12

@@ -22,6 +22,7 @@ from shipcosim.diagnose.log.thresholds import (
 )
 from shipcosim.diagnose.numerics import (
     gaussian_filter,
+    normal_size,
     quantile,
     solve_tridiagonal,
     spline_integral,
@@ -276,7 +277,7 @@ def _spreads(white):
     # Robust standard deviation (median absolute value) of each window.
     count = max(1, min(NOISE_WINDOWS, len(white) // 40))
     spreads = np.array(
-        [1.4826 * np.median(np.abs(w), axis=(0, 1)) for w in np.array_split(white, count)]
+        [normal_size(window, axis=(0, 1)) for window in np.array_split(white, count)]
     )
     spreads = np.sort(np.maximum(spreads, 1e-9), axis=0)
     # Scale from a quantile of the windows, and mean logarithm over the calmer 60 %.

@@ -14,6 +14,7 @@ from shipcosim.diagnose.log.thresholds import (
     NOISIER_PART_CLIP,
     NOISIER_PART_GAIN,
 )
+from shipcosim.diagnose.numerics import noise_by_differences, normal_size
 
 
 def noisier_parts(log: dict) -> list[str]:
@@ -56,15 +57,14 @@ def noisier_parts(log: dict) -> list[str]:
 
 
 def _noise_of_rows(time, values, is_angle):
-    """Times, and third differences of the values there as a standard deviation: motion is small in them."""
+    """Times, and the noise of the values there, by their third differences."""
     usable = np.isfinite(values)
     time, values = time[usable], values[usable]
     if is_angle:
         values = np.degrees(unwrap_series(np.radians(values)))
-    # The third difference of white noise has 20 times its variance (1 + 9 + 9 + 1).
-    return time[3:], np.abs(np.diff(values, n=3)) / 20.0**0.5
+    return time[3:], noise_by_differences(values, 3)
 
 
 def _level(noise):
-    """Standard deviation of normal noise with these absolute values, by their median: single rows do not move it."""
-    return float(np.median(noise)) / 0.6745 if len(noise) else 0.0
+    """Standard deviation of the noise of some rows; 0 of none."""
+    return float(normal_size(noise)) if len(noise) else 0.0

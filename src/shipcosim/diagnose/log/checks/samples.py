@@ -24,7 +24,13 @@ from shipcosim.diagnose.log.thresholds import (
     RUN_CHANCE,
     SHORTEST_GAP,
 )
-from shipcosim.diagnose.numerics import finite, runs
+from shipcosim.diagnose.numerics import (
+    finite,
+    noise_by_differences,
+    normal_size,
+    root_mean_square,
+    runs,
+)
 
 LIFELESS = "values never change, while others say that they should: not used"
 LEAPING = "the ship leaps many times faster than she goes"
@@ -159,8 +165,7 @@ def _changes(values):
 
 def noise_of(values: np.ndarray) -> float:
     """Standard deviation of white noise with the second differences of a channel."""
-    # The second difference of white noise has 6 times its variance.
-    return float(np.sqrt(np.mean(np.diff(values, n=2) ** 2) / 6.0))
+    return root_mean_square(noise_by_differences(values, 2))
 
 
 def _leaps(log):
@@ -258,13 +263,12 @@ def _noise(values, role):
     if role == "heading" or role.endswith("_from"):
         values = np.degrees(unwrap_series(np.radians(values)))
     # Second differences of white noise change their sign from row to row (correlation -2/3), those of a motion do not.
-    bends = np.diff(values, n=2)
+    bends = noise_by_differences(values, 2)
     usual = np.median(np.abs(bends))
     tame = np.clip(bends, -3.0 * usual, 3.0 * usual)
     if np.mean(tame[1:] * tame[:-1]) > -np.mean(tame**2) / 3.0:
         return 0.0
-    # Size of white noise with the median of second and of fourth differences.
-    return min(usual / 6.0**0.5, np.median(np.abs(np.diff(values, n=4))) / 70.0**0.5) / 0.6745
+    return min(normal_size(bends), normal_size(noise_by_differences(values, 4)))
 
 
 def _to_next_level(values, value):
@@ -472,7 +476,7 @@ def _far_off(values, is_angle):
     change = np.diff(values)
     if is_angle:
         change = wrap_series(change)
-    usual = 1.4826 * np.nanmedian(np.abs(change - np.nanmedian(change))) + quantum(values) + 1e-12
+    usual = normal_size(change - np.nanmedian(change)) + quantum(values) + 1e-12
     # A spike is far from both neighbours, in opposite directions, and the neighbours agree.
     before = change[:-1]
     after = change[1:]

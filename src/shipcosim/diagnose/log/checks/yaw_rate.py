@@ -12,6 +12,7 @@ from shipcosim.diagnose.log.checks.samples import quantum
 from shipcosim.diagnose.log.checks.segments import best_segment, in_segment
 from shipcosim.diagnose.log.mislabels import finding_of, mislabel_of_unit
 from shipcosim.diagnose.log.thresholds import LIKELY_SIGNS, QUIET_CLIP, QUIET_GAIN, QUIETER
+from shipcosim.diagnose.numerics import normal_size
 
 RADIAN = mislabel_of_unit(("yaw_rate",), "rad/s", "deg/s")
 
@@ -76,4 +77,4 @@ def _turns(motion, segment):
     """Rate of the heading itself, without its noise, as standard deviation. [deg/s]"""
     rate = motion.slow(np.gradient(motion.seen[:, 0], motion.time))
     smooth = in_segment(motion.slow(rate), motion.time, segment)
-    return float(1.4826 * np.median(np.abs(smooth - np.median(smooth))))
+    return float(normal_size(smooth - np.median(smooth)))

@@ -25,7 +25,7 @@ from shipcosim.diagnose.log.thresholds import (
     WIND_ROWS,
     WIND_SCALE,
 )
-from shipcosim.diagnose.numerics import gaussian_filter
+from shipcosim.diagnose.numerics import gaussian_filter, noise_by_differences
 
 UNITS = {1.0: 0.0, KNOT: WIND_LABEL_COST, 1.0 / KNOT: WIND_LABEL_COST, 1.0 / 3.6: WIND_LABEL_COST}
 """Possible factors on the wind's speed, and their costs."""
@@ -154,7 +154,7 @@ def _slow(way):
 
 def _noise(velocity):
     """Standard deviation of an axis from row to row, by third differences of four in five rows."""
-    return float(np.quantile(np.abs(np.diff(velocity, n=3)), 0.8)) / 1.794 / math.sqrt(20.0)
+    return float(np.quantile(np.abs(noise_by_differences(velocity, 3)), 0.8)) / 1.794
 
 
 def _tamed(fits):
