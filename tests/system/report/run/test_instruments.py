@@ -173,6 +173,16 @@ def test_a_unit_without_an_azimuth_is_drawn_as_its_force_acts(browse, tmp_path, 
     assert page.errors() == []
 
 
+def test_newtons_of_a_model_ship_are_shown(browse, four_corner, tmp_path):
+    table = four_corner()[["vessel.x", "vessel.y", "vessel.psi", "port.thrust", "port.rpm"]]
+    newtons = 1e-3 * table["port.thrust"].values
+    table["port.thrust"] = table["port.thrust"].copy(data=newtons)
+    write_report(table, tmp_path / "report.html")
+    shown = instruments(browse(tmp_path / "report.html"))["port"]
+    last = 1e-3 * newtons[-1]
+    assert number(shown["label"], "Thrust") == pytest.approx(last, rel=0.1) and 0.002 < last < 1.0
+
+
 def test_a_page_without_a_ship_does_not_carry_them(table, tmp_path):
     write_report(table[["port.thrust", "port.rpm"]], tmp_path / "bare.html")
     write_report(table, tmp_path / "ship.html")

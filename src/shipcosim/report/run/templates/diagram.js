@@ -94,7 +94,7 @@
         if (Number.isFinite(found.azimuth)) tick(c, f, found.azimuth, shade, true);
         arrow(c, f.x, f.y, f.x + starboard * scale, f.y - forward * scale, shade, 3);
         c.beginPath(); c.arc(f.x, f.y, 3, 0, TURN); c.fillStyle = colour(shade); c.fill();
-        said.push(`${found.state === "failed" ? "failed" : `${number(found.thrust, 1)} kN`}${Number.isFinite(found.azimuth) ? ` at ${number(scene.wrapped(found.azimuth), 0)}°` : ""}`);
+        said.push(`${found.state === "failed" ? "failed" : `${number(found.thrust, range < 1 ? 3 : 1)} kN`}${Number.isFinite(found.azimuth) ? ` at ${number(scene.wrapped(found.azimuth), 0)}°` : ""}`);
         drawn.push({ what: "diagram", run: run.label, unit: name, force: found.force, to: [f.x + starboard * scale, f.y - forward * scale], middle: [f.x, f.y], range, radius: f.R, azimuth: found.azimuth, limits, sectors: unit.sectors });
       }
       c.textAlign = "center"; c.textBaseline = "middle"; c.fillStyle = colour("soft");

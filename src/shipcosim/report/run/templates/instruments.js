@@ -102,8 +102,9 @@
   }
 
   const angle = (degrees) => `${plain(wrapped(degrees), 0)}°`;  // from the bow, as in the diagram
+  const force = (unit, kN) => plain(kN, unit.largest > 0 && unit.largest < 1 ? 3 : 1);  // of a boat in newtons
   const numbers = ({ unit, thrust, command, azimuth, azimuthCommand, rpm, state }) => [
-    [report.data.bars ? "Force" : "Thrust", "kN", plain(thrust, 1), unit.command && plain(command, 1)],
+    [report.data.bars ? "Force" : "Thrust", "kN", force(unit, thrust), unit.command && force(unit, command)],
     ...(unit.azimuth ? [["Azimuth", "", angle(azimuth), unit.azimuth_command && angle(azimuthCommand)]] : []),
     ...(unit.rpm ? [["Shaft", "rpm", plain(rpm, 0)]] : []),
     ...(state === "runs" ? [] : [[state === "failed" ? "failed" : "at its limit", "", ""]]),
