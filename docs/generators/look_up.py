@@ -55,7 +55,7 @@ FMUS = {
         "thruster_monitor",
         "consequence_analysis",
     ],
-    "Control": ["reference", "dp_controller", "pid_controller", "helmsman"],
+    "Control": ["reference", "dp_controller", "pid_controller", "helmsman", "steering_trial"],
     "Allocation, classical": [
         "allocator",
         "extended_allocator",

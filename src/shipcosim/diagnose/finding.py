@@ -172,7 +172,8 @@ class Candidate:
 class VisibleSize:
     """The smallest size of a cause that a log would have shown in nine of ten cases, in `unit`.
 
-    `parameter` is empty where the cause is a vector, as a current: `size` is then its length.
+    `parameter` is empty where the cause is a vector, as a current: `size` is then its length. `largest` is the
+    largest size within the bounds of the cause: where `size` is above it, none would have shown.
     """
 
     cause: str
@@ -180,6 +181,7 @@ class VisibleSize:
     parameter: str
     size: float
     unit: str
+    largest: float
 
 
 @dataclass(frozen=True)

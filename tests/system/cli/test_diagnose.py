@@ -114,6 +114,7 @@ class VisibleSize(Strict):
     parameter: str
     size: float = Field(gt=0.0)
     unit: str
+    largest: float = Field(gt=0.0)
 
 
 class Schema(Strict):

@@ -1,10 +1,12 @@
 """A run of one's own ship as a log: her own system explains it, and has what drives her."""
 
 import numpy as np
+import pytest
 from own_runs import own_run
 
 import shipcosim as sc
 from shipcosim.diagnose.pipeline import find_causes, read_measurements
+from shipcosim.errors import ShipcosimError
 
 SIZES = ["--length", "60 m", "--breadth", "14 m", "--draught", "4.5 m"]
 
@@ -21,3 +23,16 @@ def test_a_run_of_screws_that_are_commanded_by_force_has_their_speed(tmp_path, m
     thrust = own_run(tmp_path, "screws", SIZES, minutes=1.0)["port.thrust"]
     log = read_measurements("run/result.nc", sc.read("tern_open").checked()).log
     assert np.corrcoef(np.sign(thrust) * np.sqrt(abs(thrust)), log["port_rpm"])[0, 1] > 0.99
+
+
+def test_a_turning_circle_that_was_simulated_is_a_sea_trial_of_the_same_ship(tmp_path):
+    run = sc.run("steering/circle", out=tmp_path / "run")
+    trials = sc.sea_trials(tmp_path / "run" / "result.nc")
+    assert [trial.kind for trial in trials.trials] == ["turning circle"]
+    assert trials.verdict == "consistent" and run.passed
+
+
+def test_an_error_in_the_log_of_a_run_names_its_file(tmp_path):
+    sc.run("steering/zig_zag", out=tmp_path / "run")
+    with pytest.raises(ShipcosimError, match=r"result.nc.*among 1 manoeuvres: zig-zag"):
+        sc.sea_trials(tmp_path / "run" / "result.nc")

@@ -188,12 +188,15 @@ def visible_sizes(excitation: Excitation) -> tuple[VisibleSize, ...]:
             # The estimate varies by the log's noise, and the well ship's own number within its tolerance.
             varies = np.hypot(spread, parameter.tolerance / parameter.typical)
             size = least + NINE_OF_TEN * MORE_THAN_NOISE * varies
+            # Beyond its bounds the cause is not sought.
+            largest = max(abs(bound - parameter.neutral) for bound in parameter.bounds)
             visible = VisibleSize(
                 hypothesis.cause,
                 hypothesis.component,
                 "" if is_vector else parameter.name,
                 float(size * abs(parameter.typical * parameter.factor)),
                 parameter.unit,
+                float(largest * abs(parameter.factor)),
             )
             # A vector is sought in several directions: the one that shows least counts.
             key = hypothesis.label, visible.parameter

@@ -167,7 +167,10 @@ def _source_of(log, form) -> tuple[LogColumns, dict[str, str]]:
     values = {"time": np.asarray(log["time"].values, float)}
     values |= {str(name): np.asarray(v.values) for name, v in log.data_vars.items()}
     units = {name: str(log[name].attrs.get("units", "")) for name in values}
-    return LogColumns("log", values, units, tuple(log.attrs.get("run_remarks", ()))), {}
+    # A table that was read from a file says from which.
+    file = {key: log.encoding[key] for key in ("source", "sha256") if key in log.encoding}
+    remarks = tuple(log.attrs.get("run_remarks", ()))
+    return LogColumns(file.get("source", "log"), values, units, remarks), file
 
 
 def _is_unnamed(name):

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.diagnose.checked_log import ReadLog, checked
+from shipcosim.diagnose.checked_log import checked
 from shipcosim.diagnose.experiment.design import (
     MOST_SETS,
     ExperimentDesign,
@@ -16,10 +16,10 @@ from shipcosim.diagnose.experiment.design import (
     prescribed,
 )
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
-from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of, read_catalogue
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of
 from shipcosim.diagnose.hypotheses.cause import Cause
-from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.runs import LogSource
+from shipcosim.diagnose.pipeline import read_measurements
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.evidence import (
     SetOfCauses,
@@ -36,7 +36,6 @@ from shipcosim.diagnose.sea_trials.separation import separations
 from shipcosim.diagnose.sea_trials.windows import SeaTrial, as_ordered, sea_trials_of
 from shipcosim.diagnose.ship.inputs import record_of, source_of
 from shipcosim.diagnose.ship.model import ShipModel
-from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.errors import error_at
 from shipcosim.ssp import AnyPath, System
 
@@ -274,9 +273,7 @@ def study(
     """
     say = progress or (lambda *_: None)
     say("which manoeuvres are in the log?")
-    ship = ship_model_of(system)
-    drives = {name: ship.drives(name) for name in ship.thrusters}
-    read = checked(ReadLog(read_log(log, channels, drives), ship, read_catalogue(causes)))
+    read = checked(read_measurements(log, system, channels, causes))
     if read.ship.third_party:
         message = f"{', '.join(read.ship.third_party)}: what such an FMU gives is only known where a log has been."
         right = "Sea trials need the FMUs azimuth_thruster and tunnel_thruster."

@@ -72,9 +72,9 @@ def visible_rows(
     Examples
     --------
     >>> from shipcosim.diagnose.finding import VisibleSize
-    >>> loss = [VisibleSize("thrust_loss", place, "loss", size, "1") for place, size in (("port", 0.14), ("bow", 0.3))]
+    >>> loss = [VisibleSize("thrust_loss", place, "loss", size, "1", 0.9) for place, size in (("port", 0.14), ("bow", 30.0))]
     >>> visible_rows(loss)
-    [('Thrust loss', 'port 14 %, bow 30 %')]
+    [('Thrust loss', 'port 14 %, bow at no size')]
     """
     rows: dict[str, list[str]] = {}
     for visible in sizes:
@@ -82,12 +82,13 @@ def visible_rows(
         if visible.cause in not_testable:
             continue
         # A ratio as a percentage, any other number with its unit.
-        unit, factor = (
-            shown_unit(visible.unit, visible.size)
-            if visible.unit not in ("1", "")
-            else ("%", 100.0)
-        )
-        size = f"{plain(factor * visible.size, 2)} {unit}".replace(" °", "°").rstrip()
+        if visible.size > visible.largest:
+            size = "at no size"
+        elif visible.unit in ("1", ""):
+            size = f"{plain(100.0 * visible.size, 2)} %"
+        else:
+            unit, factor = shown_unit(visible.unit, visible.size)
+            size = f"{plain(factor * visible.size, 2)} {unit}".replace(" °", "°").rstrip()
         place = [visible.component] if visible.component else []
         # The parameter's name only where the cause has several.
         several = sum(

@@ -15,6 +15,7 @@ from shipcosim.diagnose.inference.fitting import Regressor
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.inference.regressors import screening_regressors
+from shipcosim.report.diagnosis.testability import visible_rows
 
 MINUTES = 12.0
 SEEDS = (2,)  # 0 and 1 set MORE_THAN_NOISE
@@ -83,3 +84,13 @@ def test_more_information_shows_smaller_sizes_down_to_the_least_that_matters(inf
 
     least = mass.definition.least * mass.parameters[0].typical * abs(mass.parameters[0].factor)
     assert size(information) > size(10.0 * information) > least
+
+
+def test_what_a_log_says_nothing_of_shows_at_no_size():
+    """A tunnel thruster that never ran would have to lose more than all of its thrust."""
+    loss = hypothesis_of("thrust_loss", "tunnel")
+    columns = [Regressor({"vessel.lift": 1.0}), Regressor({loss.parameters[0].path: 1.0})]
+    excitation = Excitation(np.diag([1.0, 5.0, 0.0]), columns, [(loss, [1])])
+    (visible,) = visible_sizes(excitation)
+    assert visible.size > visible.largest == pytest.approx(0.95)
+    assert visible_rows([visible]) == [("Thrust loss", "tunnel at no size")]
