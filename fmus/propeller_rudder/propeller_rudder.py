@@ -16,6 +16,8 @@ class PropellerRudder(Fmu):
     r = Input("rad/s", "ship's yaw rate")
 
     thrust = Output("N", "thrust of the propeller, less its deduction")
+    rpm = Output("rpm", "speed of the shaft")
+    azimuth = Output("rad", "rudder angle, positive turns the ship to port")
     side_force = Output("N", "side force of the rudder alone, to starboard")
     tau_X = Output("N", "force on the ship, forward")
     tau_Y = Output("N", "force on the ship, to starboard")
@@ -34,3 +36,4 @@ class PropellerRudder(Fmu):
             self.rpm_in / 60.0, self.azimuth_in, self.u_r, self.v_r, self.r, unit=self.unit
         )
         self.thrust, self.side_force, self.tau_X, self.tau_Y, self.tau_N = loads
+        self.rpm, self.azimuth = self.rpm_in, self.azimuth_in

@@ -53,6 +53,21 @@ def test_a_run_read_as_a_log_has_the_roles_of_its_signals(run):
     )
 
 
+def test_predictions_of_a_ship_under_way_start_where_she_is():
+    """At 5 m/s a position that is smoothed over seconds is metres off at the first row."""
+    sailed = sc.run("steering/circle", stop_time=150.0, strict=False)
+    errors = errors_of(sc.replay(sailed, system="gunnerus_open", horizon=20.0).tracks)
+    assert float(errors["position"].values.max()) < 0.6
+    assert float(errors["position"].values[0, 0]) < 0.3
+
+
+def test_a_run_of_a_ship_with_a_rudder_has_what_drove_her(tanker):
+    circle = sc.run("steering/kvlcc2_circle", stop_time=20.0)
+    log = run_as_log(circle.table, "vessel", ["propeller"])
+    assert float(log["propeller_rpm"][-1]) == 617.0
+    assert np.degrees(log["propeller_azimuth"].values[-1]) == pytest.approx(-35.0)
+
+
 def test_a_thruster_that_is_told_its_force_is_driven_by_it_and_by_no_speed(run):
     force = run.rename(propeller_rpm="propeller_thrust").drop_vars("propeller_azimuth")
     log = run_as_log(force, "vessel", ["propeller"])

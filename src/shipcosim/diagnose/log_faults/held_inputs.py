@@ -19,7 +19,7 @@ from shipcosim.diagnose.inference.thresholds import UNMODELLED
 from shipcosim.diagnose.log.checks.samples import HELD, LIFELESS, held_segments, is_constant
 from shipcosim.diagnose.log.mislabels import drive_channels
 from shipcosim.diagnose.log.rows import inside
-from shipcosim.diagnose.log_faults.thresholds import HELD_ALIKE, HELD_EXCESS, IDLE
+from shipcosim.diagnose.log_faults.thresholds import CALM_AIR, HELD_ALIKE, HELD_EXCESS, IDLE
 from shipcosim.diagnose.ship.inputs import with_inputs_of
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
@@ -44,13 +44,15 @@ def held_inputs(log: xarray.Dataset, model: ShipModel) -> list[Finding]:
             segment
             for segment in held_segments(time, log[role].values)
             if not _idles(log, role, inside(time, [segment]), model)
+            and not _is_calm(log, role, inside(time, [segment]))
         )
         for role in roles
     }
     findings = {}
     # A wind that is the same in every row is none that was measured: she meets another one as she moves.
     wind = tuple(role for role in _WIND[:2] if role in log)
-    if any(is_constant(log[role].values) for role in wind):
+    is_still = any(is_constant(log[role].values) for role in wind)
+    if is_still and not _is_calm(log, wind[0], slice(None)):
         whole = (float(time[0]), float(time[-1]))
         findings[wind] = log_fault("gap", wind, LIFELESS, (whole,), 0.99)
     for role, segments in held.items():
@@ -78,6 +80,18 @@ def _idles(log: xarray.Dataset, role: str, here: np.ndarray, model: ShipModel) -
     speed = np.abs(log[f"{thruster}_rpm"].values[here])
     most = 60.0 * dp_thruster_of(model, thruster).most
     return bool(np.nanmedian(speed) < IDLE * most and not is_constant(speed))
+
+
+def _is_calm(log: xarray.Dataset, role: str, here: np.ndarray | slice) -> bool:
+    """Whether a role is of the wind felt in some rows, and all that is felt there is the ship's own way in calm air."""
+    if role not in _WIND[:2] or any(name not in log for name in (*_WIND[:2], "surge", "sway")):
+        return False
+    speed, felt_from, surge, sway = (
+        log[name].values[here] for name in (*_WIND[:2], "surge", "sway")
+    )
+    blows_to = np.radians(felt_from) + np.pi
+    over_ground = np.hypot(surge + speed * np.cos(blows_to), sway + speed * np.sin(blows_to))
+    return bool(np.nanmedian(over_ground) < CALM_AIR * np.nanmedian(np.hypot(surge, sway)))
 
 
 def is_contradicted(finding: Finding, log: xarray.Dataset, problem: IdentificationProblem) -> bool:

@@ -51,6 +51,8 @@ HELD_ALIKE = 0.9
 
 IDLE = 0.05
 """Speed of a shaft over the largest it can have, below which its direction hardly matters: 0.3 % of its thrust. Assumed."""
+CALM_AIR = 0.05
+"""Wind over ground over the ship's own speed, below which what she feels is her own way. Assumed."""
 
 # Labels of the navigation
 

@@ -1,7 +1,7 @@
 """A log again as simulated: open-loop predictions one after another, each from the measured state, beside the log."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray
@@ -28,6 +28,7 @@ from shipcosim.diagnose.validation.thresholds import (
     TIME_CONSTANTS,
 )
 from shipcosim.errors import ShipcosimError, error_at
+from shipcosim.models.core.kinematics import eta_dot
 from shipcosim.models.core.motion import Motion
 from shipcosim.options import CountProgress
 
@@ -219,7 +220,19 @@ def _segments(record: Record, horizon: float) -> tuple[np.ndarray, int]:
 
 
 def _seen(record: Record, horizon: float) -> Motion:
-    return first_motion(record, smooth=min(4.0, SMOOTHED_SHARE * horizon))
+    """The motion that the log shows, smoothed, to start predictions from."""
+    smooth = min(4.0, SMOOTHED_SHARE * horizon)
+    seen = first_motion(record, smooth)
+    # Smoothed positions of a ship under way are short of the measured ones at the log's ends and in turns. So only
+    # that is smoothed by which they differ from the way that her velocity goes.
+    rates = np.stack(eta_dot(seen.psi, seen.u, seen.v, seen.r), axis=-1)
+    steps = 0.5 * record.step * (rates[1:] + rates[:-1])
+    way = np.concatenate([np.zeros((1, 3)), np.cumsum(steps, axis=0)])
+    besides = record.measured.copy()
+    besides[:, :3] -= way
+    off = first_motion(replace(record, measured=besides), smooth)
+    places = {name: way[:, i] + getattr(off, name) for i, name in enumerate(("x", "y", "psi"))}
+    return seen._replace(**places)
 
 
 def _measured(record: Record) -> xarray.Dataset:

@@ -72,7 +72,8 @@ def visible_rows(
     Examples
     --------
     >>> from shipcosim.diagnose.finding import VisibleSize
-    >>> loss = [VisibleSize("thrust_loss", place, "loss", size, "1", 0.9) for place, size in (("port", 0.14), ("bow", 30.0))]
+    >>> sizes = {"port": 0.14, "bow": 30.0}
+    >>> loss = [VisibleSize("thrust_loss", place, "loss", size, "1", 0.9) for place, size in sizes.items()]
     >>> visible_rows(loss)
     [('Thrust loss', 'port 14 %, bow at no size')]
     """

@@ -89,3 +89,17 @@ def test_the_direction_of_a_shaft_that_hardly_turns_may_be_held(speed, is_gap):
     )
     channels = {finding.channels for finding in held_inputs(log, twin.model())}
     assert (("port_azimuth",) in channels) == is_gap
+
+
+@pytest.mark.parametrize("speed, is_gap", [(5.0, False), (8.0, True)])
+def test_the_wind_of_her_own_way_in_calm_air_may_stay_the_same(speed, is_gap):
+    """Straight ahead at 5 m/s: a wind of 5 m/s from ahead is calm air, one of 8 m/s would have varied."""
+    log = with_noise(twin.logs()["healthy"])
+    values = {"surge": 5.0, "sway": 0.0, "wind_speed": speed, "wind_from": 0.0}
+    constant = {
+        role: log[role].copy(data=np.full(log["time"].size, v)) for role, v in values.items()
+    }
+    log = log.assign(constant).assign(logged_time=log["time"])
+    channels = {finding.channels for finding in held_inputs(log, twin.model())}
+    assert (("wind_speed", "wind_from") in channels) == is_gap
+    assert is_gap or not any("wind_from" in some for some in channels)
