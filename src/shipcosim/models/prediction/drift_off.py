@@ -191,44 +191,21 @@ def predict(
     tuple of Motion, float or (...) array
         One per horizon; the share, 0 where the prediction is that of the kinetic predictor. [their units; 1]
     """
-    # The kinetic prediction is the fallback.
+    # Each filter's prediction, and how far they can be trusted; without a believed wind not at all.
+    own = state.own
+    motions = own_record.predict(
+        own, known, horizons=horizons, steps=STEPS, learned=trained.learned, hull=hull, wind=wind
+    )
+    numbers = measures(own, known, motions[-1], trained.learned)
+    share = trust(numbers, trained.limits) * known.wind_believed
+    learned = tuple(own_record.mixed(own, motion) for motion in motions)
+    # The kinetic prediction is the fallback, for what is not trusted.
+    if np.all(share == 1.0):
+        return learned, share
     alone = dead_reckoning.predict(
         known, state.kinetic, horizons=horizons, longest_step=longest_step, hull=hull, wind=wind
     )
-    options = {
-        "horizons": horizons,
-        "steps": STEPS,
-        "learned": trained.learned,
-        "hull": hull,
-        "wind": wind,
-    }
-    motions = _ahead(state.own, known, options)
-    # Trust in the filters; without a believed wind they have none.
-    share = (
-        trust(measures(state.own, known, motions[-1], trained.learned), trained.limits)
-        * known.wind_believed
-    )
-    mixed = (own_record.mixed(state.own, motion) for motion in motions)
-    # The filters' predictions are averaged by their weights, then blended with the kinetic one.
-    return tuple(Motion(*blend(a, b, share)) for a, b in zip(alone, mixed, strict=True)), share
-
-
-def _ahead(record, known, options):
-    """Predictions of all filters; for one ship in floats, one after the other, which is faster."""
-    if record.mean.ndim > 2:
-        return own_record.predict(record, known, **options)
-    try:
-        by_filter = [
-            own_record.predict(own_record.member(record, k), known, **options)
-            for k in range(len(record.mean))
-        ]
-    except (
-        ValueError,
-        IndexError,
-        OverflowError,
-    ):  # what is no number stops floats; in arrays it goes on as NaN
-        return own_record.predict(record, known, **options)
-    return [Motion(*np.array(motions).T) for motions in zip(*by_filter, strict=True)]
+    return tuple(Motion(*blend(a, b, share)) for a, b in zip(alone, learned, strict=True)), share
 
 
 def measures(record: Record, known: Known, last: Motion, learned: Learned) -> np.ndarray:
