@@ -231,9 +231,8 @@ def measures(record: Record, known: Known, last: Motion, learned: Learned) -> np
     share = own_record.weights(record)
     (x, y) = last[:2]
     states = (share[..., None] * record.mean).sum(axis=0)
-    u_r, v_r = through_water(
-        known.ship.psi, known.ship.u, known.ship.v, *np.moveaxis(states[..., CURRENT], -1, 0)
-    )
+    psi, u, v, r = known.ship[2:]
+    u_r, v_r = through_water(psi, u, v, states[..., CURRENT.start], states[..., CURRENT.start + 1])
     # Deviation from the prior in standard deviations: the record contradicts what was learned.
     off = (states[..., COEFFICIENT] - learned.mean) / learned.std[..., COEFFICIENT]
     force = states[..., FORCE] / learned.std[..., FORCE]
@@ -242,17 +241,15 @@ def measures(record: Record, known: Known, last: Motion, learned: Learned) -> np
     numbers = [
         u_r,
         v_r,
-        known.ship.r,
+        r,
         hypot(record.wind_north, record.wind_east),
         _size(states[..., CURRENT]),
         _size(force),
-    ]
-    numbers += [
         states[..., MOMENT] / learned.std[..., MOMENT],
         sqrt((off * off).mean(axis=-1)),
         sqrt(apart.sum(axis=0)),
     ]
-    return np.abs(np.stack(np.broadcast_arrays(*numbers)))
+    return np.abs(np.stack(numbers))
 
 
 def _size(vectors):

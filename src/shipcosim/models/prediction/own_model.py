@@ -1,7 +1,7 @@
 """Equations of motion with the parts that a ship's own model lacks: residual load, thrust run-down.
 
-Current, remaining load and the coefficients of a residual load that is linear in them (`wrong_supply`, `wrong_damping`) are states
-beside the motion; `own_record` estimates them all.
+Current, remaining load and the coefficients of a residual load that is linear in them (`wrong_supply`,
+`wrong_damping`) are states beside the motion; `own_record` estimates them all.
 """
 
 from collections.abc import Sequence
@@ -189,12 +189,14 @@ def delivered(thrust: Thrust, command: Thrust, h: float, *, learned: Learned) ->
     )
 
 
-def wrong_supply(coefficients: tuple, wind: Load, thrust: Thrust, hull: HullParameters) -> Load:
+def wrong_supply(
+    coefficients: Sequence[Arithmetic], wind: Load, thrust: Thrust, hull: HullParameters
+) -> Load:
     """Errors of the model's wind load and thrust: the part of the residual load that a step holds.
 
     Parameters
     ----------
-    coefficients : tuple of 18 floats or (...) arrays or tensors
+    coefficients : sequence of 18 floats or (...) arrays or tensors
         In the order of `COEFFICIENTS`; those of wind and thrust count here, over the loads that the model has. [1]
     wind : tuple of three, like coefficients
         Wind load by the model. [N, N, N.m]
@@ -226,7 +228,7 @@ def wrong_supply(coefficients: tuple, wind: Load, thrust: Thrust, hull: HullPara
 
 
 def wrong_damping(
-    coefficients: tuple,
+    coefficients: Sequence[Arithmetic],
     u_r: Arithmetic,
     v_r: Arithmetic,
     r: Arithmetic,
@@ -237,7 +239,7 @@ def wrong_damping(
 
     Parameters
     ----------
-    coefficients : tuple of 18 floats or (...) arrays or tensors
+    coefficients : sequence of 18 floats or (...) arrays or tensors
         In the order of `COEFFICIENTS`: of resistance, cross flow and turning over sizes that hulls have (of the
         length, draught and density), and of the wash, as a damping. [1]
     u_r, v_r, r : float or (...) array or tensor
@@ -292,6 +294,7 @@ def wash_of(thrust: Thrust) -> Arithmetic:
 
 def moved(
     states: Sequence[Arithmetic],
+    coefficients: Sequence[Arithmetic],
     air: Vector,
     thrust: Thrust,
     h: float,
@@ -304,8 +307,10 @@ def moved(
 
     Parameters
     ----------
-    states : sequence of 29 floats or (...) arrays or tensors
-        `STATES`. [their units]
+    states : sequence of 11 floats or (...) arrays or tensors
+        `STATES` but for the coefficients. [their units]
+    coefficients : sequence of 18, like states
+        `COEFFICIENTS`, which stay. [1]
     air : tuple of two, like states
         Velocity of the air, north and east. [m/s]
     thrust : Thrust
@@ -319,8 +324,8 @@ def moved(
 
     Returns
     -------
-    list of 29, like states
-        [units of `STATES`]
+    list of 11, like states
+        [their units]
 
     Notes
     -----
@@ -332,46 +337,50 @@ def moved(
     """
     # Midpoint rule: everything that turns with the ship is evaluated at half the turn.
     half = 0.5 * h
-    (x, y, psi, u, v, r) = states[:6]
+    x, y, psi, u, v, r, current_north, current_east, force_north, force_east, moment = states
     middle = psi + half * r
-    u_c, v_c = to_body(middle, *states[CURRENT])
+    u_c, v_c = to_body(middle, current_north, current_east)
     # Wind, remaining force and thrust are held over the step, and so are their errors.
     load = wind_loads(*apparent_wind(middle, u, v, *air), wind=wind)
-    force_X, force_Y = to_body(middle, *states[FORCE])
-    coefficients = tuple(states[COEFFICIENT])
-    wrong = wrong_supply(coefficients, load, thrust, hull)
-    X = load[0] + wrong[0] + thrust.stern_X + force_X
-    Y = load[1] + wrong[1] + thrust.stern_Y + thrust.bow + force_Y
-    N = load[2] + wrong[2] + ARM * hull.length * (thrust.bow - thrust.stern_Y) + states[MOMENT]
+    force_X, force_Y = to_body(middle, force_north, force_east)
+    wrong_X, wrong_Y, wrong_N = wrong_supply(coefficients, load, thrust, hull)
+    X = load[0] + wrong_X + thrust.stern_X + force_X
+    Y = load[1] + wrong_Y + thrust.stern_Y + thrust.bow + force_Y
+    N = load[2] + wrong_N + ARM * hull.length * (thrust.bow - thrust.stern_Y) + moment
     wash = wash_of(thrust)
 
     def rates(u, v, r):
         # Damping depends on the velocity through the water, so it is evaluated within each stage.
         u_r = u - u_c
         v_r = v - v_c
-        damping = wrong_damping(coefficients, u_r, v_r, r, wash, hull)
+        damping_X, damping_Y, damping_N = wrong_damping(coefficients, u_r, v_r, r, wash, hull)
         u_dot, v_dot, r_dot = accelerations(
-            u_r, v_r, r, X + damping[0], Y + damping[1], N + damping[2], hull=hull
+            u_r, v_r, r, X + damping_X, Y + damping_Y, N + damping_N, hull=hull
         )
         # From rates through water to rates over ground: the current turns in body axes.
         return u_dot + r * v_c, v_dot - r * u_c, r_dot
 
     # Half a step, then the whole step with the slope of the middle.
-    first = rates(u, v, r)
-    u_m = u + half * first[0]
-    v_m = v + half * first[1]
-    r_m = r + half * first[2]
-    second = rates(u_m, v_m, r_m)
+    u_dot, v_dot, r_dot = rates(u, v, r)
+    u_m = u + half * u_dot
+    v_m = v + half * v_dot
+    r_m = r + half * r_dot
+    u_dot, v_dot, r_dot = rates(u_m, v_m, r_m)
     north, east = to_ned(psi + half * r_m, u_m, v_m)
-    # Speeds are bounded, so a filter that diverges stays finite.
-    place = x + h * north, y + h * east, psi + h * r_m
-    speeds = [
-        clip(now + h * rate, -most, most)
-        for now, rate, most in zip((u, v, r), second, FASTEST, strict=True)
+    # Remaining force and moment are Gauss-Markov processes, whose mean decays.
+    kept = exp(-h / learned.force_time)
+    most_u, most_v, most_r = FASTEST
+    return [
+        x + h * north,
+        y + h * east,
+        psi + h * r_m,
+        # Speeds are bounded, so a filter that diverges stays finite.
+        clip(u + h * u_dot, -most_u, most_u),
+        clip(v + h * v_dot, -most_v, most_v),
+        clip(r + h * r_dot, -most_r, most_r),
+        current_north,
+        current_east,
+        kept * force_north,
+        kept * force_east,
+        exp(-h / learned.moment_time) * moment,
     ]
-    # Remaining force and moment: Gauss-Markov processes, whose mean decays. Current and
-    # coefficients stay.
-    force = exp(-h / learned.force_time)
-    moment = exp(-h / learned.moment_time)
-    faded = [force * state for state in states[FORCE]]
-    return [*place, *speeds, *states[CURRENT], *faded, moment * states[MOMENT], *coefficients]

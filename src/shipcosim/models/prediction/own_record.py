@@ -26,6 +26,7 @@ from shipcosim.models.core.maths import (
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction.own_model import (
+    COEFFICIENT,
     COEFFICIENTS,
     FASTEST,
     FORCE,
@@ -331,10 +332,12 @@ def _thrust_ahead(thrust, command, horizons, steps, learned):
 
 def _motions_ahead(states, air, course, model):
     """Motion at each horizon, from states as a list."""
+    coefficients = states[COEFFICIENT]
+    states = states[: COEFFICIENT.start]
     motions = []
     for h, held in course:
         for thrust in held:
-            states = moved(states, air, thrust, h, **model)
+            states = moved(states, coefficients, air, thrust, h, **model)
         motions.append(Motion(*states[: len(MEASURED)]))
     return motions
 
@@ -370,9 +373,10 @@ def _elapsed(mean, air, thrust, h, model, library):
         len(STATES), *(1,) * (mean.ndim - 1), len(STATES)
     )
     at = library.concatenate([mean[None], mean[None] + moves])
-    then = library.stack(
-        moved([at[..., k] for k in range(len(STATES))], air, thrust, h, **model), -1
-    )
+    states = [at[..., k] for k in range(len(STATES))]
+    coefficients = states[COEFFICIENT]
+    then = moved(states[: COEFFICIENT.start], coefficients, air, thrust, h, **model)
+    then = library.stack([*then, *coefficients], -1)
     # Column j of F is (f(x + d_j) - f(x)) / d_j.
     return then[0], library.moveaxis(
         (then[1:] - then[:1]) / differences.reshape((-1,) + (1,) * mean.ndim), 0, -1
