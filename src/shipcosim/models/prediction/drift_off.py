@@ -102,7 +102,7 @@ def begin(
     Parameters
     ----------
     known : Known
-        Inputs of the predictor now; floats or (...) arrays.
+        Inputs of the predictor now, in floats.
     trained : Trained
         The ensemble.
     hull : HullParameters
@@ -188,7 +188,7 @@ def predict(
 
     Returns
     -------
-    tuple of Motion, float or (...) array
+    tuple of Motion, float
         One per horizon; the share, 0 where the prediction is that of the kinetic predictor. [their units; 1]
     """
     # Each filter's prediction, and how far they can be trusted; without a believed wind not at all.
@@ -200,7 +200,7 @@ def predict(
     share = trust(numbers, trained.limits) * known.wind_believed
     learned = tuple(own_record.mixed(own, motion) for motion in motions)
     # The kinetic prediction is the fallback, for what is not trusted.
-    if np.all(share == 1.0):
+    if share == 1.0:
         return learned, share
     alone = dead_reckoning.predict(
         known, state.kinetic, horizons=horizons, longest_step=longest_step, hull=hull, wind=wind
@@ -242,19 +242,14 @@ def measures(record: Record, known: Known, last: Motion, learned: Learned) -> np
         u_r,
         v_r,
         r,
-        hypot(record.wind_north, record.wind_east),
-        _size(states[..., CURRENT]),
-        _size(force),
+        hypot(*record.wind),
+        np.linalg.norm(states[..., CURRENT], axis=-1),
+        np.linalg.norm(force, axis=-1),
         states[..., MOMENT] / learned.std[..., MOMENT],
         sqrt((off * off).mean(axis=-1)),
         sqrt(apart.sum(axis=0)),
     ]
     return np.abs(np.stack(numbers))
-
-
-def _size(vectors):
-    """Length of vectors along the last axis."""
-    return hypot(vectors[..., 0], vectors[..., 1])
 
 
 def trust(numbers: np.ndarray, limits: np.ndarray) -> Arithmetic:

@@ -288,6 +288,10 @@ def wash_of(thrust: Thrust) -> Arithmetic:
     -------
     float or (...) array or tensor
         The thrust itself at `HELD`. [N]
+
+    References
+    ----------
+    As `wrong_damping`.
     """
     return HELD * sqrt((hypot(thrust.stern_X, thrust.stern_Y) + _TINY) / HELD)
 

@@ -22,8 +22,9 @@ from shipcosim.models.core.maths import (
     sin,
     sqrt,
     where,
+    where_all,
 )
-from shipcosim.models.core.motion import Motion
+from shipcosim.models.core.motion import Motion, Vector
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction.own_model import (
     COEFFICIENT,
@@ -31,7 +32,6 @@ from shipcosim.models.prediction.own_model import (
     FASTEST,
     FORCE,
     MEASURED,
-    MOMENT,
     STATES,
     Learned,
     Thrust,
@@ -59,6 +59,8 @@ DIFFERENCES = (
     *(0.05,) * len(COEFFICIENTS),
 )
 """Differences over which slopes are taken. [units of `STATES`]"""
+NOISE_OF_MEASURED = [0, 0, 1, 2, 2, 3]
+"""Number in `Learned.noise` of each of `MEASURED`. [1]"""
 STRONGEST = 5.0  # m/s, current from which on a filter has gone astray, as from `FASTEST` on
 NO_NUMBER = 1e12  # beyond any sum of states and likelihood
 LEAST = -30.0  # logarithm of a weight, below which none falls: so it can come back
@@ -78,9 +80,9 @@ class Record(NamedTuple):
         Logarithms of the filters' weights. [1]
     thrust : Thrust
         Delivered now; (...) arrays or tensors. [N]
-    air_north, air_east : float or (...) array or tensor
-        Velocity of the air as measured now. [m/s]
-    wind_north, wind_east : like air_north
+    air : tuple of two floats or (...) arrays or tensors
+        Velocity of the air as measured now, north and east. [m/s]
+    wind : like air
         Its mean. [m/s]
     """
 
@@ -88,10 +90,8 @@ class Record(NamedTuple):
     covariance: Arithmetic
     likelihood: Arithmetic
     thrust: Thrust
-    air_north: Arithmetic
-    air_east: Arithmetic
-    wind_north: Arithmetic
-    wind_east: Arithmetic
+    air: Vector
+    wind: Vector
 
 
 def begin(known: Known, *, learned: Learned, hull: HullParameters) -> Record:
@@ -121,10 +121,11 @@ def begin(known: Known, *, learned: Learned, hull: HullParameters) -> Record:
     mean = library.stack(_believed(known, learned, like))
     std = learned.std + like[..., None]
     covariance = (std * std)[..., None] * library.eye(len(STATES), dtype=std.dtype)
-    air = [like + speed for speed in air_velocity(known)]
+    north, east = air_velocity(known)
+    air = like + north, like + east
     covariance = library.stack([covariance] * len(DIRECTIONS))
     return Record(
-        mean, covariance, 0.0 * mean[..., 0], thrust_told(known.thrusters, hull), *air, *air
+        mean, covariance, 0.0 * mean[..., 0], thrust_told(known.thrusters, hull), air, air
     )
 
 
@@ -220,15 +221,11 @@ def step(
     command = thrust_told(known.thrusters, hull)
     # A disbelieved wind is replaced by its mean.
     believed = known.wind_believed > 0.5
-    air = air_velocity(known)
-    air = [
-        where(believed, now, mean)
-        for now, mean in zip(air, (record.wind_north, record.wind_east), strict=True)
-    ]
+    air = where_all(believed, air_velocity(known), record.wind)
     # Thrust and wind at the middle of the step, as the midpoint rule needs them.
     thrust = delivered(record.thrust, command, h, learned=learned)
     held = Thrust(*[0.5 * (a + b) for a, b in zip(record.thrust, thrust, strict=True)])
-    over = 0.5 * (record.air_north + air[0]), 0.5 * (record.air_east + air[1])
+    over = tuple(0.5 * (a + b) for a, b in zip(record.air, air, strict=True))
     # Extended Kalman filter: predict mean and covariance, P ← F P Fᵀ + Q, then correct by the
     # observer.
     then, slopes = _elapsed(
@@ -251,10 +248,8 @@ def step(
         covariance = where(astray[..., None, None], fresh.covariance, covariance)
     # The mean wind follows with a lag of first order: gusts do not last over the horizon.
     share = 1.0 - exp(-h / learned.wind_time)
-    means = [
-        m + share * (a - m) for m, a in zip((record.wind_north, record.wind_east), air, strict=True)
-    ]
-    return Record(mean, covariance, likelihood, thrust, *air, *means)
+    slow = tuple(m + share * (a - m) for m, a in zip(record.wind, air, strict=True))
+    return Record(mean, covariance, likelihood, thrust, air, slow)
 
 
 def predict(
@@ -296,13 +291,12 @@ def predict(
     # The course of the thrust is the same for all filters.
     command = thrust_told(known.thrusters, hull)
     course = _thrust_ahead(record.thrust, command, horizons, steps, learned)
-    air = (record.wind_north, record.wind_east)
     model = {"learned": learned, "hull": hull, "wind": wind}
     if isinstance(record.mean, np.ndarray) and record.mean.ndim == 2:
         # One ship: filter by filter in floats takes a fifth of the time of arrays of five numbers.
         try:
             motions = [
-                _motions_ahead(states, tuple(map(float, air)), course, model)
+                _motions_ahead(states, tuple(map(float, record.wind)), course, model)
                 for states in record.mean.tolist()
             ]
             return tuple(Motion(*np.array(at).T) for at in zip(*motions, strict=True))
@@ -310,7 +304,7 @@ def predict(
             # What is no number stops floats; in arrays it goes on as NaN.
             pass
     states = [record.mean[..., k] for k in range(len(STATES))]
-    return tuple(_motions_ahead(states, air, course, model))
+    return tuple(_motions_ahead(states, record.wind, course, model))
 
 
 def _thrust_ahead(thrust, command, horizons, steps, learned):
@@ -346,16 +340,11 @@ def _believed(known, learned, like):
     """Prior means of the states, for each filter."""
     library = library_of(like)
     means = []
-    for directions in DIRECTIONS:
-        current = [learned.current_away * direction for direction in directions]
-        others = [
-            *current,
-            0.0,
-            0.0,
-            0.0,
-            *(learned.mean[..., k] for k in range(len(COEFFICIENTS))),
-        ]
-        means.append(library.stack([like + state for state in (*known.ship, *others)], -1))
+    for north, east in DIRECTIONS:
+        current = learned.current_away * north, learned.current_away * east
+        coefficients = (learned.mean[..., k] for k in range(len(COEFFICIENTS)))
+        states = (*known.ship, *current, 0.0, 0.0, 0.0, *coefficients)
+        means.append(library.stack([like + state for state in states], -1))
     return means
 
 
@@ -390,37 +379,25 @@ def _grown(h, learned, library):
     moment = exp(-2.0 * h / learned.moment_time)
     zero = 0.0 * learned.current_walk
     variances = learned.std * learned.std
+    forces = [
+        (1.0 - kept) * variances[..., k]
+        for k, kept in enumerate((force, force, moment), FORCE.start)
+    ]
     # Random walks of velocity, yaw rate and current grow with time. Positions and coefficients get
     # no noise.
-    speed = h * learned.disturbance[..., 0] ** 2
-    rate = h * learned.disturbance[..., 1] ** 2
-    current = h * learned.current_walk**2
-    forces = [
-        (1.0 - force) * variances[..., FORCE.start],
-        (1.0 - force) * variances[..., FORCE.start + 1],
-    ]
-    forces.append((1.0 - moment) * variances[..., MOMENT])
-    diagonal = [
-        zero,
-        zero,
-        zero,
-        speed,
-        speed,
-        rate,
-        current,
-        current,
-        *forces,
-        *(zero,) * len(COEFFICIENTS),
-    ]
-    return library.stack(diagonal, -1)[..., None] * library.eye(len(STATES), dtype=variances.dtype)
+    walks = [learned.disturbance[..., k] for k in (0, 0, 1)]
+    walks += [learned.current_walk, learned.current_walk]
+    grown = [h * walk**2 for walk in walks]
+    still = len(COEFFICIENTS) * [zero]
+    diagonal = library.stack([zero, zero, zero, *grown, *forces, *still], -1)
+    return diagonal[..., None] * library.eye(len(STATES), dtype=variances.dtype)
 
 
 def _corrected(mean, covariance, ship, h, learned, library):
     """Mean and covariance corrected by the observer's estimate, and its log-likelihood."""
     count = len(MEASURED)
     # The observer's estimates count as measurements; noise averaged over a second scales with 1/h.
-    place, heading, speed, rate = (learned.noise[..., k] ** 2 / h for k in range(4))
-    noise = library.stack([place, place, heading, speed, speed, rate], -1)
+    noise = learned.noise[..., NOISE_OF_MEASURED] ** 2 / h
     noise = noise[..., None] * library.eye(count, dtype=mean.dtype)
     # The measured states come first, so C P is the first rows of P.
     rows = covariance[..., :count, :]

@@ -274,20 +274,12 @@ def _slopes(known, mean, span, hull):
     r = known.ship.r
     u_r, v_r = through_water(*known.ship[2:5], *mean[:2])
     # Central differences over the span, in u_r and in v_r.
-    over_u = zip(
-        hull_loads(u_r + span, v_r, r, hull=hull),
-        hull_loads(u_r - span, v_r, r, hull=hull),
-        strict=True,
+    X_u, Y_u, N_u = _slope(
+        hull_loads(u_r + span, v_r, r, hull=hull), hull_loads(u_r - span, v_r, r, hull=hull), span
     )
-    over_v = zip(
-        hull_loads(u_r, v_r + span, r, hull=hull),
-        hull_loads(u_r, v_r - span, r, hull=hull),
-        strict=True,
+    X_v, Y_v, N_v = _slope(
+        hull_loads(u_r, v_r + span, r, hull=hull), hull_loads(u_r, v_r - span, r, hull=hull), span
     )
-    X_u, Y_u, N_u = [
-        (below - above) / (2.0 * span) for above, below in over_u
-    ]  # a current takes from u_r
-    X_v, Y_v, N_v = [(below - above) / (2.0 * span) for above, below in over_v]
     one = 1.0 + 0.0 * psi
     # Current: by the slopes of the hull; force: turned into body axes; moment and thrust errors:
     # directly.
@@ -296,6 +288,11 @@ def _slopes(known, mean, span, hull):
         (*to_ned(psi, Y_u, Y_v), *to_ned(psi, 0.0, one), 0.0, 0.0, 1.0, 0.0),
         (*to_ned(psi, N_u, N_v), 0.0, 0.0, 1.0, 0.0, 0.0, 1.0),
     )
+
+
+def _slope(above, below, span):
+    """Slopes of loads by a current, which takes from the velocity through the water."""
+    return [(b - a) / (2.0 * span) for a, b in zip(above, below, strict=True)]
 
 
 def _elapsed(surroundings, thrusters, h, hull, parameters):

@@ -305,7 +305,7 @@ def test_far_from_what_was_learned_it_is_the_kinetic_predictor(far):
     elif far == "turning":
         known = known_of(known.ship._replace(r=0.2))
     elif far == "wind":
-        state = state._replace(own=state.own._replace(wind_north=np.float64(-40.0)))
+        state = state._replace(own=state.own._replace(wind=(np.float64(-40.0), np.float64(0.0))))
     else:
         known = known._replace(wind_believed=0.0)
     found, share, alone = predicted(state, known)
