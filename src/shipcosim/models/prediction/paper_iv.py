@@ -198,7 +198,7 @@ def predict(
     Parameters
     ----------
     past : Past
-        With the sample of now, in floats.
+        With the sample of now; floats or (n,) arrays.
     known : Known
         Inputs of the predictor now.
     ensemble : Ensemble
@@ -228,8 +228,9 @@ def predict(
         # Acceleration by the model, then the correction by the mean of the networks. It is the next
         # input: the networks feed back on themselves.
         dot = model_acceleration(psi, tuple(nu), past.wind, past.thrusters, hull=hull, wind=wind)
-        inputs = np.array([[*nu, *dot, *residual]])
-        residual = outputs(ensemble, inputs).mean(axis=0)[0].tolist()
+        inputs = np.stack([*nu, *dot, *residual], axis=-1)
+        mean = outputs(ensemble, np.atleast_2d(inputs)).mean(axis=0)
+        residual = mean[0].tolist() if inputs.ndim == 1 else mean.T
         # Explicit Euler for velocities; the position uses their mean.
         then = [
             value + PERIOD * (rate + missed)
