@@ -355,16 +355,15 @@ def _mean(a, b):
 
 def _elapsed(mean, air, thrust, h, model, library):
     """Expected states a step later, and their slopes by the present states."""
-    # Slopes by differences: all states are displaced at once, along a first axis, in one
-    # evaluation.
+    # Slopes by differences: all states are displaced at once, along a second axis after the one of
+    # the states, in one evaluation. Its first place has none displaced.
     differences = library.asarray(DIFFERENCES, dtype=mean.dtype)
-    moves = (library.eye(len(STATES), dtype=mean.dtype) * differences).reshape(
-        len(STATES), *(1,) * (mean.ndim - 1), len(STATES)
-    )
-    at = library.concatenate([mean[None], mean[None] + moves])
-    states = [at[..., k] for k in range(len(STATES))]
-    coefficients = states[COEFFICIENT]
-    then = moved(states[: COEFFICIENT.start], coefficients, air, thrust, h, **model)
+    moves = library.eye(len(STATES), dtype=mean.dtype) * differences
+    moves = library.concatenate([0.0 * moves[:, :1], moves], 1)
+    moves = moves.reshape(*moves.shape, *(1,) * (mean.ndim - 1))
+    at = library.moveaxis(mean, -1, 0)[:, None] + moves
+    coefficients = at[COEFFICIENT]
+    then = moved(at[: COEFFICIENT.start], coefficients, air, thrust, h, **model)
     then = library.stack([*then, *coefficients], -1)
     # Column j of F is (f(x + d_j) - f(x)) / d_j.
     return then[0], library.moveaxis(

@@ -7,6 +7,7 @@ beyond their commands: that is gone as soon as the commands are, while the obser
 """
 
 from dataclasses import dataclass
+from operator import mul
 from typing import NamedTuple
 
 from shipcosim.models.control.observer import DpShip
@@ -325,8 +326,8 @@ def _elapsed(surroundings, thrusters, h, hull, parameters):
 def _corrected(mean, covariance, row, innovation, noise):
     """Kalman update of mean and covariance by one scalar measurement."""
     # P cᵀ, then c P cᵀ + R: a scalar, so no matrix is inverted.
-    spread = [sum(p * slope for p, slope in zip(line, row, strict=True)) for line in covariance]
-    variance = sum(slope * p for slope, p in zip(row, spread, strict=True)) + noise
+    spread = [sum(map(mul, line, row)) for line in covariance]
+    variance = sum(map(mul, row, spread)) + noise
     gain = [p / variance for p in spread]
     mean = [value + k * innovation for value, k in zip(mean, gain, strict=True)]
     covariance = tuple(
