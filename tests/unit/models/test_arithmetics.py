@@ -958,8 +958,8 @@ def test_every_function_that_promises_tensors_is_among_the_cases():
     covered |= {
         own_model.thrust_told,
         own_model.delivered,
-        own_model.wrong_supply,
-        own_model.wrong_damping,
+        own_model.wind_and_thrust_error,
+        own_model.damping_error,
         own_model.wash_of,
         own_model.moved,
     }

@@ -1,7 +1,7 @@
 """Equations of motion with the parts that a ship's own model lacks: residual load, thrust run-down.
 
-Current, remaining load and the coefficients of a residual load that is linear in them (`wrong_supply`,
-`wrong_damping`) are states beside the motion; `own_record` estimates them all.
+Current, remaining load and the coefficients of a residual load that is linear in them (`wind_and_thrust_error`,
+`damping_error`) are states beside the motion; `own_record` estimates them all.
 """
 
 from collections.abc import Sequence
@@ -189,7 +189,7 @@ def delivered(thrust: Thrust, command: Thrust, h: float, *, learned: Learned) ->
     )
 
 
-def wrong_supply(
+def wind_and_thrust_error(
     coefficients: Sequence[Arithmetic], wind: Load, thrust: Thrust, hull: HullParameters
 ) -> Load:
     """Errors of the model's wind load and thrust: the part of the residual load that a step holds.
@@ -227,7 +227,7 @@ def wrong_supply(
     )
 
 
-def wrong_damping(
+def damping_error(
     coefficients: Sequence[Arithmetic],
     u_r: Arithmetic,
     v_r: Arithmetic,
@@ -291,7 +291,7 @@ def wash_of(thrust: Thrust) -> Arithmetic:
 
     References
     ----------
-    As `wrong_damping`.
+    As `damping_error`.
     """
     return HELD * sqrt((hypot(thrust.stern_X, thrust.stern_Y) + _TINY) / HELD)
 
@@ -347,17 +347,17 @@ def moved(
     # Wind, remaining force and thrust are held over the step, and so are their errors.
     load = wind_loads(*apparent_wind(middle, u, v, *air), wind=wind)
     force_X, force_Y = to_body(middle, force_north, force_east)
-    wrong_X, wrong_Y, wrong_N = wrong_supply(coefficients, load, thrust, hull)
-    X = load[0] + wrong_X + thrust.stern_X + force_X
-    Y = load[1] + wrong_Y + thrust.stern_Y + thrust.bow + force_Y
-    N = load[2] + wrong_N + ARM * hull.length * (thrust.bow - thrust.stern_Y) + moment
+    error_X, error_Y, error_N = wind_and_thrust_error(coefficients, load, thrust, hull)
+    X = load[0] + error_X + thrust.stern_X + force_X
+    Y = load[1] + error_Y + thrust.stern_Y + thrust.bow + force_Y
+    N = load[2] + error_N + ARM * hull.length * (thrust.bow - thrust.stern_Y) + moment
     wash = wash_of(thrust)
 
     def rates(u, v, r):
         # Damping depends on the velocity through the water, so it is evaluated within each stage.
         u_r = u - u_c
         v_r = v - v_c
-        damping_X, damping_Y, damping_N = wrong_damping(coefficients, u_r, v_r, r, wash, hull)
+        damping_X, damping_Y, damping_N = damping_error(coefficients, u_r, v_r, r, wash, hull)
         u_dot, v_dot, r_dot = accelerations(
             u_r, v_r, r, X + damping_X, Y + damping_Y, N + damping_N, hull=hull
         )

@@ -66,10 +66,10 @@ class LearnedForce(Fmu):
         )
         coefficients = tuple(self.learned["coefficients"].tolist())
         wash = own_model.wash_of(thrust)
-        damping = own_model.wrong_damping(
+        damping = own_model.damping_error(
             coefficients, self.u_r, self.v_r, self.r, wash, hull=self.hull
         )
-        supply = own_model.wrong_supply(coefficients, wind, thrust, hull=self.hull)
+        supply = own_model.wind_and_thrust_error(coefficients, wind, thrust, hull=self.hull)
         return [a + b for a, b in zip(damping, supply, strict=True)]
 
     def _paper_iv(self):

@@ -199,7 +199,7 @@ def test_residual_load_damps():
         7: (0, 0, 0.02),
     }.items():
         one = tuple(float(k == number) for number in range(len(COEFFICIENTS)))
-        load = own_model.wrong_damping(one, *map(float, motion), 0.0, HULL)
+        load = own_model.damping_error(one, *map(float, motion), 0.0, HULL)
         assert sum(a * b for a, b in zip(load, motion, strict=True)) < 0.0
 
 
@@ -210,12 +210,12 @@ def test_port_mirrors_starboard():
     mirror = Thrust(-thrust.bow, thrust.stern_X, -thrust.stern_Y)
     for one, other in (
         (
-            own_model.wrong_supply(c, tuple(wind), thrust, HULL),
-            own_model.wrong_supply(c, (wind[0], -wind[1], -wind[2]), mirror, HULL),
+            own_model.wind_and_thrust_error(c, tuple(wind), thrust, HULL),
+            own_model.wind_and_thrust_error(c, (wind[0], -wind[1], -wind[2]), mirror, HULL),
         ),
         (
-            own_model.wrong_damping(c, u, v, r, own_model.wash_of(thrust), HULL),
-            own_model.wrong_damping(c, u, -v, -r, own_model.wash_of(mirror), HULL),
+            own_model.damping_error(c, u, v, r, own_model.wash_of(thrust), HULL),
+            own_model.damping_error(c, u, -v, -r, own_model.wash_of(mirror), HULL),
         ),
     ):
         assert other == pytest.approx((one[0], -one[1], -one[2]))
