@@ -228,7 +228,7 @@ def predict(
         # Acceleration by the model, then the correction by the mean of the networks. It is the next
         # input: the networks feed back on themselves.
         dot = model_acceleration(psi, tuple(nu), past.wind, past.thrusters, hull=hull, wind=wind)
-        inputs = np.stack([*nu, *dot, *residual], axis=-1)
+        inputs = np.array([*nu, *dot, *residual]).T
         mean = outputs(ensemble, np.atleast_2d(inputs)).mean(axis=0)
         residual = mean[0].tolist() if inputs.ndim == 1 else mean.T
         # Explicit Euler for velocities; the position uses their mean.
