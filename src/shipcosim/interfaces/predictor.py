@@ -1,5 +1,6 @@
 """Interface of the predictors of the motion to come, from what a ship knows."""
 
+from functools import partial
 from math import ceil, inf
 from typing import Any, NamedTuple
 
@@ -171,11 +172,10 @@ class MotionPredictor(Fmu):
         awaited = []
         for at, foreseen in self.awaited:
             has_come = at <= t + 1e-6
-            errors = own_errors(self.errors, known.ship, foreseen, since, regions=self.regions)
-            self.errors = (
-                where(has_come, errors[0], self.errors[0]),
-                where(has_come, errors[1], self.errors[1]),
+            judged = partial(
+                own_errors, self.errors, known.ship, foreseen, since, regions=self.regions
             )
+            self.errors = choose(has_come, judged, lambda: self.errors)
             awaited.append((where(has_come, inf, at), foreseen))
         self.awaited = tuple(awaited)
         self.lost_for = where(thrust_is_lost(known), maximum(self.lost_for, 0.0) + since, -1.0)

@@ -1,6 +1,8 @@
-"""Data to train on: commands drawn at random."""
+"""Data to train on: commands drawn at random, records of many ships in one."""
 
 import hashlib
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -70,3 +72,22 @@ def digest(array: np.ndarray) -> str:
         First 16 digits of its SHA-256.
     """
     return hashlib.sha256(np.ascontiguousarray(array).tobytes()).hexdigest()[:16]
+
+
+def mapped(function: Any, record: Any) -> Any:
+    """Apply a function to each array in nested tuples; None stays None."""
+    if not isinstance(record, tuple):
+        # Leaves: arrays, or None for what is not known.
+        return None if record is None else function(record)
+    parts = [mapped(function, part) for part in record]
+    # Named tuples keep their type.
+    return type(record)(*parts) if hasattr(record, "_fields") else tuple(parts)
+
+
+def stacked(records: Sequence[Any], library: Any, axis: int = 0) -> Any:
+    """Join nested tuples of one form, their arrays stacked along a new axis, by torch or numpy."""
+    first = records[0]
+    if not isinstance(first, tuple):
+        return None if first is None else library.stack(list(records), axis)
+    parts = [stacked([record[k] for record in records], library, axis) for k in range(len(first))]
+    return type(first)(*parts) if hasattr(first, "_fields") else tuple(parts)

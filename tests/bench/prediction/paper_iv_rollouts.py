@@ -10,9 +10,10 @@ from typing import NamedTuple
 import numpy as np
 import torch
 
+from shipcosim.learn.datasets import mapped
 from shipcosim.learn.prediction.drift import SCALES
 from shipcosim.learn.prediction.paper_iv import PaperIVTraining, arrays_of, first_weights
-from shipcosim.learn.prediction.rollouts import HORIZONS, Sailed, Ship, known_of, mapped
+from shipcosim.learn.prediction.rollouts import HORIZONS, Sailed, Ship, known_of
 from shipcosim.learn.training import Progress, repeatable
 from shipcosim.models.core.kinematics import to_ned
 from shipcosim.models.prediction import paper_iv

@@ -15,6 +15,7 @@ if __name__ == "__main__":  # as a test its folders are on the path already
 
 from prediction import measuring, paper_iv_rollouts  # noqa: E402
 from shipcosim.angles import wrap_series  # noqa: E402
+from shipcosim.learn.datasets import mapped  # noqa: E402
 from shipcosim.learn.prediction import paper_iv, rollouts, training  # noqa: E402
 from shipcosim.models.prediction import paper_iv as law  # noqa: E402
 
@@ -22,6 +23,9 @@ BEFORE, STARTS, SECONDS = 170, 20, 60
 TRAINING = range(1, 13), range(1, 25)
 CHOICE = range(300, 312)
 STEPS = 20, 60, 150
+NO_RESIDUAL = law.Ensemble(
+    ((np.zeros((1, 9, 3)), np.zeros((1, 1, 3))),), np.zeros(9), np.ones(9), np.zeros(3), np.ones(3)
+)
 
 
 def errors(ensemble, seeds, ship):
@@ -33,9 +37,9 @@ def errors(ensemble, seeds, ship):
         axis=1,
     )
     everything = rollouts.known_of(sailed.known, ship)
-    past, found = law.begin(rollouts.mapped(lambda array: array[0], everything)), []
+    past, found = law.begin(mapped(lambda array: array[0], everything)), []
     for row in range(1, BEFORE + STARTS + 1):
-        known = rollouts.mapped(lambda array, row=row: array[row], everything)
+        known = mapped(lambda array, row=row: array[row], everything)
         past = law.step(past, known, hull=ship.hull, wind=ship.wind)
         if row > BEFORE:
             last = law.predict(
@@ -63,7 +67,7 @@ def show(name, ensemble, seeds, ship):
 
 def main():
     ship = training.ship()
-    show("the equations of motion alone", None, CHOICE, ship)
+    show("the equations of motion alone", NO_RESIDUAL, CHOICE, ship)
     for seeds in TRAINING:
         sailed = training.aligned([measuring.recorded(seed, 1.0) for seed in seeds], BEFORE)
         inputs, targets = paper_iv.samples(sailed, ship)

@@ -970,12 +970,14 @@ def test_every_function_that_promises_tensors_is_among_the_cases():
         wave_loads.drift_at,
     }  # parts of those that are cases
     # vectors and records: test_own_record compares them
-    covered |= {own_record.begin, own_record.step, own_record.predict, own_record.member}
+    covered |= {own_record.begin, own_record.step, own_record.predict}
     covered |= {own_record.weights, own_record.mixed}
     covered |= {
         own_model.thrust_told,
         own_model.delivered,
-        own_model.residual_load,
+        own_model.wind_and_thrust_error,
+        own_model.damping_error,
+        own_model.wash_of,
         own_model.moved,
     }
     covered |= {drive.drive_step}  # by the steps of both thrusters

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from shipcosim.learn.datasets import mapped, stacked
 from shipcosim.learn.docking.records import Record
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters
@@ -96,18 +97,9 @@ def replay(records: Sequence[Record], model: ShipModel) -> Replay:
     )
 
 
-def at_second(aboard: Aboard, k: int) -> Aboard:
-    """Known quantities at second k, from (m, n) arrays."""
-    ship, wind_speed, wind_from, *rest = aboard
-    parts = (tuple(series[:, k] for series in group) for group in rest)
-    return Aboard(
-        Motion(*(series[:, k] for series in ship)), wind_speed[:, k], wind_from[:, k], *parts
-    )
-
-
 def _followed(aboard, model):
     """Averaged starts and estimated states at every second."""
-    now = at_second(aboard, 0)
+    now = mapped(lambda series: series[:, 0], aboard)
     latest: helm.Start = ()
     estimate = docking.begin(now, model.helm.position_age)
     starts = []
@@ -115,7 +107,7 @@ def _followed(aboard, model):
     # Step through the records as the FMU does: each estimate uses only the past.
     for k in range(aboard.wind_speed.shape[1]):
         before = now
-        now = at_second(aboard, k)
+        now = mapped(lambda series, k=k: series[:, k], aboard)
         # Update the estimated load from the last second's motion.
         if k:
             estimate = docking.follow(
@@ -124,12 +116,8 @@ def _followed(aboard, model):
         # Average heading and velocity over three seconds: noise matters over 30 s.
         latest = helm.remembered(latest, now.ship)
         starts.append(helm.smoothed(latest, now.ship))
-        owns.append((*estimate.ship, *estimate.load))
-    # Stack the seconds; the first six columns are motion, the last three load.
-    records = [np.stack(values, axis=1) for values in zip(*owns, strict=True)]
-    start = Motion(*(np.stack(values, axis=1) for values in zip(*starts, strict=True)))
-    X, Y, N = records[6:]
-    return start, Own(Motion(*records[:6]), (X, Y, N))
+        owns.append(estimate)
+    return stacked(starts, np, 1), stacked(owns, np, 1)
 
 
 def ahead(values: np.ndarray) -> np.ndarray:

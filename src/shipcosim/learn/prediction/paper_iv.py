@@ -12,8 +12,9 @@ from itertools import pairwise
 import numpy as np
 import torch
 
+from shipcosim.learn.datasets import mapped
 from shipcosim.learn.networks import Arrays
-from shipcosim.learn.prediction.rollouts import Sailed, Ship, known_of, mapped
+from shipcosim.learn.prediction.rollouts import Sailed, Ship, known_of
 from shipcosim.learn.training import BestWeights, Descent, Epochs, Progress, repeatable
 from shipcosim.models.prediction import paper_iv
 

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import torch
 
+from shipcosim.learn.datasets import mapped, stacked
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction import drift_off, own_model, own_record
@@ -72,25 +73,6 @@ def known_of(rows: np.ndarray, ship: Ship) -> Known:
 def tensors(record: Any) -> Any:
     """Turn arrays in nested tuples into tensors."""
     return mapped(lambda array: torch.from_numpy(np.ascontiguousarray(array, dtype=float)), record)
-
-
-def mapped(function: Any, record: Any) -> Any:
-    """Apply a function to each array in nested tuples; None stays None."""
-    if not isinstance(record, tuple):
-        # Leaves: arrays, or None for what is not known.
-        return None if record is None else function(record)
-    parts = [mapped(function, part) for part in record]
-    # Named tuples keep their type.
-    return type(record)(*parts) if hasattr(record, "_fields") else tuple(parts)
-
-
-def stacked(records: Sequence[Any], library: Any) -> Any:
-    """Join nested tuples of one form, their arrays stacked along a new first axis."""
-    first = records[0]
-    if not isinstance(first, tuple):
-        return None if first is None else library.stack(list(records))
-    parts = [stacked([record[k] for record in records], library) for k in range(len(first))]
-    return type(first)(*parts) if hasattr(first, "_fields") else tuple(parts)
 
 
 def followed(

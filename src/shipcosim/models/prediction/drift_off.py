@@ -102,7 +102,7 @@ def begin(
     Parameters
     ----------
     known : Known
-        Inputs of the predictor now; floats or (...) arrays.
+        Inputs of the predictor now, in floats.
     trained : Trained
         The ensemble.
     hull : HullParameters
@@ -188,47 +188,24 @@ def predict(
 
     Returns
     -------
-    tuple of Motion, float or (...) array
+    tuple of Motion, float
         One per horizon; the share, 0 where the prediction is that of the kinetic predictor. [their units; 1]
     """
-    # The kinetic prediction is the fallback.
+    # Each filter's prediction, and how far they can be trusted; without a believed wind not at all.
+    own = state.own
+    motions = own_record.predict(
+        own, known, horizons=horizons, steps=STEPS, learned=trained.learned, hull=hull, wind=wind
+    )
+    numbers = measures(own, known, motions[-1], trained.learned)
+    share = trust(numbers, trained.limits) * known.wind_believed
+    learned = tuple(own_record.mixed(own, motion) for motion in motions)
+    # The kinetic prediction is the fallback, for what is not trusted.
+    if share == 1.0:
+        return learned, share
     alone = dead_reckoning.predict(
         known, state.kinetic, horizons=horizons, longest_step=longest_step, hull=hull, wind=wind
     )
-    options = {
-        "horizons": horizons,
-        "steps": STEPS,
-        "learned": trained.learned,
-        "hull": hull,
-        "wind": wind,
-    }
-    motions = _ahead(state.own, known, options)
-    # Trust in the filters; without a believed wind they have none.
-    share = (
-        trust(measures(state.own, known, motions[-1], trained.learned), trained.limits)
-        * known.wind_believed
-    )
-    mixed = (own_record.mixed(state.own, motion) for motion in motions)
-    # The filters' predictions are averaged by their weights, then blended with the kinetic one.
-    return tuple(Motion(*blend(a, b, share)) for a, b in zip(alone, mixed, strict=True)), share
-
-
-def _ahead(record, known, options):
-    """Predictions of all filters; for one ship in floats, one after the other, which is faster."""
-    if record.mean.ndim > 2:
-        return own_record.predict(record, known, **options)
-    try:
-        by_filter = [
-            own_record.predict(own_record.member(record, k), known, **options)
-            for k in range(len(record.mean))
-        ]
-    except (
-        ValueError,
-        IndexError,
-        OverflowError,
-    ):  # what is no number stops floats; in arrays it goes on as NaN
-        return own_record.predict(record, known, **options)
-    return [Motion(*np.array(motions).T) for motions in zip(*by_filter, strict=True)]
+    return tuple(Motion(*blend(a, b, share)) for a, b in zip(alone, learned, strict=True)), share
 
 
 def measures(record: Record, known: Known, last: Motion, learned: Learned) -> np.ndarray:
@@ -254,9 +231,8 @@ def measures(record: Record, known: Known, last: Motion, learned: Learned) -> np
     share = own_record.weights(record)
     (x, y) = last[:2]
     states = (share[..., None] * record.mean).sum(axis=0)
-    u_r, v_r = through_water(
-        known.ship.psi, known.ship.u, known.ship.v, *np.moveaxis(states[..., CURRENT], -1, 0)
-    )
+    psi, u, v, r = known.ship[2:]
+    u_r, v_r = through_water(psi, u, v, states[..., CURRENT.start], states[..., CURRENT.start + 1])
     # Deviation from the prior in standard deviations: the record contradicts what was learned.
     off = (states[..., COEFFICIENT] - learned.mean) / learned.std[..., COEFFICIENT]
     force = states[..., FORCE] / learned.std[..., FORCE]
@@ -265,22 +241,15 @@ def measures(record: Record, known: Known, last: Motion, learned: Learned) -> np
     numbers = [
         u_r,
         v_r,
-        known.ship.r,
-        hypot(record.wind_north, record.wind_east),
-        _size(states[..., CURRENT]),
-        _size(force),
-    ]
-    numbers += [
+        r,
+        hypot(*record.wind),
+        np.linalg.norm(states[..., CURRENT], axis=-1),
+        np.linalg.norm(force, axis=-1),
         states[..., MOMENT] / learned.std[..., MOMENT],
         sqrt((off * off).mean(axis=-1)),
         sqrt(apart.sum(axis=0)),
     ]
-    return np.abs(np.stack(np.broadcast_arrays(*numbers)))
-
-
-def _size(vectors):
-    """Length of vectors along the last axis."""
-    return hypot(vectors[..., 0], vectors[..., 1])
+    return np.abs(np.stack(numbers))
 
 
 def trust(numbers: np.ndarray, limits: np.ndarray) -> Arithmetic:

@@ -1,7 +1,7 @@
 """Equations of motion with the parts that a ship's own model lacks: residual load, thrust run-down.
 
-Current, remaining load and the coefficients of a residual load that is linear in them (`residual_load`) are states
-beside the motion; `own_record` estimates them all.
+Current, remaining load and the coefficients of a residual load that is linear in them (`wind_and_thrust_error`,
+`damping_error`) are states beside the motion; `own_record` estimates them all.
 """
 
 from collections.abc import Sequence
@@ -189,29 +189,63 @@ def delivered(thrust: Thrust, command: Thrust, h: float, *, learned: Learned) ->
     )
 
 
-def residual_load(
-    coefficients: tuple,
-    u_r: Arithmetic,
-    v_r: Arithmetic,
-    r: Arithmetic,
-    wind: Load,
-    thrust: Thrust,
-    hull: HullParameters,
+def wind_and_thrust_error(
+    coefficients: Sequence[Arithmetic], wind: Load, thrust: Thrust, hull: HullParameters
 ) -> Load:
-    """Load that the ship's own model lacks, linear in its coefficients.
+    """Errors of the model's wind load and thrust: the part of the residual load that a step holds.
 
     Parameters
     ----------
-    coefficients : tuple of 18 floats or (...) arrays or tensors
-        In the order of `COEFFICIENTS`: of resistance, cross flow and turning over sizes that hulls have (of the
-        length, draught and density), of wind load and thrust over those that the model has, and of the wash of
-        thrusters that run, as a damping. [1]
-    u_r, v_r, r : float or (...) array or tensor
-        Velocity through the water and yaw rate. [m/s, m/s, rad/s]
-    wind : tuple of three, like u_r
+    coefficients : sequence of 18 floats or (...) arrays or tensors
+        In the order of `COEFFICIENTS`; those of wind and thrust count here, over the loads that the model has. [1]
+    wind : tuple of three, like coefficients
         Wind load by the model. [N, N, N.m]
     thrust : Thrust
         Delivered, by the model. [N]
+    hull : HullParameters
+        Its length.
+
+    Returns
+    -------
+    tuple of three, like coefficients
+        [N, N, N.m]
+
+    References
+    ----------
+    Statics.
+    """
+    c = coefficients
+    # Errors of thrust at bow and stern act at the same arms.
+    stern = c[14] * thrust.stern_Y
+    bow = c[15] * thrust.bow
+    # A side force of the wind may act at another place, told by a lever over a tenth of the length.
+    N = c[11] * wind[2] + 0.1 * hull.length * c[12] * wind[1]
+    return (
+        c[9] * wind[0] + c[13] * thrust.stern_X,
+        c[10] * wind[1] + stern + bow,
+        N + ARM * hull.length * (bow - stern),
+    )
+
+
+def damping_error(
+    coefficients: Sequence[Arithmetic],
+    u_r: Arithmetic,
+    v_r: Arithmetic,
+    r: Arithmetic,
+    wash: Arithmetic,
+    hull: HullParameters,
+) -> Load:
+    """Hull loads that the ship's own model lacks, and the drag by the wash of running thrusters.
+
+    Parameters
+    ----------
+    coefficients : sequence of 18 floats or (...) arrays or tensors
+        In the order of `COEFFICIENTS`: of resistance, cross flow and turning over sizes that hulls have (of the
+        length, draught and density), and of the wash, as a damping. [1]
+    u_r, v_r, r : float or (...) array or tensor
+        Velocity through the water and yaw rate. [m/s, m/s, rad/s]
+    wash : like u_r
+        Of the thrusters, by `wash_of`. [N]
     hull : HullParameters
         Length, draught, density.
 
@@ -229,31 +263,42 @@ def residual_load(
     c = coefficients
     length = hull.length
     size = 0.5 * hull.water_density * length * hull.draught
-    arm = ARM * length
-    # Wash of running stern thrusters: momentum drag proportional to their speed, ∝ √T.
-    wash = HELD * sqrt((hypot(thrust.stern_X, thrust.stern_Y) + _TINY) / HELD)
-    drag = -c[17] * wash * (v_r - arm * r)
     # Yaw rate as the speed of bow and stern, so that all terms are forces.
     turn = length * r
-    # Surge: damping (quadratic and linear), wind and thrust errors. 0.034 is the size that the
-    # resistance of hulls has.
-    X = (
-        -0.034 * size * (c[0] * abs(u_r) + c[1] * SLOW) * u_r
-        + c[9] * wind[0]
-        + c[13] * thrust.stern_X
-    )
-    # Sway and yaw: cross flow, turning, Munk moment (c6 u v), wind and wash.
-    Y = -size * (c[2] * abs(v_r) + c[3] * SLOW) * v_r + c[10] * wind[1] + drag
+    # Surge: quadratic and linear. 0.034 is the size that the resistance of hulls has.
+    X = -0.034 * size * (c[0] * abs(u_r) + c[1] * SLOW) * u_r
+    # Sway and yaw: cross flow, turning and Munk moment (c6 u v).
+    Y = -size * (c[2] * abs(v_r) + c[3] * SLOW) * v_r
     N = (c[4] * abs(v_r) + c[5] * SLOW + c[6] * u_r) * v_r + (c[7] * abs(turn) + c[8] * SLOW) * turn
-    N = -size * length * N + c[11] * wind[2] + 0.1 * length * c[12] * wind[1] - arm * drag
-    # Errors of thrust at bow and stern act at the same arms.
-    stern = c[14] * thrust.stern_Y
-    bow = c[15] * thrust.bow
-    return X - c[16] * wash * u_r, Y + stern + bow, N + arm * (bow - stern)
+    # The wash drags at the stern.
+    arm = ARM * length
+    drag = -c[17] * wash * (v_r - arm * r)
+    return X - c[16] * wash * u_r, Y + drag, -size * length * N - arm * drag
+
+
+def wash_of(thrust: Thrust) -> Arithmetic:
+    """Wash of running stern thrusters: momentum drag is in proportion to their speed, the root of thrust.
+
+    Parameters
+    ----------
+    thrust : Thrust
+        Delivered; floats or (...) arrays or tensors.
+
+    Returns
+    -------
+    float or (...) array or tensor
+        The thrust itself at `HELD`. [N]
+
+    References
+    ----------
+    As `damping_error`.
+    """
+    return HELD * sqrt((hypot(thrust.stern_X, thrust.stern_Y) + _TINY) / HELD)
 
 
 def moved(
     states: Sequence[Arithmetic],
+    coefficients: Sequence[Arithmetic],
     air: Vector,
     thrust: Thrust,
     h: float,
@@ -266,8 +311,10 @@ def moved(
 
     Parameters
     ----------
-    states : sequence of 29 floats or (...) arrays or tensors
-        `STATES`. [their units]
+    states : sequence of 11 floats or (...) arrays or tensors
+        `STATES` but for the coefficients. [their units]
+    coefficients : sequence of 18, like states
+        `COEFFICIENTS`, which stay. [1]
     air : tuple of two, like states
         Velocity of the air, north and east. [m/s]
     thrust : Thrust
@@ -281,8 +328,8 @@ def moved(
 
     Returns
     -------
-    list of 29, like states
-        [units of `STATES`]
+    list of 11, like states
+        [their units]
 
     Notes
     -----
@@ -294,42 +341,50 @@ def moved(
     """
     # Midpoint rule: everything that turns with the ship is evaluated at half the turn.
     half = 0.5 * h
-    (x, y, psi, u, v, r) = states[:6]
+    x, y, psi, u, v, r, current_north, current_east, force_north, force_east, moment = states
     middle = psi + half * r
-    u_c, v_c = to_body(middle, *states[CURRENT])
-    # Wind, remaining force and thrust are held over the step.
+    u_c, v_c = to_body(middle, current_north, current_east)
+    # Wind, remaining force and thrust are held over the step, and so are their errors.
     load = wind_loads(*apparent_wind(middle, u, v, *air), wind=wind)
-    force_X, force_Y = to_body(middle, *states[FORCE])
-    X = load[0] + thrust.stern_X + force_X
-    Y = load[1] + thrust.stern_Y + thrust.bow + force_Y
-    N = load[2] + ARM * hull.length * (thrust.bow - thrust.stern_Y) + states[MOMENT]
-    coefficients = tuple(states[COEFFICIENT])
+    force_X, force_Y = to_body(middle, force_north, force_east)
+    error_X, error_Y, error_N = wind_and_thrust_error(coefficients, load, thrust, hull)
+    X = load[0] + error_X + thrust.stern_X + force_X
+    Y = load[1] + error_Y + thrust.stern_Y + thrust.bow + force_Y
+    N = load[2] + error_N + ARM * hull.length * (thrust.bow - thrust.stern_Y) + moment
+    wash = wash_of(thrust)
 
     def rates(u, v, r):
-        # The residual load depends on the velocity, so it is evaluated within each stage.
-        more = residual_load(coefficients, u - u_c, v - v_c, r, load, thrust, hull)
+        # Damping depends on the velocity through the water, so it is evaluated within each stage.
+        u_r = u - u_c
+        v_r = v - v_c
+        damping_X, damping_Y, damping_N = damping_error(coefficients, u_r, v_r, r, wash, hull)
         u_dot, v_dot, r_dot = accelerations(
-            u - u_c, v - v_c, r, X + more[0], Y + more[1], N + more[2], hull=hull
+            u_r, v_r, r, X + damping_X, Y + damping_Y, N + damping_N, hull=hull
         )
         # From rates through water to rates over ground: the current turns in body axes.
         return u_dot + r * v_c, v_dot - r * u_c, r_dot
 
     # Half a step, then the whole step with the slope of the middle.
-    first = rates(u, v, r)
-    u_m = u + half * first[0]
-    v_m = v + half * first[1]
-    r_m = r + half * first[2]
-    second = rates(u_m, v_m, r_m)
+    u_dot, v_dot, r_dot = rates(u, v, r)
+    u_m = u + half * u_dot
+    v_m = v + half * v_dot
+    r_m = r + half * r_dot
+    u_dot, v_dot, r_dot = rates(u_m, v_m, r_m)
     north, east = to_ned(psi + half * r_m, u_m, v_m)
-    # Speeds are bounded, so a filter that diverges stays finite.
-    place = x + h * north, y + h * east, psi + h * r_m
-    speeds = [
-        clip(now + h * rate, -most, most)
-        for now, rate, most in zip((u, v, r), second, FASTEST, strict=True)
+    # Remaining force and moment are Gauss-Markov processes, whose mean decays.
+    kept = exp(-h / learned.force_time)
+    most_u, most_v, most_r = FASTEST
+    return [
+        x + h * north,
+        y + h * east,
+        psi + h * r_m,
+        # Speeds are bounded, so a filter that diverges stays finite.
+        clip(u + h * u_dot, -most_u, most_u),
+        clip(v + h * v_dot, -most_v, most_v),
+        clip(r + h * r_dot, -most_r, most_r),
+        current_north,
+        current_east,
+        kept * force_north,
+        kept * force_east,
+        exp(-h / learned.moment_time) * moment,
     ]
-    # Remaining force and moment: Gauss-Markov processes, whose mean decays. Current and
-    # coefficients stay.
-    force = exp(-h / learned.force_time)
-    moment = exp(-h / learned.moment_time)
-    faded = [force * state for state in states[FORCE]]
-    return [*place, *speeds, *states[CURRENT], *faded, moment * states[MOMENT], *coefficients]

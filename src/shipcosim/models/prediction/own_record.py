@@ -9,6 +9,8 @@ learned over many ships (`learn.prediction.drift`); from there each ship's own r
 
 from typing import NamedTuple
 
+import numpy as np
+
 from shipcosim.angles import wrap
 from shipcosim.models.core.maths import (
     Arithmetic,
@@ -20,15 +22,16 @@ from shipcosim.models.core.maths import (
     sin,
     sqrt,
     where,
+    where_all,
 )
-from shipcosim.models.core.motion import Motion
+from shipcosim.models.core.motion import Motion, Vector
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction.own_model import (
+    COEFFICIENT,
     COEFFICIENTS,
     FASTEST,
     FORCE,
     MEASURED,
-    MOMENT,
     STATES,
     Learned,
     Thrust,
@@ -56,6 +59,8 @@ DIFFERENCES = (
     *(0.05,) * len(COEFFICIENTS),
 )
 """Differences over which slopes are taken. [units of `STATES`]"""
+NOISE_OF_MEASURED = [0, 0, 1, 2, 2, 3]
+"""Number in `Learned.noise` of each of `MEASURED`. [1]"""
 STRONGEST = 5.0  # m/s, current from which on a filter has gone astray, as from `FASTEST` on
 NO_NUMBER = 1e12  # beyond any sum of states and likelihood
 LEAST = -30.0  # logarithm of a weight, below which none falls: so it can come back
@@ -75,9 +80,9 @@ class Record(NamedTuple):
         Logarithms of the filters' weights. [1]
     thrust : Thrust
         Delivered now; (...) arrays or tensors. [N]
-    air_north, air_east : float or (...) array or tensor
-        Velocity of the air as measured now. [m/s]
-    wind_north, wind_east : like air_north
+    air : tuple of two floats or (...) arrays or tensors
+        Velocity of the air as measured now, north and east. [m/s]
+    wind : like air
         Its mean. [m/s]
     """
 
@@ -85,10 +90,8 @@ class Record(NamedTuple):
     covariance: Arithmetic
     likelihood: Arithmetic
     thrust: Thrust
-    air_north: Arithmetic
-    air_east: Arithmetic
-    wind_north: Arithmetic
-    wind_east: Arithmetic
+    air: Vector
+    wind: Vector
 
 
 def begin(known: Known, *, learned: Learned, hull: HullParameters) -> Record:
@@ -118,10 +121,11 @@ def begin(known: Known, *, learned: Learned, hull: HullParameters) -> Record:
     mean = library.stack(_believed(known, learned, like))
     std = learned.std + like[..., None]
     covariance = (std * std)[..., None] * library.eye(len(STATES), dtype=std.dtype)
-    air = [like + speed for speed in air_velocity(known)]
+    north, east = air_velocity(known)
+    air = like + north, like + east
     covariance = library.stack([covariance] * len(DIRECTIONS))
     return Record(
-        mean, covariance, 0.0 * mean[..., 0], thrust_told(known.thrusters, hull), *air, *air
+        mean, covariance, 0.0 * mean[..., 0], thrust_told(known.thrusters, hull), air, air
     )
 
 
@@ -217,15 +221,11 @@ def step(
     command = thrust_told(known.thrusters, hull)
     # A disbelieved wind is replaced by its mean.
     believed = known.wind_believed > 0.5
-    air = air_velocity(known)
-    air = [
-        where(believed, now, mean)
-        for now, mean in zip(air, (record.wind_north, record.wind_east), strict=True)
-    ]
+    air = where_all(believed, air_velocity(known), record.wind)
     # Thrust and wind at the middle of the step, as the midpoint rule needs them.
     thrust = delivered(record.thrust, command, h, learned=learned)
     held = Thrust(*[0.5 * (a + b) for a, b in zip(record.thrust, thrust, strict=True)])
-    over = 0.5 * (record.air_north + air[0]), 0.5 * (record.air_east + air[1])
+    over = tuple(0.5 * (a + b) for a, b in zip(record.air, air, strict=True))
     # Extended Kalman filter: predict mean and covariance, P ← F P Fᵀ + Q, then correct by the
     # observer.
     then, slopes = _elapsed(
@@ -248,10 +248,8 @@ def step(
         covariance = where(astray[..., None, None], fresh.covariance, covariance)
     # The mean wind follows with a lag of first order: gusts do not last over the horizon.
     share = 1.0 - exp(-h / learned.wind_time)
-    means = [
-        m + share * (a - m) for m, a in zip((record.wind_north, record.wind_east), air, strict=True)
-    ]
-    return Record(mean, covariance, likelihood, thrust, *air, *means)
+    slow = tuple(m + share * (a - m) for m, a in zip(record.wind, air, strict=True))
+    return Record(mean, covariance, likelihood, thrust, air, slow)
 
 
 def predict(
@@ -284,78 +282,69 @@ def predict(
     Returns
     -------
     tuple of Motion
-        One per horizon; of all filters along the first axis, or of the one that `member` gave.
+        One per horizon, of all filters along the first axis.
 
     References
     ----------
     Midpoint rule; wind, current and thrust commands are held, remaining force and moment fade.
     """
-    single = record.mean.ndim == 1  # in Python's floats it takes a tenth of the time
-    states = record.mean.tolist() if single else [record.mean[..., k] for k in range(len(STATES))]
-    thrust = record.thrust
+    # The course of the thrust is the same for all filters.
     command = thrust_told(known.thrusters, hull)
-    air = (record.wind_north, record.wind_east)
+    course = _thrust_ahead(record.thrust, command, horizons, steps, learned)
     model = {"learned": learned, "hull": hull, "wind": wind}
-    motions = []
+    if isinstance(record.mean, np.ndarray) and record.mean.ndim == 2:
+        # One ship: filter by filter in floats takes a fifth of the time of arrays of five numbers.
+        try:
+            motions = [
+                _motions_ahead(states, tuple(map(float, record.wind)), course, model)
+                for states in record.mean.tolist()
+            ]
+            return tuple(Motion(*np.array(at).T) for at in zip(*motions, strict=True))
+        except (ValueError, OverflowError):
+            # What is no number stops floats; in arrays it goes on as NaN.
+            pass
+    states = [record.mean[..., k] for k in range(len(STATES))]
+    return tuple(_motions_ahead(states, record.wind, course, model))
+
+
+def _thrust_ahead(thrust, command, horizons, steps, learned):
+    """For each horizon the step, and the thrust held over each step up to it."""
+    course = []
     before = 0.0
     for horizon, count in zip(horizons, steps, strict=True):
-        # Equal steps up to each horizon; thrust and states advance together.
+        # Equal steps up to each horizon.
         h = (horizon - before) / count
+        held = []
         for _ in range(count):
             then = delivered(thrust, command, h, learned=learned)
-            states = moved(
-                states,
-                air,
-                Thrust(*[_mean(a, b) for a, b in zip(thrust, then, strict=True)]),
-                h,
-                **model,
-            )
+            held.append(Thrust(*[_mean(a, b) for a, b in zip(thrust, then, strict=True)]))
             thrust = then
-        motions.append(Motion(*states[: len(MEASURED)]))
+        course.append((h, held))
         before = horizon
-    return tuple(motions)
+    return course
 
 
-def member(record: Record, index: int) -> Record:
-    """One of the filters, with Python floats for single numbers.
-
-    Parameters
-    ----------
-    record : Record
-        Of one ship.
-    index : int
-        Which. [1]
-
-    Returns
-    -------
-    Record
-        Of this filter.
-
-    References
-    ----------
-    Definition.
-    """
-    thrust = Thrust(*map(float, record.thrust))
-    rest = map(float, record[4:])
-    return Record(
-        record.mean[index], record.covariance[index], float(record.likelihood[index]), thrust, *rest
-    )
+def _motions_ahead(states, air, course, model):
+    """Motion at each horizon, from states as a list."""
+    coefficients = states[COEFFICIENT]
+    states = states[: COEFFICIENT.start]
+    motions = []
+    for h, held in course:
+        for thrust in held:
+            states = moved(states, coefficients, air, thrust, h, **model)
+        motions.append(Motion(*states[: len(MEASURED)]))
+    return motions
 
 
 def _believed(known, learned, like):
     """Prior means of the states, for each filter."""
     library = library_of(like)
     means = []
-    for directions in DIRECTIONS:
-        current = [learned.current_away * direction for direction in directions]
-        others = [
-            *current,
-            0.0,
-            0.0,
-            0.0,
-            *(learned.mean[..., k] for k in range(len(COEFFICIENTS))),
-        ]
-        means.append(library.stack([like + state for state in (*known.ship, *others)], -1))
+    for north, east in DIRECTIONS:
+        current = learned.current_away * north, learned.current_away * east
+        coefficients = (learned.mean[..., k] for k in range(len(COEFFICIENTS)))
+        states = (*known.ship, *current, 0.0, 0.0, 0.0, *coefficients)
+        means.append(library.stack([like + state for state in states], -1))
     return means
 
 
@@ -366,16 +355,16 @@ def _mean(a, b):
 
 def _elapsed(mean, air, thrust, h, model, library):
     """Expected states a step later, and their slopes by the present states."""
-    # Slopes by differences: all states are displaced at once, along a first axis, in one
-    # evaluation.
+    # Slopes by differences: all states are displaced at once, along a second axis after the one of
+    # the states, in one evaluation. Its first place has none displaced.
     differences = library.asarray(DIFFERENCES, dtype=mean.dtype)
-    moves = (library.eye(len(STATES), dtype=mean.dtype) * differences).reshape(
-        len(STATES), *(1,) * (mean.ndim - 1), len(STATES)
-    )
-    at = library.concatenate([mean[None], mean[None] + moves])
-    then = library.stack(
-        moved([at[..., k] for k in range(len(STATES))], air, thrust, h, **model), -1
-    )
+    moves = library.eye(len(STATES), dtype=mean.dtype) * differences
+    moves = library.concatenate([0.0 * moves[:, :1], moves], 1)
+    moves = moves.reshape(*moves.shape, *(1,) * (mean.ndim - 1))
+    at = library.moveaxis(mean, -1, 0)[:, None] + moves
+    coefficients = at[COEFFICIENT]
+    then = moved(at[: COEFFICIENT.start], coefficients, air, thrust, h, **model)
+    then = library.stack([*then, *coefficients], -1)
     # Column j of F is (f(x + d_j) - f(x)) / d_j.
     return then[0], library.moveaxis(
         (then[1:] - then[:1]) / differences.reshape((-1,) + (1,) * mean.ndim), 0, -1
@@ -389,37 +378,25 @@ def _grown(h, learned, library):
     moment = exp(-2.0 * h / learned.moment_time)
     zero = 0.0 * learned.current_walk
     variances = learned.std * learned.std
+    forces = [
+        (1.0 - kept) * variances[..., k]
+        for k, kept in enumerate((force, force, moment), FORCE.start)
+    ]
     # Random walks of velocity, yaw rate and current grow with time. Positions and coefficients get
     # no noise.
-    speed = h * learned.disturbance[..., 0] ** 2
-    rate = h * learned.disturbance[..., 1] ** 2
-    current = h * learned.current_walk**2
-    forces = [
-        (1.0 - force) * variances[..., FORCE.start],
-        (1.0 - force) * variances[..., FORCE.start + 1],
-    ]
-    forces.append((1.0 - moment) * variances[..., MOMENT])
-    diagonal = [
-        zero,
-        zero,
-        zero,
-        speed,
-        speed,
-        rate,
-        current,
-        current,
-        *forces,
-        *(zero,) * len(COEFFICIENTS),
-    ]
-    return library.stack(diagonal, -1)[..., None] * library.eye(len(STATES), dtype=variances.dtype)
+    walks = [learned.disturbance[..., k] for k in (0, 0, 1)]
+    walks += [learned.current_walk, learned.current_walk]
+    grown = [h * walk**2 for walk in walks]
+    still = len(COEFFICIENTS) * [zero]
+    diagonal = library.stack([zero, zero, zero, *grown, *forces, *still], -1)
+    return diagonal[..., None] * library.eye(len(STATES), dtype=variances.dtype)
 
 
 def _corrected(mean, covariance, ship, h, learned, library):
     """Mean and covariance corrected by the observer's estimate, and its log-likelihood."""
     count = len(MEASURED)
     # The observer's estimates count as measurements; noise averaged over a second scales with 1/h.
-    place, heading, speed, rate = (learned.noise[..., k] ** 2 / h for k in range(4))
-    noise = library.stack([place, place, heading, speed, speed, rate], -1)
+    noise = learned.noise[..., NOISE_OF_MEASURED] ** 2 / h
     noise = noise[..., None] * library.eye(count, dtype=mean.dtype)
     # The measured states come first, so C P is the first rows of P.
     rows = covariance[..., :count, :]
@@ -443,8 +420,8 @@ def _astray(then, mean, likelihood, library):
     """True for filters out of bounds, and likelihoods relative to the largest, at least `LEAST`."""
     # NaN fails the comparison, so it counts as astray too.
     astray = ~(abs(mean.sum(-1) + likelihood) < NO_NUMBER)
-    for k, most in zip((3, 4, 5, 6, 7), (*FASTEST, STRONGEST, STRONGEST), strict=True):
-        astray = astray | (abs(then[..., k]) >= most)
+    bounds = library.asarray((*FASTEST, STRONGEST, STRONGEST), dtype=mean.dtype)
+    astray = astray | (abs(then[..., 3:8]) >= bounds).any(-1)
     zero = library.zeros_like(likelihood)
     likelihood = where(astray, zero - NO_NUMBER, likelihood)
     # A floor for the weights: a filter that was wrong so far can come back.

@@ -187,7 +187,7 @@ def step(past: Past, known: Known, *, hull: HullParameters, wind: WindParameters
 def predict(
     past: Past,
     known: Known,
-    ensemble: Ensemble | None,
+    ensemble: Ensemble,
     *,
     seconds: int,
     hull: HullParameters,
@@ -201,8 +201,8 @@ def predict(
         With the sample of now; floats or (n,) arrays.
     known : Known
         Inputs of the predictor now.
-    ensemble : Ensemble or None
-        The networks; None for the equations of motion alone.
+    ensemble : Ensemble
+        The networks.
     seconds : int
         How far ahead. [s]
     hull, wind : HullParameters, WindParameters
@@ -225,16 +225,17 @@ def predict(
     residual = past.residual
     motions = []
     for _ in range(seconds):
-        # Acceleration by the model, then the correction by the mean of the networks.
+        # Acceleration by the model, then the correction by the mean of the networks. It is the next
+        # input: the networks feed back on themselves.
         dot = model_acceleration(psi, tuple(nu), past.wind, past.thrusters, hull=hull, wind=wind)
-        if ensemble is not None:
-            inputs = np.stack(np.broadcast_arrays(*nu, *dot, *residual), axis=-1)
-            mean = outputs(ensemble, inputs[None] if inputs.ndim == 1 else inputs).mean(axis=0)
-            # The predicted residual is the next input: the networks feed back on themselves.
-            residual = tuple(mean[0].tolist()) if inputs.ndim == 1 else tuple(mean.T)
-            dot = tuple(a + b for a, b in zip(dot, residual, strict=True))
+        inputs = np.array([*nu, *dot, *residual]).T
+        mean = outputs(ensemble, np.atleast_2d(inputs)).mean(axis=0)
+        residual = mean[0].tolist() if inputs.ndim == 1 else mean.T
         # Explicit Euler for velocities; the position uses their mean.
-        then = [value + PERIOD * rate for value, rate in zip(nu, dot, strict=True)]
+        then = [
+            value + PERIOD * (rate + missed)
+            for value, rate, missed in zip(nu, dot, residual, strict=True)
+        ]
         u, v, r = (0.5 * (a + b) for a, b in zip(nu, then, strict=True))
         north, east = to_ned(psi + 0.5 * PERIOD * r, u, v)
         x = x + PERIOD * north

@@ -7,6 +7,7 @@ beyond their commands: that is gone as soon as the commands are, while the obser
 """
 
 from dataclasses import dataclass
+from operator import mul
 from typing import NamedTuple
 
 from shipcosim.models.control.observer import DpShip
@@ -274,20 +275,12 @@ def _slopes(known, mean, span, hull):
     r = known.ship.r
     u_r, v_r = through_water(*known.ship[2:5], *mean[:2])
     # Central differences over the span, in u_r and in v_r.
-    over_u = zip(
-        hull_loads(u_r + span, v_r, r, hull=hull),
-        hull_loads(u_r - span, v_r, r, hull=hull),
-        strict=True,
+    X_u, Y_u, N_u = _slope(
+        hull_loads(u_r + span, v_r, r, hull=hull), hull_loads(u_r - span, v_r, r, hull=hull), span
     )
-    over_v = zip(
-        hull_loads(u_r, v_r + span, r, hull=hull),
-        hull_loads(u_r, v_r - span, r, hull=hull),
-        strict=True,
+    X_v, Y_v, N_v = _slope(
+        hull_loads(u_r, v_r + span, r, hull=hull), hull_loads(u_r, v_r - span, r, hull=hull), span
     )
-    X_u, Y_u, N_u = [
-        (below - above) / (2.0 * span) for above, below in over_u
-    ]  # a current takes from u_r
-    X_v, Y_v, N_v = [(below - above) / (2.0 * span) for above, below in over_v]
     one = 1.0 + 0.0 * psi
     # Current: by the slopes of the hull; force: turned into body axes; moment and thrust errors:
     # directly.
@@ -296,6 +289,11 @@ def _slopes(known, mean, span, hull):
         (*to_ned(psi, Y_u, Y_v), *to_ned(psi, 0.0, one), 0.0, 0.0, 1.0, 0.0),
         (*to_ned(psi, N_u, N_v), 0.0, 0.0, 1.0, 0.0, 0.0, 1.0),
     )
+
+
+def _slope(above, below, span):
+    """Slopes of loads by a current, which takes from the velocity through the water."""
+    return [(b - a) / (2.0 * span) for a, b in zip(above, below, strict=True)]
 
 
 def _elapsed(surroundings, thrusters, h, hull, parameters):
@@ -328,8 +326,8 @@ def _elapsed(surroundings, thrusters, h, hull, parameters):
 def _corrected(mean, covariance, row, innovation, noise):
     """Kalman update of mean and covariance by one scalar measurement."""
     # P cᵀ, then c P cᵀ + R: a scalar, so no matrix is inverted.
-    spread = [sum(p * slope for p, slope in zip(line, row, strict=True)) for line in covariance]
-    variance = sum(slope * p for slope, p in zip(row, spread, strict=True)) + noise
+    spread = [sum(map(mul, line, row)) for line in covariance]
+    variance = sum(map(mul, row, spread)) + noise
     gain = [p / variance for p in spread]
     mean = [value + k * innovation for value, k in zip(mean, gain, strict=True)]
     covariance = tuple(

@@ -8,6 +8,7 @@ import torch
 from learn.prediction.test_drift import SHIP, sailed
 
 from prediction import paper_iv_rollouts
+from shipcosim.learn import datasets
 from shipcosim.learn.prediction import drift, paper_iv, rollouts, training
 from shipcosim.models.prediction import paper_iv as law
 
@@ -42,9 +43,9 @@ def test_rollouts_of_paper_iv_are_its_predictions_and_learn_bit_by_bit():
         weights, arrays, pieces._replace(air=pieces.air[:1].expand(60, -1, -1)), ship
     )
     everything = rollouts.known_of(data.known, ship)
-    past = law.begin(rollouts.mapped(lambda array: array[0], everything))
+    past = law.begin(datasets.mapped(lambda array: array[0], everything))
     for row in range(1, 21):
-        now = rollouts.mapped(lambda array, row=row: array[row], everything)
+        now = datasets.mapped(lambda array, row=row: array[row], everything)
         past = law.step(past, now, hull=ship.hull, wind=ship.wind)
     expected = law.predict(
         past, now, law.ensemble_of(arrays), seconds=60, hull=ship.hull, wind=ship.wind

@@ -64,15 +64,13 @@ class LearnedForce(Fmu):
             (self.wind_X, self.wind_Y, self.wind_N),
             own_model.Thrust(self.tunnel_Y, *stern),
         )
-        return own_model.residual_load(
-            tuple(self.learned["coefficients"].tolist()),
-            self.u_r,
-            self.v_r,
-            self.r,
-            wind,
-            thrust,
-            hull=self.hull,
+        coefficients = tuple(self.learned["coefficients"].tolist())
+        wash = own_model.wash_of(thrust)
+        damping = own_model.damping_error(
+            coefficients, self.u_r, self.v_r, self.r, wash, hull=self.hull
         )
+        supply = own_model.wind_and_thrust_error(coefficients, wind, thrust, hull=self.hull)
+        return [a + b for a, b in zip(damping, supply, strict=True)]
 
     def _paper_iv(self):
         X = self.port_X + self.starboard_X + self.wind_X

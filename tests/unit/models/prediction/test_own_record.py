@@ -191,7 +191,6 @@ def test_told_thrust_gives_the_load():
 
 def test_residual_load_damps():
     """Each coefficient of the hull takes energy from a ship that moves in its direction alone."""
-    nothing, still = Thrust(0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for k, motion in {
         0: (1.0, 0.0, 0.0),
         1: (1.0, 0.0, 0.0),
@@ -200,7 +199,7 @@ def test_residual_load_damps():
         7: (0, 0, 0.02),
     }.items():
         one = tuple(float(k == number) for number in range(len(COEFFICIENTS)))
-        load = own_model.residual_load(one, *map(float, motion), still, nothing, HULL)
+        load = own_model.damping_error(one, *map(float, motion), 0.0, HULL)
         assert sum(a * b for a, b in zip(load, motion, strict=True)) < 0.0
 
 
@@ -208,10 +207,18 @@ def test_port_mirrors_starboard():
     rng = np.random.default_rng(1)
     c, (u, v, r) = tuple(rng.normal(size=len(COEFFICIENTS))), rng.normal(size=3) * (1.0, 1.0, 0.02)
     wind, thrust = rng.normal(size=3) * (1e3, 1e3, 1e4), Thrust(*(rng.normal(size=3) * 1e3))
-    one = own_model.residual_load(c, u, v, r, tuple(wind), thrust, HULL)
     mirror = Thrust(-thrust.bow, thrust.stern_X, -thrust.stern_Y)
-    other = own_model.residual_load(c, u, -v, -r, (wind[0], -wind[1], -wind[2]), mirror, HULL)
-    assert other == pytest.approx((one[0], -one[1], -one[2]))
+    for one, other in (
+        (
+            own_model.wind_and_thrust_error(c, tuple(wind), thrust, HULL),
+            own_model.wind_and_thrust_error(c, (wind[0], -wind[1], -wind[2]), mirror, HULL),
+        ),
+        (
+            own_model.damping_error(c, u, v, r, own_model.wash_of(thrust), HULL),
+            own_model.damping_error(c, u, -v, -r, own_model.wash_of(mirror), HULL),
+        ),
+    ):
+        assert other == pytest.approx((one[0], -one[1], -one[2]))
 
 
 def test_tensors_give_what_arrays_give():
@@ -260,17 +267,33 @@ def test_a_usual_drift_is_predicted_with_what_is_learned():
     assert math.dist(found[-1][:2], alone[-1][:2]) > 0.01
 
 
-def test_filters_one_by_one_in_floats_predict_what_they_predict_together():
+def test_a_ship_alone_is_predicted_as_among_others():
+    """Alone it goes filter by filter in floats; two ships go together in arrays."""
     samples = list(held_then_adrift())
-    state, known = hybrid(samples), samples[-1]
+    own, known = hybrid(samples).own, samples[-1]
     options = {"horizons": HORIZONS, "steps": drift_off.STEPS, "learned": BELIEFS, **MODEL}
-    together = own_record.predict(state.own, known, **options)
-    for index in range(len(own_record.DIRECTIONS)):
-        alone = own_record.predict(own_record.member(state.own, index), known, **options)
-        assert all(type(value) is float for value in alone[-1])
+    twice = own._replace(mean=np.stack([own.mean] * 2, axis=1))
+    together = own_record.predict(twice, known, **options)
+    for alone, both in zip(own_record.predict(own, known, **options), together, strict=True):
         np.testing.assert_allclose(
-            np.array(alone), np.array(together)[..., index], rtol=1e-12, atol=1e-12
+            np.array(alone)[..., None], np.array(both)[..., :1], rtol=1e-12, atol=1e-12
         )
+
+
+def test_dead_reckoning_is_left_out_where_all_is_learned(monkeypatch):
+    samples = list(held_then_adrift())
+    state = hybrid(samples)
+    asked = []
+    kinetic = dead_reckoning.predict
+    monkeypatch.setattr(
+        dead_reckoning,
+        "predict",
+        lambda *known, **model: asked.append(1) or kinetic(*known, **model),
+    )
+    options = {"horizons": HORIZONS, "longest_step": 2.0, "trained": TRAINED, **MODEL}
+    assert drift_off.predict(state, samples[-1], **options)[1] == 1.0 and not asked
+    _, share = drift_off.predict(state, samples[-1]._replace(wind_believed=0.0), **options)
+    assert share == 0.0 and asked
 
 
 @pytest.mark.parametrize("far", ["speed", "wind", "turning", "disbelieved"])
@@ -282,7 +305,7 @@ def test_far_from_what_was_learned_it_is_the_kinetic_predictor(far):
     elif far == "turning":
         known = known_of(known.ship._replace(r=0.2))
     elif far == "wind":
-        state = state._replace(own=state.own._replace(wind_north=np.float64(-40.0)))
+        state = state._replace(own=state.own._replace(wind=(np.float64(-40.0), np.float64(0.0))))
     else:
         known = known._replace(wind_believed=0.0)
     found, share, alone = predicted(state, known)

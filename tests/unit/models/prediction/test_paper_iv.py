@@ -26,10 +26,10 @@ def constant(*residual):
     return paper_iv.Ensemble(layers, zeros, ones, np.array(residual), np.ones(3))
 
 
-def test_without_networks_it_is_dead_reckoning():
+def test_without_residual_it_is_dead_reckoning():
     ship = Motion(1.0, 2.0, 0.7, 0.2, -0.1, 0.002)
     found = paper_iv.predict(
-        paper_iv.begin(known_of(ship)), known_of(ship), None, seconds=60, **MODEL
+        paper_iv.begin(known_of(ship)), known_of(ship), constant(0, 0, 0), seconds=60, **MODEL
     )
     around = Surroundings(*AIR, 0.0, 0.0, 0.0, 0.0, 0.0, ())
     expected = dead_reckoning.predict(
@@ -46,7 +46,7 @@ def test_networks_add_to_the_acceleration():
     past = paper_iv.begin(known_of(ship))
     without, with_ = (
         paper_iv.predict(past, known_of(ship), networks, seconds=1, **MODEL)[0]
-        for networks in (None, constant(0.01, -0.02, 1e-4))
+        for networks in (constant(0, 0, 0), constant(0.01, -0.02, 1e-4))
     )
     assert np.subtract(with_[3:], without[3:]) == pytest.approx((0.01, -0.02, 1e-4))
 
