@@ -16,11 +16,13 @@ from shipcosim.diagnose.inference.thresholds import (
     GUST_FACTOR,
     LEAST_JOLT,
     LEAST_WHITE,
+    LEFT_BY_ROWS,
     LENGTHS_PER_GYRADIUS,
     MOST_WALK,
     TUNED_BESIDE,
 )
-from shipcosim.diagnose.ship.inputs import Record, first_motion, record_of
+from shipcosim.diagnose.numerics import noise_by_differences, normal_size
+from shipcosim.diagnose.ship.inputs import Record, first_motion, rate_of, record_of
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.surrogate_building import with_surrogates
 
@@ -126,7 +128,21 @@ def tuned_noise(problem: IdentificationProblem, fit: Fit | None = None) -> Noise
         most_walk=most,
         most_white=white,
         least_white=LEAST_WHITE,
-        least_jolt=LEAST_JOLT * axes,
+        least_jolt=np.maximum(LEAST_JOLT * axes, _left_by_rows(problem.record)),
+    )
+
+
+def _left_by_rows(record: Record) -> np.ndarray:
+    """White acceleration that the averages over rows leave of a run without instruments, (3,); 0 of any other log.
+
+    Its velocities have no noise in which that would not show.
+    """
+    noise = normal_size(noise_by_differences(record.measured[..., 3:], 3, axis=-2), axis=-2)
+    if not np.all(noise < LEAST_WHITE[3:]):
+        return np.zeros(3)
+    motion = first_motion(record)
+    return LEFT_BY_ROWS * np.array(
+        [np.abs(rate_of(speed, record)).max() for speed in (motion.u, motion.v, motion.r)]
     )
 
 

@@ -130,6 +130,9 @@ on a run without instruments of a ship of 60 m: her averaged rows are off by mor
 LEAST_JOLT = 1e-4
 """Least white acceleration. [m/s1.5] Set on such a run of a ship of 12 m, whose thrusters move between rows of 0.5 s: below
 it her fits went to and fro by fifty tolerances."""
+LEFT_BY_ROWS = 0.01
+"""The same of such a run, over its largest acceleration. [s0.5] Set on turning circles of ships of 12 and 60 m, whose units
+turn by 10 deg from row to row: at 0.005 both were of another form than their own model."""
 NOISE_MARGIN = 1.5
 """Factor on the noise that position and velocity leave room for. Assumed."""
 NOISE_WIDTHS = (2.0, 4.0, 8.0)
