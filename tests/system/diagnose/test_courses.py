@@ -7,13 +7,17 @@ import pytest
 from diagnose import twin
 
 from shipcosim.diagnose.explanation.course import RAMP, SPELL, STEP, SWITCHING, Course
+from shipcosim.diagnose.explanation.course_search import _tries
 from shipcosim.diagnose.explanation.summary import evidence_of
+from shipcosim.diagnose.inference.fitting import fitted
 from shipcosim.diagnose.pipeline import find_causes
 from shipcosim.report.diagnosis.cause_section import cause_section
 from shipcosim.report.diagnosis.words import finding_text
 from truth import draw
 
 SEED = 702
+JUMP = 200.0
+"""When a compass jumps, between two blocks of the search. [s]"""
 DRAWN = {STEP: True, RAMP: "ramp", SWITCHING: "switching"}
 """A single spell is tried at night: it is found as several are."""
 MINUTES = {STEP: 20, RAMP: 14, SWITCHING: 24}
@@ -82,6 +86,33 @@ def test_page_and_words_say_when_it_is_there(answered):
     assert words[kind].strip(", ") in section.course
     (figure,) = section.sizes
     assert figure.unit == "%" and len(figure.traces) == 2
+
+
+def test_a_compass_that_jumps_within_a_block_is_a_step_from_its_row_on():
+    log = twin.sailed({"healthy": {}}, 6.0, 0)["healthy"]
+    jump = np.radians(4.0)
+    after = log["time"].values >= JUMP
+    surge, sway = log["surge"].values.copy(), log["sway"].values.copy()
+    log["heading"][after] += np.degrees(jump)
+    log["surge"][after] = (np.cos(jump) * surge + np.sin(jump) * sway)[after]
+    log["sway"][after] = (np.cos(jump) * sway - np.sin(jump) * surge)[after]
+    problem = twin.ready(log)
+    base = fitted(problem)
+    best = max(_tries(problem, base, base.linear), key=lambda attempt: attempt.score)
+    assert best.hypothesis.cause == "heading_bias" and best.course.kind == STEP
+    assert best.course.start == pytest.approx(JUMP, abs=1.0)
+    (offset,) = best.values.values()
+    assert offset == pytest.approx(jump, rel=0.1)
+
+
+def test_each_edge_of_a_course_moves_but_for_the_end_of_the_log():
+    moved = Course(SWITCHING, ((10.0, 20.0), (30.0, 40.0))).moved(5.0, 40.0)
+    assert [course.spells for course in moved] == [
+        ((15.0, 20.0), (30.0, 40.0)),
+        ((10.0, 25.0), (30.0, 40.0)),
+        ((10.0, 20.0), (35.0, 40.0)),
+    ]
+    assert Course(SPELL, ((10.0, 20.0),)).moved(-10.0, 40.0) == [Course(SPELL, ((0.0, 20.0),))]
 
 
 def test_a_course_is_there_in_its_spells_alone():

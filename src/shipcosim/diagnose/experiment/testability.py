@@ -48,7 +48,8 @@ class Excitation:
     def informations(self) -> Iterator[tuple[Hypothesis, list[int], np.ndarray]]:
         """Information on each column of each group, while all known numbers may be off within their tolerances.
 
-        As the inverse of a variance, in units of the cause's typical size.
+        As the inverse of a variance, in units of the cause's typical size. What a number of the ship that the cause
+        changes may be off by itself counts as variance, and not for the cause.
         """
         # Only what the columns tell counts, so the log's own residual is set to zero.
         blank = self.products.copy()
@@ -62,13 +63,21 @@ class Excitation:
             prior[places] = 1.0
             # Known numbers that the cause changes itself have no tolerance of their own beside it.
             taken = {path for i in places for path in self.columns[i].changes}
-            prior[
-                [i for i, c in enumerate(self.columns) if i not in places and c.gives_way(taken)]
-            ] = 0.0
+            yielding = [
+                i for i, c in enumerate(self.columns) if i not in places and c.gives_way(taken)
+            ]
+            prior[yielding] = 0.0
             # Posterior variance with a unit prior: its inverse less 1 is the information of the
             # log.
             covariance = evidence(blank, prior)[2][np.ix_(places, places)]
-            yield hypothesis, places, 1.0 / np.diag(covariance) - 1.0
+            variance = 1.0 / np.maximum(1.0 / np.diag(covariance) - 1.0, 1e-12)
+            # Without the cause these numbers, free within tolerance and form, explain as much as they are free.
+            own = np.zeros(len(places))
+            for i in yielding:
+                path, size = next(iter(self.columns[i].changes.items()))
+                sizes = np.array([self.columns[k].changes.get(path, np.inf) for k in places])
+                own += (tolerance[i] * size / sizes) ** 2
+            yield hypothesis, places, np.maximum(1.0 - own, 0.0) / (own + variance)
 
 
 def excitation_of(log: JudgedLog) -> Excitation:

@@ -1,6 +1,8 @@
 """The course of a cause over time: when it begins, grows and ends, and what a log says of its size in each part."""
 
-from dataclasses import dataclass
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -35,6 +37,16 @@ class Course:
     def start(self) -> float:
         """When it begins. [s]"""
         return self.spells[0][0]
+
+    def moved(self, by: float, end: float) -> list[Course]:
+        """The course with one of its edges moved by some time [s], each in turn; one at the end of the log stays."""
+        edges = np.ravel(self.spells)
+        moved = (edges + by * (np.arange(edges.size) == i) for i in np.flatnonzero(edges < end))
+        return [
+            replace(self, spells=tuple((float(a), float(b)) for a, b in times.reshape(-1, 2)))
+            for times in moved
+            if np.all(np.diff(times) > 0.0)
+        ]
 
     def at(self, time: np.ndarray) -> np.ndarray:
         """Share of the size at some times, (n,) array."""

@@ -4,6 +4,8 @@ All rows stay in and the ship's numbers are common to them: only the cause has a
 course c(t) does what its columns do, times c(t), as they are linear in θ.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -270,33 +272,14 @@ def _tries(problem: IdentificationProblem, base: Fit, linear: InParts) -> list[_
         return []
     # Coarse search: all courses by sums over blocks of the log; the likeliest causes go on.
     blocks = _blocks(problem, base, linear, wanted)
-    first = sorted(_first_sight(blocks, wanted), key=lambda attempt: -attempt.score)
-    labels = list(dict.fromkeys(attempt.hypothesis.label for attempt in first))[
-        : 2 * LIKELIEST_COURSES
-    ]
+    first = _first_sight(blocks, wanted)
+    leaders = _likeliest(first)[: 2 * LIKELIEST_COURSES]
+    labels = {attempt.hypothesis.label for attempt in leaders}
     chosen = [attempt for attempt in first if attempt.hypothesis.label in labels]
-    time = problem.record.time
-    # Filter the columns of the chosen courses row by row, all in one pass.
-    for candidate in chosen:
-        linear = beside(
-            linear, _shaped(problem.base_of(candidate.group), candidate.course.at(time))
-        )
-    products = problem.gram(linear).products
-    best: dict[str, _Try] = {}
-    place = len(base.columns)
-    # Evidence of each course, with what the search over its times costs; the best course of each
-    # cause.
-    for candidate in chosen:
-        places = range(place, place + len(candidate.group))
-        place += len(candidate.group)
-        gain, theta, _ = _weighed(products, base, places)
-        scored = candidate._replace(
-            score=gain + candidate.occam, values=_values(problem, candidate.group, theta)
-        )
-        label = candidate.hypothesis.label
-        if label not in best or scored.score > best[label].score:
-            best[label] = scored
-    likely = sorted(best.values(), key=lambda attempt: -attempt.score)[:LIKELIEST_COURSES]
+    # Row by row the best course of each cause: each kind as it is, and the likeliest with its edges at their rows.
+    of_rows = _of_rows(problem, base, linear, chosen)
+    sharp = _to_the_row(problem, blocks, linear, leaders[:LIKELIEST_COURSES])
+    likely = _likeliest([*of_rows, *sharp])[:LIKELIEST_COURSES]
     # Further spells are found at first sight, and fitted beside the course without them.
     further = (_with_further_spells(blocks, attempt) for attempt in likely)
     changed = [
@@ -304,7 +287,73 @@ def _tries(problem: IdentificationProblem, base: Fit, linear: InParts) -> list[_
         for longer, other in zip(further, likely, strict=True)
         if longer.course != other.course
     ]
-    return [*likely, *changed]
+    return [*likely, *_to_the_row(problem, blocks, linear, changed)]
+
+
+def _likeliest(tries: Sequence[_Try]) -> list[_Try]:
+    """The best course of each cause, the likeliest cause first."""
+    best: dict[str, _Try] = {}
+    for attempt in sorted(tries, key=lambda attempt: -attempt.score):
+        best.setdefault(attempt.hypothesis.label, attempt)
+    return list(best.values())
+
+
+def _of_rows(
+    problem: IdentificationProblem, base: Fit, linear: InParts, tries: Sequence[_Try]
+) -> list[_Try]:
+    """Courses with their evidence row by row, less what the search over their times costs."""
+    # Filter the columns of all courses in one pass.
+    time = problem.record.time
+    for attempt in tries:
+        linear = beside(linear, _shaped(problem.base_of(attempt.group), attempt.course.at(time)))
+    products = problem.gram(linear).products
+    scored = []
+    place = len(base.columns)
+    for attempt in tries:
+        places = range(place, place + len(attempt.group))
+        place += len(attempt.group)
+        gain, theta, _ = _weighed(products, base, places)
+        values = _values(problem, attempt.group, theta)
+        scored.append(attempt._replace(score=gain + attempt.occam, values=values))
+    return scored
+
+
+def _to_the_row(
+    problem: IdentificationProblem, blocks: _Blocks, linear: InParts, tries: Sequence[_Try]
+) -> list[_Try]:
+    """Steps and spells, one of a cause, with their edges at the likeliest rows instead of between two blocks.
+
+    A compass that jumps by 4 deg is wrong by it in each row between the two: such a step at a wrong second is unlikely.
+    """
+    step = problem.record.step
+    end = float(blocks.edges[-1])
+    move = 0.5 * float(blocks.edges[1] - blocks.edges[0])
+    # Each edge is one among the rows of a block, which costs as the search among blocks does.
+    cost = float(np.log(max(2.0 * move / step, 1.0)))
+    edged = [
+        attempt._replace(occam=attempt.occam - cost * len(attempt.course.moved(0.0, end)))
+        for attempt in tries
+        if attempt.course.kind != RAMP
+    ]
+    sharp = _of_rows(problem, blocks.base, linear, edged) if edged else []
+    # Edges are moved to and fro while that gains clearly, then by half as much, down to a row.
+    while sharp and move > 0.5 * step:
+        near = [
+            attempt._replace(course=course)
+            for attempt in sharp
+            for by in (move, -move)
+            for course in attempt.course.moved(by, end)
+        ]
+        least = {attempt.hypothesis.label: attempt.score + APART for attempt in sharp}
+        better = [
+            attempt
+            for attempt in _of_rows(problem, blocks.base, linear, near)
+            if attempt.score > least[attempt.hypothesis.label]
+        ]
+        sharp = _likeliest([*better, *sharp])
+        if not better:
+            move *= 0.5
+    return sharp
 
 
 def _values(problem, group, theta) -> dict[str, float]:
@@ -541,6 +590,8 @@ def _with_further_spells(blocks: _Blocks, attempt: _Try) -> _Try:
         if gains.max() - paid < gain + ENOUGH:
             break
         share, gain, occam = tried[gains.argmax()], gains.max(), occam - paid
+    if np.array_equal(share, course.at(blocks.middle)):
+        return attempt
     # Edges of the spells are where the share rises and falls.
     rises = np.diff(np.concatenate([[0.0], share, [0.0]]))
     starts, ends = (blocks.edges[rises == sign] for sign in (1.0, -1.0))

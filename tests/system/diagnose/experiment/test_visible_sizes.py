@@ -94,3 +94,21 @@ def test_what_a_log_says_nothing_of_shows_at_no_size():
     (visible,) = visible_sizes(excitation)
     assert visible.size > visible.largest == pytest.approx(0.95)
     assert visible_rows([visible]) == [("Thrust loss", "tunnel at no size")]
+
+
+def test_what_the_ship_may_be_off_by_herself_hides_a_cause_of_that_size():
+    """A cause of the size that is said to be visible gains enough over her own number, free as another form has it."""
+    loss = hypothesis_of("thrust_loss", "port")
+    ((path, typical),) = screening_regressors(loss)[0][0].changes.items()
+    by_itself = 0.061
+    columns = [Regressor({path: by_itself}), Regressor({path: typical})]
+    share = by_itself / typical
+    slopes = np.array([0.0, share, 1.0])
+    excitation = Excitation(1e4 * np.outer(slopes, slopes), columns, [(loss, [1])])
+    (visible,) = visible_sizes(excitation)
+    # Log-evidence of an estimate as a draw by the cause's prior, over that by her own number's.
+    size = visible.size / typical
+    variance = np.array([share**2, 1.0]) + 1e-4
+    hers, of_cause = -0.5 * (size**2 / variance + np.log(variance))
+    assert of_cause - hers > excitation.least
+    assert 3.0 * by_itself < visible.size < 0.5
