@@ -304,7 +304,7 @@ def test_names_are_completed(shell, empty):
 @pytest.mark.parametrize(
     "line, expected",
     [
-        ("shipcosim new system x --from kv", "kvlcc2_open"),
+        ("shipcosim new system x --from kvlcc2_o", "kvlcc2_open"),
         ("shipcosim diagnose gunn", "gunnerus_log"),
         ("shipcosim list sc", "scenarios"),
         ("shipcosim run nothing_of_this_name", ""),
