@@ -21,8 +21,10 @@ from shipcosim.diagnose.log.mislabels import drive_channels
 from shipcosim.diagnose.log.rows import inside
 from shipcosim.diagnose.log_faults.thresholds import CALM_AIR, HELD_ALIKE, HELD_EXCESS, IDLE
 from shipcosim.diagnose.ship.inputs import with_inputs_of
+from shipcosim.diagnose.ship.measured_motion import wind_over_ground
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
+from shipcosim.models.core.motion import Motion
 
 _WIND = ("wind_speed", "wind_from", "true_wind_speed", "true_wind_from")
 
@@ -89,8 +91,9 @@ def _is_calm(log: xarray.Dataset, role: str, here: np.ndarray | slice) -> bool:
     speed, felt_from, surge, sway = (
         log[name].values[here] for name in (*_WIND[:2], "surge", "sway")
     )
-    blows_to = np.radians(felt_from) + np.pi
-    over_ground = np.hypot(surge + speed * np.cos(blows_to), sway + speed * np.sin(blows_to))
+    # Her place and heading do not matter for the size of the wind.
+    motion = Motion(0.0, 0.0, 0.0, surge, sway, 0.0)
+    over_ground = np.hypot(*wind_over_ground(speed, np.radians(felt_from), motion))
     return bool(np.nanmedian(over_ground) < CALM_AIR * np.nanmedian(np.hypot(surge, sway)))
 
 
