@@ -6,7 +6,7 @@ import numpy as np
 
 from shipcosim.diagnose.comparison.thresholds import KERNEL, SHORTEST_KERNEL
 from shipcosim.diagnose.ship.inputs import Record, averaged
-from shipcosim.diagnose.ship.smoothing import Kernel, froude_time, is_measured, unsmoothed
+from shipcosim.diagnose.ship.smoothing import Kernel, froude_time, is_measured, unsmoothed, way_of
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.motion import Motion
 
@@ -33,8 +33,11 @@ class MeasuredForce:
 
     @property
     def smooth_motion(self) -> Motion:
-        """The motion, averaged by the kernel."""
-        return Motion(*(self.kernel.smooth(np.asarray(value, float)) for value in self.motion))
+        """The motion, averaged by the kernel; its places keep to the way that its velocity goes."""
+        smooth = Motion(*(self.kernel.smooth(np.asarray(value, float)) for value in self.motion))
+        way = way_of(smooth, self.kernel.step).T
+        x, y, psi = way + self.kernel.smooth(np.stack(self.motion[:3]) - way)
+        return smooth._replace(x=x, y=y, psi=psi)
 
     @property
     def velocity(self) -> np.ndarray:

@@ -3,11 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
 
 from shipcosim.diagnose.numerics import gaussian_filter, runs
 from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.models.core.constants import GRAVITY
-from shipcosim.models.core.kinematics import to_body
+from shipcosim.models.core.kinematics import eta_dot, to_body
 from shipcosim.models.core.motion import Motion
 
 _REACH = 2.5  # widths that a gap in the log reaches
@@ -93,6 +94,16 @@ def unsmoothed(record: Record, kernel: Kernel) -> tuple[Motion, np.ndarray]:
     if not is_measured(record, 5):
         r = kernel.rate(psi)
     return Motion(x, y, psi, u, v, r), bad
+
+
+def way_of(motion: Motion, step: float) -> np.ndarray:
+    """Place and heading that the velocities of a motion reach from zero, row by row, (n, 3) array. [m, m, rad]
+
+    Smoothed places lie inside the turns that a ship sails, and short of both ends of a log. So smooth only that by
+    which measured places differ from this way.
+    """
+    rates = np.stack(eta_dot(motion.psi, motion.u, motion.v, motion.r), axis=-1)
+    return cumulative_trapezoid(rates, dx=step, axis=0, initial=0.0)
 
 
 def is_measured(record: Record, channel: int) -> bool:

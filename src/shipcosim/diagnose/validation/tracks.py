@@ -14,6 +14,7 @@ from shipcosim.diagnose.ship.inputs import CHANNELS, Record, first_motion
 from shipcosim.diagnose.ship.instruments import Instruments
 from shipcosim.diagnose.ship.measured_motion import at_rows, readings, true_motion
 from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.diagnose.ship.smoothing import way_of
 from shipcosim.diagnose.ship.third_party_fmu import number_of
 from shipcosim.diagnose.ship.time_scales import response_times
 from shipcosim.diagnose.validation.cosimulation import Replayed, sailed_from
@@ -28,7 +29,6 @@ from shipcosim.diagnose.validation.thresholds import (
     TIME_CONSTANTS,
 )
 from shipcosim.errors import ShipcosimError, error_at
-from shipcosim.models.core.kinematics import eta_dot
 from shipcosim.models.core.motion import Motion
 from shipcosim.options import CountProgress
 
@@ -223,16 +223,12 @@ def _seen(record: Record, horizon: float) -> Motion:
     """The motion that the log shows, smoothed, to start predictions from."""
     smooth = min(4.0, SMOOTHED_SHARE * horizon)
     seen = first_motion(record, smooth)
-    # Smoothed positions of a ship under way are short of the measured ones at the log's ends and in turns. So only
-    # that is smoothed by which they differ from the way that her velocity goes.
-    rates = np.stack(eta_dot(seen.psi, seen.u, seen.v, seen.r), axis=-1)
-    steps = 0.5 * record.step * (rates[1:] + rates[:-1])
-    way = np.concatenate([np.zeros((1, 3)), np.cumsum(steps, axis=0)])
+    # Her places are kept to the way that her velocity goes.
+    way = way_of(seen, record.step)
     besides = record.measured.copy()
     besides[:, :3] -= way
     off = first_motion(replace(record, measured=besides), smooth)
-    places = {name: way[:, i] + getattr(off, name) for i, name in enumerate(("x", "y", "psi"))}
-    return seen._replace(**places)
+    return seen._replace(x=way[:, 0] + off.x, y=way[:, 1] + off.y, psi=way[:, 2] + off.psi)
 
 
 def _measured(record: Record) -> xarray.Dataset:

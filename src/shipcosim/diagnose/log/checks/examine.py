@@ -9,6 +9,7 @@ import xarray
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.checks.clock import wrong_clock
 from shipcosim.diagnose.log.checks.lag import late_channels
+from shipcosim.diagnose.log.checks.position_jumps import position_jumps
 from shipcosim.diagnose.log.checks.samples import gaps, lifeless, wraps
 from shipcosim.diagnose.log.checks.wind import mislabelled_wind
 from shipcosim.diagnose.log.checks.wind_jumps import jumping_wind
@@ -82,11 +83,12 @@ def _in_parts(table, stated, contradiction):
     quiet = silent_rate(right)
     labels = [*labels, *quiet]
     right = undone(right, quiet[0].mislabel, quiet[0].segments) if quiet else right
-    # Channels that are labelled right may still come late.
-    late = [] if labels else late_channels(right)
-    for label in late:
-        right = undone(right, label.mislabel, label.segments)
-    labels = [*labels, *late]
+    # Positions that are labelled right may jump, and channels come late.
+    for others_of in () if labels else (position_jumps, late_channels):
+        others = others_of(right)
+        for label in others:
+            right = undone(right, label.mislabel, label.segments)
+        labels = [*labels, *others]
     # A wrong clock can look like a wrong label. Where both were found at
     # one place, the label is dropped and the clock is estimated again.
     clock = wrong_clock(right)
