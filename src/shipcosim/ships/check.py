@@ -17,7 +17,7 @@ from shipcosim.ships.file import number
 from shipcosim.ships.folder import read_ship
 from shipcosim.ships.numbers import ESTIMATED
 from shipcosim.ships.passivity import driven_by_water
-from shipcosim.ships.system import check_numbers
+from shipcosim.ships.system import check_numbers, steering_units
 from shipcosim.ships.thrusters import ShipThruster
 
 BLOCK = (0.2, 1.0)
@@ -266,6 +266,9 @@ def _remarks(ship: Described) -> Iterator[Problem]:
     yield from driven_by_water(f"{ship.path}: hull", _vessel(ship.entries))
     if why := why_no_dp(ship):
         yield Problem(f"{ship.path}: thrusters", f"there is no DP system: {why}.", "", "remark")
+    if not steering_units(ship):
+        message = "there are no steering trials: she has no rudder, and no azimuth at the stern."
+        yield Problem(f"{ship.path}: thrusters", message, "", "remark")
     count = len(estimated(ship))
     if count:
         message = f"{count} numbers are estimated."

@@ -102,6 +102,9 @@ def test_thrusters_are_told_one_by_one(project):
     stiff = told("new", "ship", "gull", *ASKED, "--thruster", bow, "--yes")
     assert stiff.exit_code == 0 and "no DP system" in stiff.output, stiff.output
     assert (project / "ssp/gull_open").is_dir() and not (project / "ssp/gull_dp").exists()
+    # What she cannot do is a remark, what she can is none.
+    assert "no steering trials" in stiff.output and not (project / "ssp/gull_trials").exists()
+    assert "no steering trials" not in made.output and (project / "ssp/tern_trials").is_dir()
 
 
 def test_a_thruster_comes_in_addition_to_the_propulsion_that_is_given(project):
