@@ -22,7 +22,7 @@ From the verdict to the gain, `diagnose`:
 
     stated             Diagnosis       findings, what this log could not have shown, what to sail next
     with_predictions   PredictedLog    predictions on rows that nothing was fitted on, the force that the model lacks
-    named_if_better    Diagnosis       no name for a cause that predicts these rows worse than the ship without it
+    named_if_better    Diagnosis       no name for a cause with which these rows are predicted no better
     verified           Diagnosis       "consistent" only where the system predicts these rows as it would a healthy ship
     with_findings      ExtendedSystem  the system with the named causes in it
     with_form          ExtendedSystem  the system with the numbers of another form, where that is the answer

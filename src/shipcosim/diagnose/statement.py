@@ -27,7 +27,7 @@ from shipcosim.diagnose.validation.gain import CHANNELS, HORIZONS, baseline, err
 from shipcosim.diagnose.validation.healthy_errors import healthy_errors
 from shipcosim.diagnose.validation.replays import SimulatedLog
 from shipcosim.diagnose.validation.summary import prediction_errors
-from shipcosim.diagnose.validation.thresholds import WORSE
+from shipcosim.diagnose.validation.thresholds import LEAST_GAIN, WORSE
 from shipcosim.diagnose.validation.tracks import tracks_of
 from shipcosim.ssp import AnyPath
 
@@ -93,7 +93,7 @@ def stated(log: JudgedLog) -> Diagnosis:
 def named_if_better(
     diagnosis: Diagnosis, predicted: PredictedLog
 ) -> tuple[Diagnosis, PredictedLog]:
-    """A diagnosis without the causes that it names, where they predict rows kept from the fit worse than the plain ship.
+    """A diagnosis without the causes that it names, where with them rows kept from the fit are predicted no better.
 
     Parameters
     ----------
@@ -108,14 +108,19 @@ def named_if_better(
     comparison = predicted.comparison
     if not diagnosis.is_named or comparison is None:
         return diagnosis, predicted
-    # On rows kept from the fit the causes must not predict worse than the plain ship.
-    without, within = (rms(comparison.errors, "position", model) for model in ("plain", "extended"))
-    if within <= WORSE * without:
+    # On rows kept from the fit the causes must not predict worse than the plain ship, and must gain in one channel.
+    errors = {
+        channel: [rms(comparison.errors, channel, model) for model in ("plain", "extended")]
+        for channel in ("position", "heading")
+    }
+    without, within = errors["position"]
+    gains = any(after < LEAST_GAIN * before for before, after in errors.values())
+    if within <= WORSE * without and gains:
         return diagnosis, predicted
     names = ", ".join(finding.label for finding in diagnosis.physics)
     remark = (
         f"{names}: likeliest by its evidence, but not named. On rows that it was not fitted on the ship with it misses "
-        f"the log by {within:.2g} m, without it by {without:.2g} m."
+        f"the log by {within:.3g} m, without it by {without:.3g} m."
     )
     doubted = replace(
         diagnosis,
