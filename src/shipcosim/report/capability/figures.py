@@ -9,7 +9,7 @@ from shipcosim.capability.loads import level_1_parts
 from shipcosim.capability.result import LEVEL_1, SIMULATOR
 from shipcosim.capability.simulator import simulated_parts
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.figures import line, polar_axes, rounded
+from shipcosim.report.theme.figures import line, polar_axes, polar_curve
 from shipcosim.report.theme.views import Figure, Figures, PlotlyDict
 
 TALL = 400
@@ -112,17 +112,7 @@ def _curve(
     # Repeat the first direction at 360 deg to close the curve.
     angles = np.degrees(DIRECTIONS)
     values = np.asarray(numbers, float)
-    filled = {} if fill is None else {"fill": "toself", "fillcolor": palette.faded(colour, fill)}
-    return {
-        "type": "scatterpolar",
-        "mode": "lines",
-        "name": name,
-        "hovertemplate": "%{r} from %{theta}",
-        "theta": rounded([*angles, 360.0]),
-        "r": rounded([*values, values[0]]),
-        "line": {"color": colour, "width": 2, "dash": dash},
-        **filled,
-    }
+    return polar_curve(name, [*angles, 360.0], [*values, values[0]], colour, dash=dash, fill=fill)
 
 
 def _polar(title: str, traces: tuple[PlotlyDict, ...], note: str) -> Figure:
