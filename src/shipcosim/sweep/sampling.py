@@ -87,8 +87,11 @@ class Samples:
         """
         row = self.numbers[number].tolist()
         if any(map(isnan, row)):
-            remedy = "Run the study so far: each generation follows from the one before."
-            raise error_at(f"trial {number}", "It has not been proposed yet.", remedy)
+            raise error_at(
+                f"trial {number}",
+                "It has not been proposed yet.",
+                "Run the study so far: each generation follows from the one before.",
+            )
         return [
             round(v) if column.is_whole else v for v, column in zip(row, self.columns, strict=True)
         ]
@@ -137,16 +140,20 @@ def _lines(
     keys = ("sample", "of", key)
     group = key.removesuffix(EVERY)
     if not distribution.tolerance or distribution.name or distribution.also:
-        message = f"'{key}' stands for each parameter with a tolerance."
-        levels.complain(keys, message, "It takes tolerance = true, and neither name nor also.")
+        levels.complain(
+            keys,
+            f"'{key}' stands for each parameter with a tolerance.",
+            "It takes tolerance = true, and neither name nor also.",
+        )
         return
     # All parameters with a tolerance, except those that have a line of their own.
     component = system.components.get(levels.signals_of(key)[0].removesuffix(EVERY))
     names = [f"{group}.{name}" for name in component.tolerances] if component else []
     if not names:
         of_tolerances = [f"{c.name}{EVERY}" for c in system.components.values() if c.tolerances]
-        message = f"No parameter set states a tolerance of {key}."
-        levels.complain(keys, message, suggestion(key, of_tolerances))
+        levels.complain(
+            keys, f"No parameter set states a tolerance of {key}.", suggestion(key, of_tolerances)
+        )
     in_lines = {
         signal
         for line, each in sample.of.items()
@@ -210,22 +217,27 @@ def _distribution(stated: Distribution) -> Callable[[np.ndarray], np.ndarray]:
     # Check name and shape parameters here: scipy's own errors do not name the line.
     names_of_scipy = [name for name in dir(stats) if isinstance(getattr(stats, name), kinds)]
     if stated.distribution not in names_of_scipy:
-        message = f"scipy.stats has no distribution '{stated.distribution}'."
-        raise error_at("", message, suggestion(str(stated.distribution), names_of_scipy))
+        raise error_at(
+            "",
+            f"scipy.stats has no distribution '{stated.distribution}'.",
+            suggestion(str(stated.distribution), names_of_scipy),
+        )
     distribution = getattr(stats, str(stated.distribution))
     needed = (distribution.shapes or "").replace(",", " ").split()
     allowed = [*needed, "loc"] + ([] if isinstance(distribution, stats.rv_discrete) else ["scale"])
     if unknown := [name for name in stated.shape if name not in allowed]:
         raise error_at("", f"unknown key '{unknown[0]}'.", suggestion(unknown[0], allowed))
     if missing := [name for name in needed if name not in stated.shape]:
-        message = f"'{missing[0]}' is missing."
-        raise error_at("", message, f"{stated.distribution} has: {', '.join(allowed)}.")
+        raise error_at(
+            "", f"'{missing[0]}' is missing.", f"{stated.distribution} has: {', '.join(allowed)}."
+        )
     # Wrong parameters show as values that are not finite.
     if not np.isfinite(distribution.ppf([EDGE, 0.5, 1.0 - EDGE], **stated.shape)).all():
         numbers = ", ".join(f"{name} = {value:g}" for name, value in stated.shape.items())
-        message = f"{stated.distribution} with {numbers or 'no numbers'}."
         raise error_at(
-            "", message, "These numbers make no distribution, or one without finite values."
+            "",
+            f"{stated.distribution} with {numbers or 'no numbers'}.",
+            "These numbers make no distribution, or one without finite values.",
         )
     return lambda shares: distribution.ppf(shares, **stated.shape)
 
@@ -238,8 +250,11 @@ def _with_tolerance(system: System, signal: str) -> Callable[[np.ndarray], np.nd
     tolerances = {} if component is None else system.components[component].tolerances
     if name not in tolerances:
         with_tolerance = [f"{c.name}.{n}" for c in system.components.values() for n in c.tolerances]
-        message = f"No parameter set states a tolerance of {signal}."
-        raise error_at("", message, suggestion(signal, with_tolerance))
+        raise error_at(
+            "",
+            f"No parameter set states a tolerance of {signal}.",
+            suggestion(signal, with_tolerance),
+        )
     return lambda shares: norm.ppf(
         shares, loc=system.start_value(component, name), scale=tolerances[name]
     )

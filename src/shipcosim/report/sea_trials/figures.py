@@ -152,9 +152,11 @@ def separation_figure(study: SeaTrialStudy) -> Figure:
         "hovermode": "closest",
         "legend": {"orientation": "h", "x": 0.5, "xanchor": "center", "y": -0.18},
     }
-    note = (
-        "Dotted: beyond it a pair of causes counts as separated. What is below 0.1 is drawn there."
-    )
     return Figure(
-        "What manoeuvres would tell", "nats", tuple(traces), layout, note, 140 + _ROW * len(ranked)
+        "What manoeuvres would tell",
+        "nats",
+        tuple(traces),
+        layout,
+        "Dotted: beyond it a pair of causes counts as separated. What is below 0.1 is drawn there.",
+        140 + _ROW * len(ranked),
     )

@@ -159,8 +159,15 @@ def curves(tables: StudyTables, view: View) -> Figure:
         "xaxis": {"title": {"text": quantity.titled}},
         "yaxis": {"range": [0, 1.02], "title": {"text": "share"}},
     }
-    title = f"Distribution of {quantity.name}"
-    return _figure(view, title, "", traces, layout | {"hovermode": "closest"}, notes, TALL)
+    return _figure(
+        view,
+        f"Distribution of {quantity.name}",
+        "",
+        traces,
+        layout | {"hovermode": "closest"},
+        notes,
+        TALL,
+    )
 
 
 def _steps(
@@ -355,8 +362,7 @@ def scatter(tables: StudyTables, view: View) -> Figure:
         if share < 1.0
         else "",
     ]
-    title = f"{view.y} against {view.x}"
-    return _figure(view, title, "", traces, _axes(*columns), notes, TALL)
+    return _figure(view, f"{view.y} against {view.x}", "", traces, _axes(*columns), notes, TALL)
 
 
 def _dots(
@@ -447,5 +453,11 @@ def distance_figure(time: NDArray, spread: Sequence[tuple[SeriesOfRows, NDArray]
         "yaxis": {"rangemode": "tozero"},
         "hovermode": "x unified",
     }
-    note = "Line: median of the runs; band: from 5 to 95 % of them at each time."
-    return Figure("Distance from where each run began", "m", tuple(traces), layout, note, TALL)
+    return Figure(
+        "Distance from where each run began",
+        "m",
+        tuple(traces),
+        layout,
+        "Line: median of the runs; band: from 5 to 95 % of them at each time.",
+        TALL,
+    )

@@ -91,8 +91,9 @@ def loop_problems(system: System) -> Iterator[Problem]:
         message += " and the start is iterated, which may not settle."
         if loop.silent:
             message += f" These FMUs do not declare it, so it is assumed: {', '.join(loop.silent)}."
-        where = f"{system.file}: {', '.join(loop.components)}"
-        yield Problem(where, message, _remedy(loop), "remark")
+        yield Problem(
+            f"{system.file}: {', '.join(loop.components)}", message, _remedy(loop), "remark"
+        )
 
 
 def _remedy(loop: AlgebraicLoop) -> str:
