@@ -206,28 +206,29 @@ def errors(tables: StudyTables) -> tuple[tuple[str, tuple[int, ...]], ...]:
     return tuple((text, tuple(numbers)) for text, numbers in ordered)
 
 
-# ---- how it was made
+# ---- how it was made, in the keys of the study file
 
 
 def varied_table(study: Mapping[str, Any]) -> Table:
     """Varied factors and sampled values, a row each."""
     # Factors of the grid, then sampled signals, then tuned ones.
-    rows = [
-        (str(part.get("name", "")), _signals(part), _values(part))
-        for part in _parts(study, "factor")
-    ]
-    for part, in_words in (("sample", _distribution), ("tune", _range)):
-        for signal, how in _given(_given(study.get(part) or {}).get("of") or {}).items():
-            # Others may get the same value.
-            signals = ", ".join([signal, *how.get("also", ())])
-            rows.append((str(how.get("name") or signal), signals, in_words(_given(how))))
-    return Table(rows, ("name", "what it sets", "values"), tight=(0,))
+    rows = [_row(part) for part in study.get("factor") or ()]
+    for part in ("sample", "tune"):
+        for signal, how in ((study.get(part) or {}).get("of") or {}).items():
+            rows.append(_row({"name": signal, "signal": signal} | _given(how)))
+    return Table(rows, ("name", "what is varied"), tight=(0,))
 
 
-def _range(how: Mapping[str, Any]) -> str:
-    """Range of a search in words."""
-    spread = " in the logarithm" if how.get("log") else ""
-    return f"sought from {how['low']} to {how['high']}{spread}"
+def measured_table(study: Mapping[str, Any]) -> Table:
+    """Quantities of each run, and summaries over similar runs."""
+    parts = [*(study.get("quantity") or ()), *(study.get("summary") or ())]
+    return Table(map(_row, parts), ("name", "what it is"), tight=(0,))
+
+
+def _row(part: Mapping[str, Any]) -> tuple[str, str]:
+    """Name and other entries of a part of the study file; its title and description are shown elsewhere."""
+    others = {key: value for key, value in part.items() if key not in ("name", "description")}
+    return str(part.get("name", "")), _entries(others)
 
 
 def _given(part: Mapping[str, Any]) -> dict[str, Any]:
@@ -235,111 +236,19 @@ def _given(part: Mapping[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in part.items() if value not in (None, "", [], {}, False)}
 
 
-def _parts(study: Mapping[str, Any], name: str) -> list[dict[str, Any]]:
-    """Tables of one kind in a study file."""
-    return [_given(part) for part in study.get(name) or ()]
-
-
-def _signals(factor: Mapping[str, Any]) -> str:
-    # What a factor sets: signals of its cases, weather, seeds, or its own signals.
-    if cases := factor.get("case"):
-        names = dict.fromkeys(name for case in cases for name in case.get("set") or {})
-        events = ["events"] if any(case.get("events") for case in cases) else []
-        return ", ".join([*names, *events]) or "cases"
-    if "directions" in factor:
-        return "where wind, waves and current come from"
-    if "conditions" in factor:
-        return "wind, waves and current"
-    signals = factor.get("signal") or factor.get("signals")
-    if "seeds" in factor and not signals:
-        return "every parameter named seed"
-    return _plain(signals or factor.get("name", "")) + (
-        " (at the fork)" if factor.get("at_fork") else ""
-    )
-
-
-def _values(factor: Mapping[str, Any]) -> str:
-    # How the values are given: seeds, cases, directions, conditions, a list or a range.
-    if "seeds" in factor:
-        return f"{factor['seeds']} seeds, drawn from the study's seed"
-    if cases := factor.get("case"):
-        return _listed([str(case.get("label", "")) for case in cases])
-    if "directions" in factor:
-        return f"{factor['directions']} directions, evenly spaced"
-    if "conditions" in factor:
-        return f"DP capability numbers {_listed([str(number) for number in factor['conditions']])}"
-    if "values" in factor:
-        return _listed([str(value) for value in factor["values"]])
-    stretch = f"{factor.get('from', 0)} to {factor.get('to', 0)}"
-    return (
-        f"{stretch} by {factor['step']}"
-        if "step" in factor
-        else f"{stretch}, {factor.get('count')} values"
-    )
-
-
-def _listed(texts: Sequence[str]) -> str:
-    shown = ", ".join(texts[:MOST_VALUES])
-    return shown if len(texts) <= MOST_VALUES else f"{shown}, ... ({len(texts)})"
-
-
-def _distribution(how: Mapping[str, Any]) -> str:
-    """A distribution in words."""
-    # Normal about the start value, or as the study writes it.
-    later = " (at the fork)" if how.get("at_fork") else ""
-    if how.get("tolerance"):
-        return f"normal about the start value, standard deviation: the tolerance of the parameter set{later}"
-    others = ("distribution", "unit", "name", "at_fork", "tolerance", "also")
-    numbers = ", ".join(f"{name} {value}" for name, value in how.items() if name not in others)
-    unit = f" {how['unit']}" if how.get("unit") else ""
-    return f"{how.get('distribution', '')}: {numbers}{unit}{later}"
-
-
-def measured_table(study: Mapping[str, Any]) -> Table:
-    """Quantities of each run, and summaries over similar runs."""
-    rows = [(str(part.get("name", "")), _quantity(part)) for part in _parts(study, "quantity")]
-    for summary in _parts(study, "summary"):
-        statistic = str(summary.get("statistic", "")).replace("_", " ")
-        words = [f"{statistic} of {summary.get('quantity')} over {_plain(summary.get('over', ''))}"]
-        words += _keys(summary, "percentile", "along", "share")
-        rows.append((str(summary.get("name", "")), ", ".join(words)))
-    return Table(rows, ("name", "what it is"), tight=(0,))
-
-
-def _keys(part: Mapping[str, Any], *names: str) -> list[str]:
-    """Entries of a part of the study file, as written there."""
-    return [f"{name} {part[name]}" for name in names if name in part]
-
-
-def _quantity(part: Mapping[str, Any]) -> str:
-    # The scenario's expectations, the study's own, a margin, or a statistic of signals.
-    if part.get("scenario_expectations"):
-        return "whether all that the scenario expects holds"
-    if wanted := part.get("expect"):
-        return f"whether all holds: {'; '.join(_plain(_given(claim)) for claim in wanted)}"
-    if "margin" in part:
-        waves = f"wave filter adapted to waves of {part.get('peak_period')} s"
-        return f"{part['margin']} margin of {part.get('component', 'controller')}, the least of its axes, {waves}"
-    of = _plain(part.get("signal", ""))
-    if "near" in part:
-        of = f"the distance of {of} from {_plain(part['near'])}"
-    words = [f"{str(part.get('reduce', '')).replace('_', ' ')} of {of}"]
-    words += _keys(part, "percentile", "limit", "time")
-    if "during" in part:
-        words.append(f"during {' to '.join(map(str, part['during']))}")
-    return ", ".join(words)
-
-
 def _plain(value: Any) -> str:
-    """A value of a study file on one line."""
+    """A value of a study file on one line: of cases their labels, of what is true its key."""
     if isinstance(value, list | tuple):
-        return ", ".join(map(_plain, value))
-    if isinstance(value, Mapping):
-        return ", ".join(
-            f"{key} {f'({_plain(v)})' if isinstance(v, list | tuple) else v}"
-            for key, v in value.items()
-        )
-    return str(value)
+        shown = ", ".join(map(_plain, value[:MOST_VALUES]))
+        return shown if len(value) <= MOST_VALUES else f"{shown}, ... ({len(value)})"
+    if isinstance(value, Mapping) and "label" in value:
+        return str(value["label"])
+    return f"({_entries(value)})" if isinstance(value, Mapping) else str(value)
+
+
+def _entries(part: Mapping[str, Any]) -> str:
+    entries = _given(part).items()
+    return "; ".join(key if value is True else f"{key}: {_plain(value)}" for key, value in entries)
 
 
 def setup_table(tables: StudyTables) -> Table:
@@ -354,7 +263,7 @@ def setup_table(tables: StudyTables) -> Table:
     ]
     entries: dict[str, Any] = {
         "scenario": study.get("scenario"),
-        "start values of all runs": _plain(study["set"]) if study.get("set") else None,
+        "start values of all runs": _entries(study.get("set", {})),
         "stop time": study.get("stop_time"),
         "runs share the time before": study.get("fork_at"),
         "sampling": f"{sample['method']}, {sample.get('runs')} points"
@@ -366,7 +275,7 @@ def setup_table(tables: StudyTables) -> Table:
         "seed": study.get("seed", about.get("seed")),
         "engine": about.get("engine"),
         "plan": about.get("plan"),
-        "versions": _plain(about["versions"]) if about.get("versions") else None,
+        "versions": _entries(about.get("versions") or {}),
     }
     return Table(
         tuple((name, str(value)) for name, value in entries.items() if value not in (None, "")),
