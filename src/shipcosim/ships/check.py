@@ -113,8 +113,10 @@ def _hull(ship: Described) -> Iterator[Problem]:
     dimensions = f"{form.hulls} hulls of {dimensions}" if form.hulls > 1 else dimensions
     # Outside the range of ships: mass or a dimension is wrong.
     if not BLOCK[0] <= mass / box <= BLOCK[1]:
-        remedy = f"That is a block coefficient of {mass / box:.2g}; ships have {BLOCK[0]:g} to {BLOCK[1]:g}: "
-        remedy += f"{_mass(BLOCK[0] * box)} to {_mass(BLOCK[1] * box)} would fit."
+        remedy = (
+            f"That is a block coefficient of {mass / box:.2g}; ships have {BLOCK[0]:g} to {BLOCK[1]:g}: "
+            f"{_mass(BLOCK[0] * box)} to {_mass(BLOCK[1] * box)} would fit."
+        )
         yield Problem(f"{ship.path}: mass", f"{_mass(mass)} do not fit {dimensions}.", remedy)
     elif p.block_coefficient is not None and abs(mass / box / form.block - 1.0) > OWN_BLOCK:
         message = f"{_mass(mass)} and a block coefficient of {form.block:g} do not fit {dimensions} together."
@@ -167,8 +169,8 @@ def _matrix(ship: Described) -> Iterator[Problem]:
         names = [f"{n} {d:.3g}" for n, d in zip(("surge", "sway", "yaw"), diagonal, strict=True)]
         remedy = (
             "Mass with added mass must be positive, and sway_yaw squared less than sway times yaw: "
+            f"at most {np.sqrt(max(diagonal[1] * diagonal[2], 0.0)):.3g} kg.m."
         )
-        remedy += f"at most {np.sqrt(max(diagonal[1] * diagonal[2], 0.0)):.3g} kg.m."
         yield Problem(
             where,
             f"the mass matrix is not positive: {', '.join(names)}, sway by yaw {matrix[1, 2]:.3g}.",
@@ -243,8 +245,10 @@ def _thrust(unit: ShipThruster, where: str, draught: float) -> Iterator[Problem]
         )
     # Thrust coefficients above MOST_KT do not occur: speed or diameter is wrong.
     if screw.thrust_coefficient > MOST_KT:
-        message = f"{screw.thrust / 1000:.4g} kN at {screw.rpm:.4g} rpm is a thrust coefficient of "
-        message += f"{screw.thrust_coefficient:.2g}."
+        message = (
+            f"{screw.thrust / 1000:.4g} kN at {screw.rpm:.4g} rpm is a thrust coefficient of "
+            f"{screw.thrust_coefficient:.2g}."
+        )
         yield Problem(
             where,
             message,
@@ -303,8 +307,10 @@ def _speed(ship: Described) -> Iterator[Problem]:
         unit.most for unit in ship.units if unit.kind != "tunnel" and abs(unit.direction) < 0.5 * pi
     )
     if ahead and drag > ahead:
-        message = f"at {form.speed:.3g} m/s she has a resistance of {drag / 1000:.4g} kN, "
-        message += f"more than the {ahead / 1000:.4g} kN that her thrusters give at rest."
+        message = (
+            f"at {form.speed:.3g} m/s she has a resistance of {drag / 1000:.4g} kN, "
+            f"more than the {ahead / 1000:.4g} kN that her thrusters give at rest."
+        )
         yield Problem(where, message, "She does not reach her service speed.", "remark")
     # Holtrop and Mennen hold only below MOST_FROUDE.
     if entry.origin.startswith(ESTIMATED) and froude_number(form) > MOST_FROUDE:

@@ -82,8 +82,10 @@ def tracks_view(tables: StudyTables, view: View) -> TracksView:
         group.rows[evenly(len(group.rows), most)] if len(group.rows) else group.rows
         for group in series
     ]
-    note = f"North up, each from where it began. Drawn are {sum(map(len, drawn))} of {sum(len(s.rows) for s in series)} "
-    note += "tracks, with her outline at the time shown; shaded: where all of them were, the darker the longer."
+    note = (
+        f"North up, each from where it began. Drawn are {sum(map(len, drawn))} of {sum(len(s.rows) for s in series)} "
+        "tracks, with her outline at the time shown; shaded: where all of them were, the darker the longer."
+    )
     # Rows without a track, which do not count as left out.
     there = np.concatenate([group.rows for group in series]) if series else np.zeros(0, int)
     without = [SeriesOfRows("", "", np.setdiff1d(np.arange(frame.rows), there))]
