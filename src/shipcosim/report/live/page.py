@@ -97,7 +97,7 @@ def page_of(
     )
 
 
-def _facts(written: Scenario) -> tuple[Fact, ...]:
+def _facts(written: Scenario) -> Sequence[Fact]:
     return known_facts(
         [
             ("Ship", ", ".join(written.parameters)),

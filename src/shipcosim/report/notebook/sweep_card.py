@@ -19,12 +19,12 @@ MOST_ROWS = 12
 def sweep_card(tables: StudyTables) -> Card:
     """What the study says, its quantities and summary, failed runs, and the distribution of the first quantity."""
     page = page_of(tables)
-    failed = tuple(f"{error.count} runs: {error.text}" for error in page.errors[:MOST_ROWS])
+    failed = [f"{error.count} runs: {error.text}" for error in page.errors[:MOST_ROWS]]
     shown = page.summary.rows[:MOST_ROWS]
-    numbers = tuple(
+    numbers = [
         (f"{name} [{unit}]" if unit else name, *some[1:4])
         for name, unit, *some in page.quantities.rows
-    )
+    ]
     heading = (
         "Summary"
         if len(shown) == len(tables.summary)

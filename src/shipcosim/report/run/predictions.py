@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -76,7 +76,7 @@ class PredictionSummary(NamedTuple):
     in_heading_region: float
 
 
-def find_predictors(roles: Roles) -> dict[str, tuple[int, ...]]:
+def find_predictors(roles: Roles) -> dict[str, Sequence[int]]:
     """Components with the outputs of `interfaces.MotionPredictor`, and their horizons. [s]"""
     predictors = {}
     for component, connectors in roles.connectors.items():

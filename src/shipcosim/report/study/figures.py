@@ -424,7 +424,7 @@ def _figure(
     return Figure(
         view.title or title,
         unit,
-        tuple(traces),
+        traces,
         dict(layout),
         " ".join(filter(None, notes)),
         height,
@@ -456,7 +456,7 @@ def distance_figure(time: NDArray, spread: Sequence[tuple[SeriesOfRows, NDArray]
     return Figure(
         "Distance from where each run began",
         "m",
-        tuple(traces),
+        traces,
         layout,
         "Line: median of the runs; band: from 5 to 95 % of them at each time.",
         TALL,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, cast
 
@@ -130,11 +130,11 @@ class Column:
         As it is shown.
     values : (n,) array
         Numbers in `unit`, NaN where there is none; 0 and 1 of what is true or false; places in `labels`.
-    labels : tuple of str
+    labels : sequence of str
         Of what is no number, in their order.
     is_truth : bool
         Whether it is true or false.
-    ranges : tuple of str
+    ranges : sequence of str
         Of a value that a study tells in part, as it runs not every case: ``">= 4"``, ``"1 to 3"``; else empty.
     """
 
@@ -143,9 +143,9 @@ class Column:
     description: str
     unit: str
     values: NDArray
-    labels: tuple[str, ...] = ()
+    labels: Sequence[str] = ()
     is_truth: bool = False
-    ranges: tuple[str, ...] = ()
+    ranges: Sequence[str] = ()
 
     def text_at(self, row: int) -> str:
         """Value of a row as text for readers; its bounds where not every case was run."""
@@ -157,11 +157,11 @@ class Column:
         return not self.labels and not self.is_truth
 
     @property
-    def levels(self) -> tuple[float, ...]:
+    def levels(self) -> Sequence[float]:
         """Distinct values of a factor, or whole numbers, in order; empty if they are too many."""
         # Labels are levels; numbers only if they are few, and whole or a factor's.
         if self.labels:
-            return tuple(float(k) for k in range(len(self.labels)))
+            return [float(k) for k in range(len(self.labels))]
         levels = np.unique(finite(self.values))
         are_few = len(levels) <= MOST_LEVELS and (
             self.role == FACTOR or bool(np.all(levels == np.round(levels)))

@@ -32,7 +32,7 @@ class TracksView:
     Attributes
     ----------
     title, note : str
-    series : tuple of (str, str)
+    series : sequence of (str, str)
         Label and colour of each.
     data : dict
         What the script draws: times, tracks, density and the share beyond each circle over time.
@@ -42,7 +42,7 @@ class TracksView:
 
     title: str
     note: str
-    series: tuple[tuple[str, str], ...]
+    series: Sequence[tuple[str, str]]
     data: JsonObject
     distance: Figure
 
@@ -102,7 +102,7 @@ def tracks_view(tables: StudyTables, view: View) -> TracksView:
     return TracksView(
         title=view.title or "Tracks",
         note=" ".join(filter(None, sentences)),
-        series=tuple((group.label or "all runs", group.colour) for group in series),
+        series=[(group.label or "all runs", group.colour) for group in series],
         data=_data(tables, tracks, series, drawn, circles),
         distance=distance_figure(tracks.time, spread),
     )

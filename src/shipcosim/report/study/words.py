@@ -32,7 +32,7 @@ MATTERS = 0.05
 """Share of a variance from which a factor is named."""
 
 
-def facts(tables: StudyTables) -> tuple[Fact, ...]:
+def facts(tables: StudyTables) -> Sequence[Fact]:
     """Facts of a study: scenario, number of runs, seed, engine."""
     about = tables.about
     study = tables.study
@@ -48,7 +48,7 @@ def facts(tables: StudyTables) -> tuple[Fact, ...]:
         "Seed": study.get("seed", about.get("seed")),
         "Engine": about.get("engine"),
     }
-    return tuple(Fact(name, str(text)) for name, text in texts.items() if text not in (None, ""))
+    return [Fact(name, str(text)) for name, text in texts.items() if text not in (None, "")]
 
 
 def outcome(tables: StudyTables, runs: Columns, summary: Columns) -> Outcome:
@@ -108,7 +108,7 @@ def _of_runs(runs: Columns) -> str:
     return f"{name}: {column.text(middle)} in the median, {column.text(high)} in nine of ten runs, {most} at most."
 
 
-def key_figures(tables: StudyTables, runs: Columns, summary: Columns) -> tuple[KeyFigure, ...]:
+def key_figures(tables: StudyTables, runs: Columns, summary: Columns) -> Sequence[KeyFigure]:
     """Number of runs, and values of the first quantities and summaries."""
     figures = [KeyFigure(str(len(tables.runs)), f"runs, {int(is_failed(tables).sum())} failed")]
     # Summaries first: they are what the study asks for.
@@ -157,7 +157,7 @@ def quantities_table(runs: Columns) -> Table:
             share = percent(finite_values.mean(), 1) if len(finite_values) else "–"
             numbers = ("", f"yes in {share}", "", "")
         else:
-            numbers = tuple(plain(v) for v in np.quantile(finite_values, [0.0, 0.5, 0.9, 1.0]))
+            numbers = [plain(v) for v in np.quantile(finite_values, [0.0, 0.5, 0.9, 1.0])]
         rows.append((column.name, column.unit, *numbers, missing, _varies_with(column, causes)))
     head = (
         "quantity",
@@ -195,7 +195,7 @@ def is_failed(tables: StudyTables) -> NDArray:
     )
 
 
-def errors(tables: StudyTables) -> tuple[tuple[str, tuple[int, ...]], ...]:
+def errors(tables: StudyTables) -> Sequence[tuple[str, Sequence[int]]]:
     """Error messages with their runs, the most frequent first."""
     by_message: dict[str, list[int]] = {}
     # Runs with the same message form one entry.
@@ -203,7 +203,7 @@ def errors(tables: StudyTables) -> tuple[tuple[str, tuple[int, ...]], ...]:
     for number, error in zip(failed["run"], failed["error"] if len(failed) else (), strict=True):
         by_message.setdefault(str(error), []).append(int(number))
     ordered = sorted(by_message.items(), key=lambda entry: -len(entry[1]))
-    return tuple((text, tuple(numbers)) for text, numbers in ordered)
+    return tuple((text, numbers) for text, numbers in ordered)
 
 
 # ---- how it was made, in the keys of the study file
@@ -222,7 +222,7 @@ def varied_table(study: Mapping[str, Any]) -> Table:
 def measured_table(study: Mapping[str, Any]) -> Table:
     """Quantities of each run, and summaries over similar runs."""
     parts = [*(study.get("quantity") or ()), *(study.get("summary") or ())]
-    return Table(map(_row, parts), ("name", "what it is"), tight=(0,))
+    return Table(list(map(_row, parts)), ("name", "what it is"), tight=(0,))
 
 
 def _row(part: Mapping[str, Any]) -> tuple[str, str]:
@@ -278,7 +278,7 @@ def setup_table(tables: StudyTables) -> Table:
         "versions": _entries(about.get("versions") or {}),
     }
     return Table(
-        tuple((name, str(value)) for name, value in entries.items() if value not in (None, "")),
+        [(name, str(value)) for name, value in entries.items() if value not in (None, "")],
         tight=(0,),
     )
 
