@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from shipcosim.report.study.statistics import mean_interval
 from shipcosim.report.study.tables import FACTOR, Column, Columns, StudyTables, columns_of, label
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.numbers import finite
 from shipcosim.sweep.study_model import View
-from shipcosim.sweep.summary import wilson
+from shipcosim.sweep.summary import mean, wilson
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -192,12 +191,11 @@ def gathered(frame: Frame, column: Column, rows: NDArray) -> Point:
         limits = [frame.columns.get(f"{column.name}_{end}") for end in ("low", "high")]
         ends = [np.nan if limit is None else float(limit.values[rows[0]]) for limit in limits]
         return Point(float(column.values[rows[0]]), *ends)
-    # Several rows: share with Wilson's interval, or mean with a normal one.
-    numbers = column.values[rows]
-    numbers = finite(numbers)
+    # Several rows: share with Wilson's interval, or mean with Student's.
+    numbers = finite(column.values[rows])
     if column.is_truth and len(numbers):
         return Point(*wilson(int(numbers.sum()), len(numbers)))
-    return Point(*mean_interval(numbers))
+    return Point(*mean(numbers))
 
 
 def how_gathered(frame: Frame, column: Column, groups: Sequence[NDArray]) -> str:

@@ -233,7 +233,8 @@ def _row(part: Mapping[str, Any]) -> tuple[str, str]:
 
 def _given(part: Mapping[str, Any]) -> dict[str, Any]:
     """Entries of a part of a study file, without empty ones."""
-    return {key: value for key, value in part.items() if value not in (None, "", [], {}, False)}
+    empty = (None, "", [], {})
+    return {key: value for key, value in part.items() if value is not False and value not in empty}
 
 
 def _plain(value: Any) -> str:
