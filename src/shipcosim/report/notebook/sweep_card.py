@@ -8,7 +8,7 @@ from shipcosim.report.notebook.card import Card
 from shipcosim.report.notebook.figures import distribution_svg
 from shipcosim.report.study.page import page_of
 from shipcosim.report.study.statistics import distribution
-from shipcosim.report.study.tables import QUANTITY, StudyTables, columns_of
+from shipcosim.report.study.tables import QUANTITY, StudyTables
 from shipcosim.report.study.words import is_failed
 from shipcosim.report.theme.numbers import finite
 from shipcosim.report.theme.views import Block, Table
@@ -48,7 +48,7 @@ def sweep_card(tables: StudyTables) -> Card:
 def _picture(tables: StudyTables) -> str:
     """Share of runs up to each value of the first quantity that is a number, as SVG; empty where there is none."""
     runs = tables.runs.iloc[np.flatnonzero(~is_failed(tables))]
-    columns = columns_of(runs, tables.about.get("columns", ()))
+    columns = tables.columns(runs)
     # A quantity that is the same in all runs has no distribution.
     for quantity in columns.values():
         numbers = finite(quantity.values) if quantity.is_number else []

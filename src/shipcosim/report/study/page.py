@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from shipcosim.report.study import figures, words
 from shipcosim.report.study.frames import Lacking, narrowed
-from shipcosim.report.study.tables import Column, Columns, StudyTables, columns_of, signed
+from shipcosim.report.study.tables import Column, Columns, StudyTables, signed
 from shipcosim.report.study.tracks import TracksView, tracks_view
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import evenly
@@ -112,18 +112,14 @@ def render(tables: StudyTables) -> str:
 
 def outcome_of(tables: StudyTables) -> Outcome:
     """Result of a study in one sentence, without its views."""
-    about_columns = tables.about.get("columns", ())
-    return words.outcome(
-        tables, columns_of(tables.runs, about_columns), columns_of(tables.summary, about_columns)
-    )
+    return words.outcome(tables, tables.columns(tables.runs), tables.columns(tables.summary))
 
 
 def page_of(tables: StudyTables) -> StudyPage:
     """Contents of the page of a study."""
     # Columns with units and roles, as the study describes them.
-    about_columns = tables.about.get("columns", ())
-    runs = columns_of(tables.runs, about_columns)
-    summary = columns_of(tables.summary, about_columns)
+    runs = tables.columns(tables.runs)
+    summary = tables.columns(tables.summary)
     # Views first: a section without content is left out.
     tracks, plots, undrawn = _views(tables)
     drawn = (*plots, *(view.distance for view in tracks))

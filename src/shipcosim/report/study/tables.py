@@ -71,6 +71,15 @@ class StudyTables:
         """Name of the study."""
         return str(self.about.get("name") or "study")
 
+    @property
+    def every(self) -> dict[str, DataFrame]:
+        """All tables that a view can name."""
+        return {"runs": self.runs, "summary": self.summary, **self.tables}
+
+    def columns(self, frame: DataFrame) -> dict[str, Column]:
+        """Columns of one of the tables, as the study describes them."""
+        return columns_of(frame, self.about.get("columns", ()))
+
 
 def tables_of(swept: Swept, command: str) -> StudyTables:
     """Results of a study, with tables and pages of runs in its folder.
@@ -305,9 +314,7 @@ def readable(values: ArrayLike, unit: str | None) -> tuple[NDArray, str]:
 
 
 def _numbers(values: Series) -> NDArray:
-    return np.array(
-        [float(v) if v is not None and v == v else np.nan for v in values.astype(object)], float
-    )
+    return values.to_numpy(float, na_value=np.nan)
 
 
 def label(value: object) -> str:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from shipcosim.report.run.track import hull_outline, symbol_size
 from shipcosim.report.study.figures import distance_figure
 from shipcosim.report.study.frames import RUNS, Frame, Lacking, SeriesOfRows, left_out, series_of
-from shipcosim.report.study.tables import StudyTables, columns_of
+from shipcosim.report.study.tables import StudyTables
 from shipcosim.report.theme.figures import evenly
 from shipcosim.report.theme.numbers import finite
 from shipcosim.report.theme.packing import packed_series
@@ -66,7 +66,7 @@ def tracks_view(tables: StudyTables, view: View) -> TracksView:
         If no tracks were kept.
     """
     # Series of the runs that have a track.
-    frame = Frame(RUNS, columns_of(tables.runs, tables.about.get("columns", ())))
+    frame = Frame(RUNS, tables.columns(tables.runs))
     tracks = _read(tables)
     has_track = np.asarray(np.isfinite(tracks.north).any(axis=1))
     series = [
