@@ -295,11 +295,11 @@ def _doubled(panel: Panel, pair: Pair) -> Panel | None:
         for name, colour, dash in zip(pair.names, COLOURS, ("solid", "dot"), strict=True):
             signal = f"{name}: {line.signal}"
             if len(main) == 1:
-                look = {"label": name, "colour": colour, "dash": "solid"}
+                both.append(replace(line, signal=signal, label=name, colour=colour, dash="solid"))
             else:
                 # Several curves keep their colours; the line style tells the runs apart.
-                look = {"label": f"{line.label}, {name}", "dash": dash}
-            both.append(replace(line, signal=signal, **look))
+                label = f"{line.label}, {name}"
+                both.append(replace(line, signal=signal, label=label, dash=dash))
     return replace(panel, lines=both, bands=())
 
 
@@ -384,9 +384,7 @@ def _ordered(pair: Pair, differing: Sequence[Difference]) -> list[Difference]:
     wanted = [roles.signal(roles.ship, axis) for axis in ("x", "y", "psi")]
     wanted += [FROM_REFERENCE, ERRORS["psi"]]
     wanted += [roles.signal(unit, "thrust") for unit in roles.thrusters]
-    by_name = {difference.signal: difference for difference in differing}
-    first = [by_name[name] for name in dict.fromkeys(wanted) if name in by_name]
-    return [*first, *(difference for difference in differing if difference not in first)]
+    return sorted(differing, key=lambda one: [*wanted, one.signal].index(one.signal))
 
 
 def _table(differing: Sequence[Difference]) -> Table:
