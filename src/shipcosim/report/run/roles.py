@@ -74,6 +74,15 @@ class Roles:
             if connector in has
         }
 
+    def ending(self, *ends: str) -> list[str]:
+        """Names of all signals whose connector ends so, in the table's order."""
+        return [
+            join(component, c)
+            for component, has in self.connectors.items()
+            for c in has
+            if c.endswith(ends)
+        ]
+
     def sources(self) -> list[str]:
         """Sources of load on the ship: wind, drift, hull, thrusters, in the table's order."""
         # Loads are named tau_SOURCE_AXIS; commands and limits of loads are no sources.
@@ -102,7 +111,7 @@ def find_roles(names: Iterable[Hashable]) -> Roles:
     Examples
     --------
     >>> find_roles(["boat.x", "boat.y", "boat.psi", "boat.tau_wind_X", "bow.thrust", "bow.rpm"]).thrusters
-    ('bow',)
+    ['bow']
     """
     # Group connectors by component: roles follow from what a component has.
     connectors: dict[str, list[str]] = {}
