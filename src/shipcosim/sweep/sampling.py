@@ -122,7 +122,7 @@ def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
         return None
     # Points in the unit cube, by the chosen method; kept off 0 and 1, where a normal distribution
     # is infinite.
-    spread = np.clip(SPREADS[sample.method](sample.runs, len(usable), study.seed), EDGE, 1.0 - EDGE)
+    spread = np.clip(_spread(sample.method, sample.runs, len(usable), study.seed), EDGE, 1.0 - EDGE)
     numbers = np.column_stack([of(spread[:, i]) for i, (_, of) in enumerate(usable)])
     samples = Samples(tuple(column for column, _ in usable), numbers)
     # Only the extremes can break a bound.
@@ -272,52 +272,31 @@ def _check_ends(levels: Levels, samples: Samples, lines: Sequence[str]) -> None:
                 levels.checked(dict.fromkeys(column.signals, value), keys)
 
 
-def _sobol(runs: int, parameters: int, seed: int) -> np.ndarray:
-    from scipy.stats import qmc
-
-    with warnings.catch_warnings():
-        warnings.simplefilter(
-            "ignore"
-        )  # of a number of runs that is no power of two: less even, not wrong
-        return qmc.Sobol(parameters, rng=seed).random(runs)
-
-
-def _latin_hypercube(runs: int, parameters: int, seed: int) -> np.ndarray:
-    from scipy.stats import qmc
-
-    return qmc.LatinHypercube(parameters, rng=seed).random(runs)
-
-
-def _random(runs: int, parameters: int, seed: int) -> np.ndarray:
-    return np.random.default_rng(seed).random((runs, parameters))
-
-
-def _saltelli(runs: int, parameters: int, seed: int) -> np.ndarray:
-    """Saltelli's design for first-order and total Sobol indices: blocks of parameters + 2 samples.
+def _spread(method: str, runs: int, parameters: int, seed: int) -> np.ndarray:
+    """Points in the unit cube, (samples, parameters).
 
     References
     ----------
-    Saltelli et al., Variance based sensitivity analysis of model output, Comput. Phys. Commun. 181, 2010.
+    Saltelli et al., Variance based sensitivity analysis of model output, Comput. Phys. Commun. 181, 2010: blocks of
+    parameters + 2 samples for first-order and total Sobol indices.
     """
-    with imported("sample.method", "saltelli comes from SALib, which is missing."):
-        from SALib.sample import sobol
+    from scipy.stats import qmc
+
+    if method == "random":
+        return np.random.default_rng(seed).random((runs, parameters))
     with warnings.catch_warnings():
-        warnings.simplefilter(
-            "ignore"
-        )  # of a number of runs that is no power of two: less even, not wrong
-        return sobol.sample(salib_problem(parameters), runs, calc_second_order=False, seed=seed)
+        # Of a number of runs that is no power of two: less even, not wrong.
+        warnings.simplefilter("ignore")
+        if method == "saltelli":
+            with imported("sample.method", "saltelli comes from SALib, which is missing."):
+                from SALib.sample import sobol
+            problem = salib_problem(parameters)
+            return sobol.sample(problem, runs, calc_second_order=False, seed=seed)
+        design = qmc.Sobol if method == "sobol" else qmc.LatinHypercube
+        return design(parameters, rng=seed).random(runs)
 
 
 def salib_problem(parameters: int) -> dict[str, Any]:
     """Parameters of the unit cube in SALib's form."""
     names = [str(number) for number in range(parameters)]
     return {"num_vars": parameters, "names": names, "bounds": [[0.0, 1.0]] * parameters}
-
-
-SPREADS: dict[str, Callable[[int, int, int], np.ndarray]] = {
-    "sobol": _sobol,
-    "latin_hypercube": _latin_hypercube,
-    "random": _random,
-    "saltelli": _saltelli,
-}
-"""Points in the unit cube, (samples, parameters), of (runs, parameters, seed)."""
