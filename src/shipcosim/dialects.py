@@ -223,8 +223,11 @@ def decimal_of(source: str, cells: list[str]) -> str | None:
         return "," if decimal else "."
     cell = cells[0]
     message = f"'{cell}' can be {cell.replace(',', '.')} (decimal comma) or {cell.replace(',', '')} (thousands)."
-    remedy = 'Say which in a channel file: file = {decimal = ","} or file = {decimal = "."}.'
-    raise error_at(source, message, remedy)
+    raise error_at(
+        source,
+        message,
+        'Say which in a channel file: file = {decimal = ","} or file = {decimal = "."}.',
+    )
 
 
 def _is_decimal(cell, sign, other):

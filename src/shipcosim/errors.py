@@ -149,14 +149,14 @@ def reading(path: AnyPath, remedy: str = "Write or copy it again.") -> Iterator[
     except ShipcosimError:
         raise
     except MemoryError as error:
-        message = "is larger than the memory."
-        raise error_at(str(path), message, "Read a part of it.") from error
+        raise error_at(str(path), "is larger than the memory.", "Read a part of it.") from error
     except Exception as error:
         # The system says what is wrong with the disk or the rights; a library, with the content.
         reason = error.strerror if isinstance(error, OSError) else None
         reason_text = reason or reason_of(error)
-        message = f"cannot be read: {reason_text}."
-        raise error_at(str(path), message, "" if reason else remedy) from error
+        raise error_at(
+            str(path), f"cannot be read: {reason_text}.", "" if reason else remedy
+        ) from error
 
 
 def reason_of(error: Exception) -> str:

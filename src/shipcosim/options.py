@@ -95,13 +95,15 @@ class RunOptions:
     def __post_init__(self):
         pace = self.realtime
         if pace is not None and not (isinstance(pace, Real) and 0.0 < pace <= float_info.max):
-            message = f"{pace!r:.60} is no pace."
             raise error_at(
-                "realtime", message, "Give a positive number: 1.0 is as fast as the clock."
+                "realtime",
+                f"{pace!r:.60} is no pace.",
+                "Give a positive number: 1.0 is as fast as the clock.",
             )
         if self.isolate and not 0.0 < self.timeout < float("inf"):
-            message = f"{self.timeout:g} s is no time limit."
-            raise error_at("timeout", message, "Give a positive number.")
+            raise error_at(
+                "timeout", f"{self.timeout:g} s is no time limit.", "Give a positive number."
+            )
 
     def changed(self, names: tuple[str, ...]) -> list[str]:
         """Names among these whose value is not the default."""

@@ -217,8 +217,11 @@ def _suffix(path: str | os.PathLike, suffixes: Iterable[str]) -> str:
         raise error_at(str(path), "is a folder, no table.", f"Tables are {', '.join(suffixes)}.")
     suffix = ending_of(path) if path.is_file() else path.suffix
     if suffix not in suffixes:
-        message = f"'{path.suffix or path.name}' is no table."
-        raise error_at(str(path), message, f"Tables are {', '.join(suffixes)}.")
+        raise error_at(
+            str(path),
+            f"'{path.suffix or path.name}' is no table.",
+            f"Tables are {', '.join(suffixes)}.",
+        )
     if not path.is_file():
         raise error_at(str(path), "there is no such file.")
     return suffix
@@ -246,8 +249,9 @@ def write_file(path: str | os.PathLike, content: bytes) -> None:
     except OSError as error:
         is_full = error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
         remedy = f"{len(content) / 1e6:.1f} MB are needed." if is_full else ""
-        message = f"cannot be written: {error.strerror or error}."
-        raise error_at(str(path), message, remedy) from error
+        raise error_at(
+            str(path), f"cannot be written: {error.strerror or error}.", remedy
+        ) from error
 
 
 def write_json(content: Mapping[str, Any], path: str | os.PathLike) -> None:
@@ -395,8 +399,11 @@ def _open_netcdf(path: Path) -> xarray.Dataset:
         is_classic = file.read(3) == b"CDF"
     # The live page saves NetCDF 3, which xarray reads with scipy. It declares no more than it has.
     if is_classic and find_spec("scipy") is None:
-        remedy = "Install it: pip install 'shipcosim[matlab]'."
-        raise error_at(str(path), "is NetCDF 3, which is read with scipy.", remedy)
+        raise error_at(
+            str(path),
+            "is NetCDF 3, which is read with scipy.",
+            "Install it: pip install 'shipcosim[matlab]'.",
+        )
     if not is_classic:
         _check_declared(path)
     engine = "scipy" if is_classic else "h5netcdf"
@@ -554,8 +561,11 @@ def unpacked_bytes(path: Path) -> bytes:
     with gzip.open(io.BytesIO(content)) as packed:
         text = packed.read(most + 1)
     if len(text) > most:
-        message = f"unpacks to more than {MOST_PACKED} times its size."
-        raise error_at(str(path), message, "Unpack it, and look at what it holds.")
+        raise error_at(
+            str(path),
+            f"unpacks to more than {MOST_PACKED} times its size.",
+            "Unpack it, and look at what it holds.",
+        )
     return text
 
 
@@ -603,8 +613,11 @@ def _read_parquet(path: Path) -> tuple[list[str], list[np.ndarray]]:
         from pyarrow import Table, timestamp, types
         from pyarrow.parquet import ParquetFile
     except ImportError as error:
-        remedy = 'Install it: pip install "shipcosim[parquet]". Or save the table as CSV.'
-        raise error_at(str(path), "pyarrow, which reads Parquet, is not here.", remedy) from error
+        raise error_at(
+            str(path),
+            "pyarrow, which reads Parquet, is not here.",
+            'Install it: pip install "shipcosim[parquet]". Or save the table as CSV.',
+        ) from error
     file = ParquetFile(path)
     about = file.metadata
     # What is packed well declares more than its size: bounded as for NetCDF.

@@ -108,9 +108,10 @@ def read_snapshot(path: str | os.PathLike) -> Snapshot:
     except OSError as error:
         raise error_at(str(path), f"cannot be read: {error.strerror or error}.") from error
     except Exception as error:  # of a damaged archive the decompressors raise anything
-        remedy = "Snapshots come from --store or simulate(..., store=...)."
         raise error_at(
-            str(path), f"is no snapshot of a run: {reason_of(error)}.", remedy
+            str(path),
+            f"is no snapshot of a run: {reason_of(error)}.",
+            "Snapshots come from --store or simulate(..., store=...).",
         ) from error
 
 
@@ -140,8 +141,9 @@ def writer(
     if store is None or callable(store):
         return store
     if not Path(store).absolute().parent.is_dir():
-        message = "There is no such folder to store the state in."
-        raise error_at(str(store), message, "Make it first.")
+        raise error_at(
+            str(store), "There is no such folder to store the state in.", "Make it first."
+        )
     return partial(write_snapshot, path=store)
 
 

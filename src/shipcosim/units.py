@@ -628,8 +628,10 @@ def _pint_conversion(source: str, target: str) -> tuple[float, float]:
         )
     except pint.UndefinedUnitError as error:
         why = str(error).replace("is not defined in the unit registry", "is not known")
-        message = f"cannot convert '{source}' into '{target}': {why}."
-        raise UnitError(message, "Units are written like N.m, kn or deg.") from error
+        raise UnitError(
+            f"cannot convert '{source}' into '{target}': {why}.",
+            "Units are written like N.m, kn or deg.",
+        ) from error
     except pint.DimensionalityError as error:
         raise UnitError(
             f"cannot convert '{source}' into '{target}': they measure different things."

@@ -176,9 +176,10 @@ class Reading:
         parameters = listed(self.parameters, "parameters")
         if isinstance(given, System):
             if swapped:
-                message = "A system that is read keeps its FMUs."
                 raise error_at(
-                    "components", message, "Give its path, its name or a SystemStructure."
+                    "components",
+                    "A system that is read keeps its FMUs.",
+                    "Give its path, its name or a SystemStructure.",
                 )
             return given
         if isinstance(given, SystemStructure):

@@ -26,23 +26,34 @@ def check_learning(
 ) -> None:
     """Raise ShipcosimError if arguments contradict each other."""
     if not learn:
-        remedy = f"It needs {named('learn')}; the length of a ship with a system is in that system."
-        raise error_at(named("length"), "nothing is learned.", remedy)
+        raise error_at(
+            named("length"),
+            "nothing is learned.",
+            f"It needs {named('learn')}; the length of a ship with a system is in that system.",
+        )
     if length is None:
-        message = "a log does not tell how long the craft is."
-        raise error_at(named("learn"), message, f'Give {named("length")}, such as "1.2 m".')
+        raise error_at(
+            named("learn"),
+            "a log does not tell how long the craft is.",
+            f'Give {named("length")}, such as "1.2 m".',
+        )
     if system is not None or reference is not None:
         other = named("reference" if system is None else "system")
-        message = f"with {other}, her numbers are known already."
-        raise error_at(named("learn"), message, "Give one of the two.")
-    if causes is not None:
-        message = f"with {named('causes')}: causes are sought in a craft that is known already."
         raise error_at(
-            named("learn"), message, "Learn her first, then give the system that it leaves."
+            named("learn"), f"with {other}, her numbers are known already.", "Give one of the two."
+        )
+    if causes is not None:
+        raise error_at(
+            named("learn"),
+            f"with {named('causes')}: causes are sought in a craft that is known already.",
+            "Learn her first, then give the system that it leaves.",
         )
     if several:
-        remedy = "`shipcosim calibrate` with --learn learns from several logs."
-        raise error_at(named("learn"), "there are several logs.", remedy)
+        raise error_at(
+            named("learn"),
+            "there are several logs.",
+            "`shipcosim calibrate` with --learn learns from several logs.",
+        )
 
 
 def assumed_craft(logs: Sequence[Any], channels: AnyPath | None, length: float | str | None) -> str:
@@ -86,8 +97,9 @@ def assumed_craft(logs: Sequence[Any], channels: AnyPath | None, length: float |
                 largest[thruster] = max(most, largest.get(thruster, 0.0))
         if not drives:
             remedy = "Name them NAME_rpm, NAME_azimuth or NAME_thrust, or say in a channel file which they are."
-            source = f"{table.encoding.get('source', 'log')}"
-            raise error_at(source, "has no channel of a thruster.", remedy)
+            raise error_at(
+                f"{table.encoding.get('source', 'log')}", "has no channel of a thruster.", remedy
+            )
     units = [
         LoggedThruster(name, frozenset(has), largest.get(name, 0.0)) for name, has in drives.items()
     ]

@@ -357,8 +357,11 @@ def _extended_from(system: System, given: str) -> str:
     if neighbour.exists():
         return str(neighbour)
     if library.named("system", system.name) is None:
-        message = f"it extends a system '{system.name}', which has no name here."
-        raise error_at(given, message, f"Say which one it was: {named('before')}.")
+        raise error_at(
+            given,
+            f"it extends a system '{system.name}', which has no name here.",
+            f"Say which one it was: {named('before')}.",
+        )
     return system.name
 
 

@@ -510,8 +510,9 @@ def _clock_start(options: RunOptions, is_given: bool) -> float:
     """Time from which the steps of a run count; one that continues takes no other one. [s]"""
     since = clock_start(options)
     if is_given and since != options.start_time:
-        message = f"it continues a run that started at {since:g} s."
-        raise error_at(named("start_time"), message, "Leave it out.")
+        raise error_at(
+            named("start_time"), f"it continues a run that started at {since:g} s.", "Leave it out."
+        )
     return since
 
 
@@ -541,10 +542,9 @@ def fed_by(
     """The table that feeds a system's inputs, with what its columns do between their rows; arguments of `simulate`."""
     if table is None:
         if interpolate or max_gap is not None:
-            message = "There is no table to which this could apply."
             raise error_at(
                 f"{named('interpolate')}, {named('max_gap')}",
-                message,
+                "There is no table to which this could apply.",
                 f"Give one as {named('inputs')}.",
             )
         return None

@@ -66,8 +66,11 @@ class PlannedStudy:
             If there is no such run.
         """
         if not 0 <= number < len(self.plan):
-            remedy = f"Runs are numbered from 0 to {len(self.plan) - 1}."
-            raise error_at(self.plan.study.name, f"There is no run {number}.", remedy)
+            raise error_at(
+                self.plan.study.name,
+                f"There is no run {number}.",
+                f"Runs are numbered from 0 to {len(self.plan) - 1}.",
+            )
         values = [f"{name} {value}" for name, value in self.plan.run(number).columns.items()]
         changed = [f"run {number} of the study {self.plan.study.name}", *values]
         prepared = prepare_run(self.plan.alone(number), changed=changed, engine=self.engine)

@@ -264,10 +264,11 @@ def _as_read(
         elif path.suffix.lower() == ".ssp":
             packed = path.resolve()
         else:
-            remedy = (
-                "Give an .ssp, a folder with a SystemStructure.ssd, or an OspSystemStructure.xml."
+            raise error_at(
+                name,
+                "The tools cannot read this themselves.",
+                "Give an .ssp, a folder with a SystemStructure.ssd, or an OspSystemStructure.xml.",
             )
-            raise error_at(name, "The tools cannot read this themselves.", remedy)
         yield {
             "readers": readers(packed, scenario, set_name=told_set(name, fmus=fmus)),
             "taken": partial(taken_by, path=name, fmus=fmus),

@@ -100,8 +100,9 @@ def simulate_many(
     ({'variation': 2, 'time': 21}, True)
     """
     if engine not in ("native", "fmpy"):
-        message = f"engine = {engine!r}."
-        raise error_at("simulate_many()", message, "Variations are run by 'native' or 'fmpy'.")
+        raise error_at(
+            "simulate_many()", f"engine = {engine!r}.", "Variations are run by 'native' or 'fmpy'."
+        )
     if scenario is not None:
         scenario = read_scenario(scenario)
     ship = system_for(system, scenario, components=components)

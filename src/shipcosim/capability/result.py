@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -102,20 +100,17 @@ def notation(capability: Capability) -> str:
 
 def numbers_table(capability: Capability) -> str:
     """DP capability numbers as CSV: a row per direction, a column per case and method."""
-    written = io.StringIO()
-    rows = csv.writer(written, lineterminator="\n")
+    import pandas
+
     columns = {
         f"{method}, {name} [1]": values
         for method in capability.used
         for name, values in _named(capability, method)
     }
     # Degrees in tables, for readers.
-    rows.writerow(["weather_from [deg]", *columns])
-    for k, angle in enumerate(DIRECTIONS):
-        rows.writerow(
-            [round(float(np.degrees(angle)), 9), *(int(values[k]) for values in columns.values())]
-        )
-    return written.getvalue()
+    angles = np.degrees(DIRECTIONS).round(9)
+    table = pandas.DataFrame({"weather_from [deg]": angles, **columns})
+    return table.to_csv(index=False, lineterminator="\n")
 
 
 def _named(capability: Capability, method: str) -> list[tuple[str, NDArray]]:

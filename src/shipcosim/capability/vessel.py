@@ -181,8 +181,11 @@ def _thrusters_of(system: System, vessel: str) -> dict[str, Component]:
     steered = [name for name, part in parts.items() if "rudder_area" in part.variables]
     if steered:
         remedy = 'With kind = "fixed" in the ship file its thrust counts, without the rudder.'
-        missing = f"{', '.join(steered)}: a propeller with a rudder is not in this balance."
-        raise error_at(system.file, missing, remedy)
+        raise error_at(
+            system.file,
+            f"{', '.join(steered)}: a propeller with a rudder is not in this balance.",
+            remedy,
+        )
     if not thrusters:
         remedy = "It needs components with the parameters of azimuth_thruster, tunnel_thruster or fixed_thruster."
         raise error_at(system.file, f"no thruster is connected to {vessel}.", remedy)
@@ -231,8 +234,9 @@ def _problems(
     needed["thrust_max"] = ("thrust_ahead", "N")
     for parameter, (key, of) in needed.items():
         if not values[key] and parameter not in unit.variables:
-            message = f"nothing says {key} [{of}]."
-            yield Problem(where, message, f"The parameter set has none of {name}.")
+            yield Problem(
+                where, f"nothing says {key} [{of}].", f"The parameter set has none of {name}."
+            )
 
 
 def _thruster(unit: Component, particulars: ThrusterParticulars, hull: Hull) -> Thruster:

@@ -189,8 +189,7 @@ def _put(project: Path, files: Mapping[str, Path], over: bool) -> list[Path]:
             else:
                 shutil.copyfile(made, path)
         except OSError as error:
-            message = f"cannot be written: {error.strerror or error}."
-            raise error_at(str(path), message) from None
+            raise error_at(str(path), f"cannot be written: {error.strerror or error}.") from None
         written.append(path)
     return written
 

@@ -265,12 +265,10 @@ class _Runs:
 
 
 def _signal(name, ours, tables, half, tolerance):
-    values = ours[name].values.astype(float)
-    # The range of our signal is the scale of all relative differences.
-    spread = float(np.ptp(values)) if len(values) else 0.0
+    spread = float(np.ptp(ours[name].values.astype(float)))
     having = {engine: table for engine, table in tables.items() if name in table}
-    engines = {engine: difference(name, ours, table, spread) for engine, table in having.items()}
-    step = None if half is None else difference(name, ours, half, spread)
+    engines = {engine: difference(name, ours, table) for engine, table in having.items()}
+    step = None if half is None else difference(name, ours, half)
     groups = _groups(name, {OURS: ours} | having, tolerance)
     return Signal(str(name), ours[name].attrs.get("units", ""), spread, engines, step, groups)
 

@@ -38,23 +38,19 @@ class Difference:
 
 def differs(name: str, ours: xarray.Dataset, theirs: xarray.Dataset, tolerance: float) -> bool:
     """True if a signal differs by more than a tolerance, relative to its range in our run."""
-    # A constant signal has no range: its difference is taken as absolute.
-    spread = float(np.ptp(ours[name].values.astype(float))) or 1.0
     # NaN fails the comparison, so a NaN counts as a difference.
-    return not bool(np.all(np.abs(_distance(name, ours, theirs)) <= tolerance * spread))
+    return not difference(name, ours, theirs).relative <= tolerance
 
 
-def difference(
-    name: str, ours: xarray.Dataset, theirs: xarray.Dataset, spread: float
-) -> Difference:
-    """Largest difference of a signal between two tables; `spread` is its range in ours."""
+def difference(name: str, ours: xarray.Dataset, theirs: xarray.Dataset) -> Difference:
+    """Largest difference of a signal between two tables."""
     # NaN counts as infinitely far, so that its row is the one reported.
     distance = np.abs(_distance(name, ours, theirs))
     row = int(np.argmax(np.where(np.isnan(distance), np.inf, distance)))
     largest = float(distance[row])
-    return Difference(
-        largest, largest / spread if spread else largest, float(theirs["time"].values[row])
-    )
+    # A constant signal has no range: its difference is taken as absolute.
+    spread = float(np.ptp(ours[name].values.astype(float))) or 1.0
+    return Difference(largest, largest / spread, float(theirs["time"].values[row]))
 
 
 def _distance(name, ours, theirs):

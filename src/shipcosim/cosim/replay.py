@@ -162,15 +162,17 @@ def _bad_times(starts, duration, step_size, output_interval):
     # Durations must be whole steps, so that all segments have the same rows.
     for name, time in (("duration", duration), ("output_interval", output_interval or step_size)):
         if not (whole_steps(time, step_size) or 0) > 0:
-            message = f"{name} = {time:g} s is no whole number of steps of {step_size:g} s."
             yield Problem(
                 "replay",
-                message,
+                f"{name} = {time:g} s is no whole number of steps of {step_size:g} s.",
                 f"The nearest would be {max(1, round(steps_in(time, step_size))) * step_size:.9g} s.",
             )
     if len(early := starts[starts + duration <= 0.0]):
-        message = f"the segment at {early[0]:g} s ends before time 0."
-        yield Problem("replay", message, "Shift the times of the table: runs end after 0.")
+        yield Problem(
+            "replay",
+            f"the segment at {early[0]:g} s ends before time 0.",
+            "Shift the times of the table: runs end after 0.",
+        )
 
 
 def _per_segment(name, given, system, n):
@@ -184,8 +186,11 @@ def _per_segment(name, given, system, n):
     values = np.asarray(given)
     # One value for all segments, or one per segment.
     if values.shape not in ((), (n,)):
-        message = f"{values.shape} values for {n} segments."
-        raise error_at(f"replay: states: {name}", message, f"Give one, or {n}.")
+        raise error_at(
+            f"replay: states: {name}",
+            f"{values.shape} values for {n} segments.",
+            f"Give one, or {n}.",
+        )
     values = values if (factor, offset) == (1.0, 0.0) else factor * values + offset
     return np.broadcast_to(values, (n,)).tolist()
 
@@ -229,8 +234,11 @@ class _SegmentRows:
         """Allocate arrays for all segments, from the size of the first."""
         columns = {name: (values, (unit, text)) for name, values, unit, text in columns}
         if unknown := [name for name in self.signals or () if name not in columns]:
-            message = f"there is no signal '{unknown[0]}'."
-            raise error_at("replay: signals", message, suggestion(unknown[0], columns))
+            raise error_at(
+                "replay: signals",
+                f"there is no signal '{unknown[0]}'.",
+                suggestion(unknown[0], columns),
+            )
         # Time counts from the start of each segment, so it is the same for all.
         self.time = simulation.row_times - self.starts[0]
         shape = len(self.starts), len(self.time)

@@ -72,8 +72,11 @@ def simulate(
     odd = [str(remark) for remark in odd_values(scenario, system)]
     # Other engines would ignore these options, so refuse them.
     if options.engine not in OWN and (unknown := options.changed(OWN_OPTIONS)):
-        message = f"It does not know {', '.join(unknown)}."
-        raise error_at(f"engine '{options.engine}'", message, "The engines 'fmpy' and 'native' do.")
+        raise error_at(
+            f"engine '{options.engine}'",
+            f"It does not know {', '.join(unknown)}.",
+            "The engines 'fmpy' and 'native' do.",
+        )
     table = ENGINES[options.engine](system, numbers, options)
     return table.assign_attrs(
         remarks=json.dumps([*odd, *json.loads(table.attrs.get("remarks", "[]"))])

@@ -108,8 +108,11 @@ def _build_into_cache(root: Path, folder: Path) -> None:
         folder.parent.mkdir(parents=True, exist_ok=True)
         stage = temporary_folder(folder.parent, unfinished=True)
     except OSError as error:
-        remedy = f"Set {CACHE} to a folder that can be written to."
-        raise error_at(str(folder), f"cannot be written: {error.strerror}.", remedy) from None
+        raise error_at(
+            str(folder),
+            f"cannot be written: {error.strerror}.",
+            f"Set {CACHE} to a folder that can be written to.",
+        ) from None
     with stage as name:
         made = Path(name, "fmus")
         made.mkdir()

@@ -134,8 +134,9 @@ def check_is_system(given: str) -> None:
     """Raise ShipcosimError where what should be a system has the ending of something else."""
     suffix = Path(given).suffix.lower()
     if suffix == ".toml":
-        remedy = f"If it is a scenario, `shipcosim run {given}` runs it."
-        raise error_at(given, "This is no system.", remedy)
+        raise error_at(
+            given, "This is no system.", f"If it is a scenario, `shipcosim run {given}` runs it."
+        )
 
 
 def _check_kind(kind: str, text: str) -> None:

@@ -61,6 +61,9 @@ def cache() -> Path:
         return user_cache_path("shipcosim", appauthor=False)
     folder = Path(named)
     if file := next((place for place in (folder, *folder.parents) if place.is_file()), None):
-        remedy = f"Set {CACHE} to a folder that can be written to."
-        raise error_at(named, f"cannot be written: {file} is a file.", remedy)
+        raise error_at(
+            named,
+            f"cannot be written: {file} is a file.",
+            f"Set {CACHE} to a folder that can be written to.",
+        )
     return folder

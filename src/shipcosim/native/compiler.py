@@ -37,8 +37,11 @@ def check_installed() -> None:
         With what to install.
     """
     if not is_installed():
-        message = "It compiles the models, and there is no compiler."
-        raise error_at("engine 'native'", message, "Install it: pip install 'shipcosim[native]'.")
+        raise error_at(
+            "engine 'native'",
+            "It compiles the models, and there is no compiler.",
+            "Install it: pip install 'shipcosim[native]'.",
+        )
 
 
 def libraries(sources: Iterable[str]) -> list[ctypes.CDLL]:

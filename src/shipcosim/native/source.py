@@ -353,8 +353,7 @@ class Writer:
         self._write("k", ((first + i, a) for i, a in enumerate(arguments)), depth + 1)
         # After a failed call the arguments must not look valid: NaN forces the next call.
         again = f"k[{first}] = NAN; " if arguments else ""
-        where = f"k + {first}, k + {self.results[number]}"
-        self._put_call(number, where, again, depth + 1)
+        self._put_call(number, f"k + {first}, k + {self.results[number]}", again, depth + 1)
         self._put(depth, "}")
 
     def _put_call(self, number: int, where: str, again: str, depth: int):

@@ -62,8 +62,11 @@ class DiagnosisOfLog(_ShownDiagnosis):
         from shipcosim.report.notebook.diagnosis_card import tracks_svg
 
         if self.tracks is None:
-            message = "There are no predictions of this log to draw."
-            raise error_at(self.name, message, "`shipcosim.read_log(...).track()` draws the log.")
+            raise error_at(
+                self.name,
+                "There are no predictions of this log to draw.",
+                "`shipcosim.read_log(...).track()` draws the log.",
+            )
         return Picture(f"track of {self.name}", tracks_svg(self.tracks, f"track of {self.name}"))
 
 

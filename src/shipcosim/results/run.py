@@ -220,8 +220,11 @@ class Run(LikeTable, Result):
         shown = display_table(self.table, roles.signal(roles.ship, "psi"))
         drawn = [name for name in names if name in shown]
         if not drawn:
-            message = f"{', '.join(names)}: no signal among these is a number over time."
-            raise error_at(self.name, message, "Only those can be drawn.")
+            raise error_at(
+                self.name,
+                f"{', '.join(names)}: no signal among these is a number over time.",
+                "Only those can be drawn.",
+            )
         title = f"{', '.join(signals) or 'signals'} of {self.name}"
         events = sorted({event.time for event in self.scenario.events})
         return Picture(title, panels_svg(shown, drawn, title, events))
@@ -238,9 +241,10 @@ class Run(LikeTable, Result):
 
         svg = run_track(self.table, self.expectations, f"track of {self.name}")
         if svg is None:
-            remedy = "`.plot(...)` draws any signals."
             raise error_at(
-                self.name, "Nothing here is a ship, with x, y and psi over time.", remedy
+                self.name,
+                "Nothing here is a ship, with x, y and psi over time.",
+                "`.plot(...)` draws any signals.",
             )
         return Picture(f"track of {self.name}", svg)
 

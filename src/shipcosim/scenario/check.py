@@ -213,10 +213,9 @@ def check_parameters(scenario: Scenario, system: System) -> Iterator[Problem]:
         ]:
             units = {name: component.variables[name].unit for name in missing}
             names = ", ".join(f"{name} [{unit}]" if unit else name for name, unit in units.items())
-            message = f"parameters left out, which have no value of their own: {names}."
             yield Problem(
                 f"{system.file}: {component.name}",
-                message,
+                f"parameters left out, which have no value of their own: {names}.",
                 "Give them, as a ship's parameter set does.",
             )
 
@@ -305,9 +304,13 @@ def _replaced_changes(scenario: Scenario) -> Iterator[Problem]:
             before = earlier.get(signal)
             if before is not None and before[0] == event.time:
                 time, keys = before
-                message = f"the {keys[2]} of {signal} at {time:g} s has no effect."
-                remedy = f"A later {verb} at the same time takes its place. Keep one of them."
-                yield problem_at(scenario, keys, message, remedy, "remark")
+                yield problem_at(
+                    scenario,
+                    keys,
+                    f"the {keys[2]} of {signal} at {time:g} s has no effect.",
+                    f"A later {verb} at the same time takes its place. Keep one of them.",
+                    "remark",
+                )
             earlier[signal] = event.time, ("events", number, verb, signal)
 
 

@@ -71,8 +71,11 @@ def read_osp_scenario(
     # The file as plain data.
     content = _content(path)
     if not isinstance(content, dict):
-        remedy = "Right would be an object with a list 'events'."
-        raise error_at(str(path), "It holds no object at its top.", remedy)
+        raise error_at(
+            str(path),
+            "It holds no object at its top.",
+            "Right would be an object with a list 'events'.",
+        )
     # All problems of the file together.
     due, remarks, problems = _changes(path, content, step_size)
     end = None
@@ -177,8 +180,11 @@ def _content(path: Path) -> Any:
         return yaml.load(text, Loader=_Loader)
     except (ValueError, RecursionError, yaml.YAMLError) as error:
         kind = "JSON" if path.suffix.lower() == ".json" else "YAML"
-        message = f"It cannot be read as {kind}: {' '.join(str(error).split())}."
-        raise error_at(str(path), message, "Correct it there.") from None
+        raise error_at(
+            str(path),
+            f"It cannot be read as {kind}: {' '.join(str(error).split())}.",
+            "Correct it there.",
+        ) from None
 
 
 def _once(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
@@ -205,8 +211,9 @@ class _Loader(FAST):
 def _unknown(place: str, given: Iterable[str], allowed: Iterable[str]) -> Iterator[Problem]:
     for name in given:
         if name not in allowed:
-            message = f"'{name}' is not used."
-            yield Problem(place, message, f"Known: {', '.join(allowed)}.", "remark")
+            yield Problem(
+                place, f"'{name}' is not used.", f"Known: {', '.join(allowed)}.", "remark"
+            )
 
 
 def _change(given: dict[str, Any], defaults: dict[str, Any], step_size: float) -> Change:

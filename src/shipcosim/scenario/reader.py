@@ -129,19 +129,21 @@ def _text(path: Path) -> str:
     except UnicodeDecodeError as error:
         # Line of the first byte that is no UTF-8.
         line = error.object[: error.start].count(b"\n") + 1
-        message = (
-            f"is not UTF-8 text: byte 0x{error.object[error.start]:02x} is none of its characters."
-        )
-        raise error_at(f"{path}, line {line}", message, "Save the file in UTF-8.") from error
+        raise error_at(
+            f"{path}, line {line}",
+            f"is not UTF-8 text: byte 0x{error.object[error.start]:02x} is none of its characters.",
+            "Save the file in UTF-8.",
+        ) from error
 
 
 def _no_toml(path: Path, message: str, kind: str) -> Problem:
     """Message of the TOML parser, with its line where our messages have theirs."""
     line = re.search(r" \(at line (\d+), column \d+\)", message)
     where = f"{path}, line {line[1]}" if line else str(path)
-    complaint = f"is no TOML: {message.replace(line[0], '') if line else message}."
     return Problem(
-        where, complaint, f"{kind} are text files in TOML: keys, =, values, texts in quotes."
+        where,
+        f"is no TOML: {message.replace(line[0], '') if line else message}.",
+        f"{kind} are text files in TOML: keys, =, values, texts in quotes.",
     )
 
 

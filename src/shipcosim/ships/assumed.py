@@ -106,9 +106,11 @@ def _thruster(logged: LoggedThruster, length: float, thrust: float) -> str:
         entry |= {"kind": '"azimuth"', "diameter": f"{diameter:.4g}"}
         entry |= {"thrust": f"{thrust:.4g}", "rpm": f"{60.0 * turns:.4g}"}
     else:
-        message = f"it has {' and '.join(sorted(logged.drives))}."
-        remedy = "A thruster has its rpm, its rpm and azimuth, or its thrust along a fixed axis."
-        raise error_at(f"thruster '{logged.name}'", message, remedy)
+        raise error_at(
+            f"thruster '{logged.name}'",
+            f"it has {' and '.join(sorted(logged.drives))}.",
+            "A thruster has its rpm, its rpm and azimuth, or its thrust along a fixed axis.",
+        )
     if "azimuth" not in logged.drives and any(word in words for word in _ACROSS):
         entry["direction"] = f"{0.5 * pi:.6g}"
     return "\n[[thrusters]]\n" + "".join(f"{key} = {value}\n" for key, value in entry.items())

@@ -113,8 +113,10 @@ def _hull(ship: Described) -> Iterator[Problem]:
     dimensions = f"{form.hulls} hulls of {dimensions}" if form.hulls > 1 else dimensions
     # Outside the range of ships: mass or a dimension is wrong.
     if not BLOCK[0] <= mass / box <= BLOCK[1]:
-        remedy = f"That is a block coefficient of {mass / box:.2g}; ships have {BLOCK[0]:g} to {BLOCK[1]:g}: "
-        remedy += f"{_mass(BLOCK[0] * box)} to {_mass(BLOCK[1] * box)} would fit."
+        remedy = (
+            f"That is a block coefficient of {mass / box:.2g}; ships have {BLOCK[0]:g} to {BLOCK[1]:g}: "
+            f"{_mass(BLOCK[0] * box)} to {_mass(BLOCK[1] * box)} would fit."
+        )
         yield Problem(f"{ship.path}: mass", f"{_mass(mass)} do not fit {dimensions}.", remedy)
     elif p.block_coefficient is not None and abs(mass / box / form.block - 1.0) > OWN_BLOCK:
         message = f"{_mass(mass)} and a block coefficient of {form.block:g} do not fit {dimensions} together."
@@ -167,12 +169,13 @@ def _matrix(ship: Described) -> Iterator[Problem]:
         names = [f"{n} {d:.3g}" for n, d in zip(("surge", "sway", "yaw"), diagonal, strict=True)]
         remedy = (
             "Mass with added mass must be positive, and sway_yaw squared less than sway times yaw: "
+            f"at most {np.sqrt(max(diagonal[1] * diagonal[2], 0.0)):.3g} kg.m."
         )
-        remedy += f"at most {np.sqrt(max(diagonal[1] * diagonal[2], 0.0)):.3g} kg.m."
-        message = (
-            f"the mass matrix is not positive: {', '.join(names)}, sway by yaw {matrix[1, 2]:.3g}."
+        yield Problem(
+            where,
+            f"the mass matrix is not positive: {', '.join(names)}, sway by yaw {matrix[1, 2]:.3g}.",
+            remedy,
         )
-        yield Problem(where, message, remedy)
     # Gyration radius about the centre of gravity, by Steiner's theorem.
     about_centre = value["inertia_yaw"] - mass * centre**2
     gyradius = np.sqrt(max(about_centre, 0.0) / mass) / length
@@ -186,17 +189,19 @@ def _matrix(ship: Described) -> Iterator[Problem]:
         )
     # A ship with the centre of gravity far from midships would trim.
     if abs(centre) > 0.2 * length:
-        message = f"the centre of gravity lies {centre:g} m forward of midships."
         yield Problem(
             where,
-            message,
+            f"the centre of gravity lies {centre:g} m forward of midships.",
             f"With a length of {length:g} m it lies within about a tenth of the length.",
         )
     # Positive damping would drive the ship.
     for name in DRIVING:
         if value.get(name, 0.0) > 0.0:
-            message = f"{name} is {value[name]:g}: the water drives her."
-            yield Problem(f"{ship.path}: hull", message, "Damping coefficients are negative.")
+            yield Problem(
+                f"{ship.path}: hull",
+                f"{name} is {value[name]:g}: the water drives her.",
+                "Damping coefficients are negative.",
+            )
 
 
 def _thrusters(ship: Described) -> Iterator[Problem]:
@@ -208,16 +213,16 @@ def _thrusters(ship: Described) -> Iterator[Problem]:
     for unit in ship.units:
         where = f"{ship.path}: thruster {unit.name}"
         if abs(unit.x) > BEYOND * length:
-            message = f"x is {unit.x:g} m, outside of the hull of {length:g} m."
             yield Problem(
                 where,
-                message,
+                f"x is {unit.x:g} m, outside of the hull of {length:g} m.",
                 f"x is forward of midships: {-0.5 * length:g} to {0.5 * length:g} m.",
             )
         if abs(unit.y) > BEYOND * breadth:
-            message = f"y is {unit.y:g} m, outside of the hull of {breadth:g} m."
             yield Problem(
-                where, message, f"y is to starboard: {-0.5 * breadth:g} to {0.5 * breadth:g} m."
+                where,
+                f"y is {unit.y:g} m, outside of the hull of {breadth:g} m.",
+                f"y is to starboard: {-0.5 * breadth:g} to {0.5 * breadth:g} m.",
             )
         yield from _thrust(unit, where, draught)
 
@@ -240,8 +245,10 @@ def _thrust(unit: ShipThruster, where: str, draught: float) -> Iterator[Problem]
         )
     # Thrust coefficients above MOST_KT do not occur: speed or diameter is wrong.
     if screw.thrust_coefficient > MOST_KT:
-        message = f"{screw.thrust / 1000:.4g} kN at {screw.rpm:.4g} rpm is a thrust coefficient of "
-        message += f"{screw.thrust_coefficient:.2g}."
+        message = (
+            f"{screw.thrust / 1000:.4g} kN at {screw.rpm:.4g} rpm is a thrust coefficient of "
+            f"{screw.thrust_coefficient:.2g}."
+        )
         yield Problem(
             where,
             message,
@@ -271,10 +278,9 @@ def _remarks(ship: Described) -> Iterator[Problem]:
         yield Problem(f"{ship.path}: thrusters", message, "", "remark")
     count = len(estimated(ship))
     if count:
-        message = f"{count} numbers are estimated."
         yield Problem(
             str(ship.path),
-            message,
+            f"{count} numbers are estimated.",
             "Give what you know; the rest has the tolerance of its formula.",
             "remark",
         )
@@ -304,11 +310,17 @@ def _speed(ship: Described) -> Iterator[Problem]:
         unit.most for unit in ship.units if unit.kind != "tunnel" and abs(unit.direction) < 0.5 * pi
     )
     if ahead and drag > ahead:
-        message = f"at {form.speed:.3g} m/s she has a resistance of {drag / 1000:.4g} kN, "
-        message += f"more than the {ahead / 1000:.4g} kN that her thrusters give at rest."
+        message = (
+            f"at {form.speed:.3g} m/s she has a resistance of {drag / 1000:.4g} kN, "
+            f"more than the {ahead / 1000:.4g} kN that her thrusters give at rest."
+        )
         yield Problem(where, message, "She does not reach her service speed.", "remark")
     # Holtrop and Mennen hold only below MOST_FROUDE.
     if entry.origin.startswith(ESTIMATED) and froude_number(form) > MOST_FROUDE:
         message = f"{form.speed:.3g} m/s is Froude number {froude_number(form):.2g}, beyond the formulae of resistance."
-        remedy = "Give a point of her speed trial: resistance.speed and resistance.resistance."
-        yield Problem(where, message, remedy, "remark")
+        yield Problem(
+            where,
+            message,
+            "Give a point of her speed trial: resistance.speed and resistance.resistance.",
+            "remark",
+        )

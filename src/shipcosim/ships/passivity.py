@@ -106,5 +106,9 @@ def driven_by_water(where: str, values: Mapping[str, Any]) -> Iterator[Problem]:
         f"to {rate:.2g} deg/s). It gives her most, {gain.power:.3g} W, at u {gain.u:.2g} m/s, v {gain.v:.2g} m/s, "
         f"r {np.degrees(gain.r):.2g} deg/s. Her kinetic energy grows there by {100.0 * gain.growth:.2g} % a second."
     )
-    remedy = "Still water brakes a ship: correct her damping, or add linear damping X_u, Y_v, N_r."
-    yield Problem(where, message, remedy, "remark")
+    yield Problem(
+        where,
+        message,
+        "Still water brakes a ship: correct her damping, or add linear damping X_u, Y_v, N_r.",
+        "remark",
+    )

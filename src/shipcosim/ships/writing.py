@@ -138,9 +138,10 @@ def ship_text(answers: Answers) -> str:
     # Dimensions have no usual value without each other.
     missing = [key for key in ("length", "breadth", "draught") if not getattr(answers, key)]
     if missing:
-        message = f"nothing says {', '.join(missing)}."
         raise error_at(
-            "new ship", message, 'Give --length "60 m" and so on, or --from with a ship file.'
+            "new ship",
+            f"nothing says {', '.join(missing)}.",
+            'Give --length "60 m" and so on, or --from with a ship file.',
         )
     # Given thrusters, else usual ones for the layout; and her hull, for the estimates.
     try:
@@ -195,8 +196,11 @@ def thruster_from(text: str) -> dict[str, str]:
     """
     parts = [part.partition("=") for part in text.split(",") if part.strip()]
     if not parts or not all(sign and key.strip() and value.strip() for key, sign, value in parts):
-        remedy = 'Write --thruster "name=bow, kind=tunnel, x=25 m, diameter=1.7 m, power=500 kW".'
-        raise error_at("--thruster", f"found {text!r}.", remedy)
+        raise error_at(
+            "--thruster",
+            f"found {text!r}.",
+            'Write --thruster "name=bow, kind=tunnel, x=25 m, diameter=1.7 m, power=500 kW".',
+        )
     return {key.strip(): value.strip() for key, _, value in parts}
 
 

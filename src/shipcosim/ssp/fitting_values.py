@@ -49,8 +49,11 @@ def fitting_values(path: AnyPath, system: System) -> tuple[dict[str, Value], lis
     # A set of which nothing fits is for another system.
     if not values:
         names = ", ".join(problem.where.rpartition(": ")[2] for problem in remarks)
-        message = f"Nothing of it fits {system.name}: {names}."
-        raise error_at(str(path), message, f"Components: {', '.join(system.components)}.")
+        raise error_at(
+            str(path),
+            f"Nothing of it fits {system.name}: {names}.",
+            f"Components: {', '.join(system.components)}.",
+        )
     return values, remarks
 
 

@@ -141,6 +141,9 @@ class _Dispatch:
                 failed.append(Row(numbers[0], error=ENDED))
         # Nothing has worked and several runs crash: something is wrong with all of them.
         if not self._n_done and len(failed) and self._ends.total() >= 3 * ENDS:
-            remedy = "Run the scenario alone to see why: shipcosim run SCENARIO --engine native."
-            raise error_at("workers", "Each worker process ends in its first run.", remedy)
+            raise error_at(
+                "workers",
+                "Each worker process ends in its first run.",
+                "Run the scenario alone to see why: shipcosim run SCENARIO --engine native.",
+            )
         return failed

@@ -214,8 +214,12 @@ def _of_fork(study: Study, scenario: Scenario) -> Iterator[Problem]:
     if count is None or study.fork_at >= scenario.stop_time:
         step = scenario.step_size
         stop = scenario.stop_time
-        remedy = f"It is a multiple of the step size, {step:g} s, before the end at {stop:g} s."
-        yield problem_of(study, ("fork_at",), f"fork_at = {study.fork_at:g} s.", remedy)
+        yield problem_of(
+            study,
+            ("fork_at",),
+            f"fork_at = {study.fork_at:g} s.",
+            f"It is a multiple of the step size, {step:g} s, before the end at {stop:g} s.",
+        )
 
 
 def _of_replaced(
@@ -253,11 +257,10 @@ def _of_summaries(study: Study) -> Iterator[Problem]:
     )
     for number, summary in enumerate(study.summary):
         if summary.quantity not in quantities:
-            message = f"There is no quantity '{summary.quantity}'."
             yield problem_of(
                 study,
                 ("summary", number, "quantity"),
-                message,
+                f"There is no quantity '{summary.quantity}'.",
                 suggestion(summary.quantity, quantities),
             )
         for key, names in (
@@ -266,7 +269,9 @@ def _of_summaries(study: Study) -> Iterator[Problem]:
         ):
             for name in names:
                 if name not in factors:
-                    message = f"There is no factor '{name}'."
                     yield problem_of(
-                        study, ("summary", number, key), message, suggestion(name, factors)
+                        study,
+                        ("summary", number, key),
+                        f"There is no factor '{name}'.",
+                        suggestion(name, factors),
                     )

@@ -90,8 +90,11 @@ class Levels:
         for label in [level.label for level in levels] if self._is_angle(number) else ():
             direction = round(float(label) / tau % 1.0, 9) % 1.0
             if direction in first:
-                message = f"The levels {first[direction]:g} and {label:g} rad are one direction."
-                self.complain(("factor", number), message, "Keep one.")
+                self.complain(
+                    ("factor", number),
+                    f"The levels {first[direction]:g} and {label:g} rad are one direction.",
+                    "Keep one.",
+                )
             first.setdefault(direction, label)
         return levels
 
@@ -239,10 +242,11 @@ class Levels:
         if path is None:
             names = [file.stem for file in paths[0].parent.glob("*.ssv")]
             names += [file.name for file in self._study.folder.glob("*.ssv")]
-            message = (
-                f"There is no parameter set '{name}', in {paths[0].parent} or beside the study."
+            self.complain(
+                keys,
+                f"There is no parameter set '{name}', in {paths[0].parent} or beside the study.",
+                suggestion(name, names),
             )
-            self.complain(keys, message, suggestion(name, names))
             return {}
         try:
             return fitting_values(path, self._system)[0]
@@ -284,8 +288,11 @@ class Levels:
         # A step in the wrong direction never arrives, and a tiny one makes more levels than memory
         # holds.
         if step == 0.0 or (last - first) / step < 0.0 or (last - first) / step > MOST_LEVELS:
-            message = f"Steps of {factor.step} do not lead from {factor.start} to {factor.to}."
-            self.complain(("factor", number, "step"), message, "Give another step.")
+            self.complain(
+                ("factor", number, "step"),
+                f"Steps of {factor.step} do not lead from {factor.start} to {factor.to}.",
+                "Give another step.",
+            )
             return []
         # A small tolerance, so that rounding does not lose the last value.
         return [first + i * step for i in range(floor((last - first) / step + 1e-9) + 1)]
@@ -299,8 +306,11 @@ class Levels:
             else list(seeds_of(self._system))
         )
         if not signals and not self.problems:
-            message = "Nothing in the system has a seed: it has no parameter named seed."
-            self.complain(keys, message, "Name the signals: signal = [...].")
+            self.complain(
+                keys,
+                "Nothing in the system has a seed: it has no parameter named seed.",
+                "Name the signals: signal = [...].",
+            )
         # Seeds of one level differ between signals, so that two sensors have independent noise.
         levels = []
         for level in range(1, (factor.seeds or 0) + 1):

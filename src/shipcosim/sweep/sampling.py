@@ -87,8 +87,11 @@ class Samples:
         """
         row = self.numbers[number].tolist()
         if any(map(isnan, row)):
-            remedy = "Run the study so far: each generation follows from the one before."
-            raise error_at(f"trial {number}", "It has not been proposed yet.", remedy)
+            raise error_at(
+                f"trial {number}",
+                "It has not been proposed yet.",
+                "Run the study so far: each generation follows from the one before.",
+            )
         return [
             round(v) if column.is_whole else v for v, column in zip(row, self.columns, strict=True)
         ]
@@ -119,7 +122,7 @@ def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
         return None
     # Points in the unit cube, by the chosen method; kept off 0 and 1, where a normal distribution
     # is infinite.
-    spread = np.clip(SPREADS[sample.method](sample.runs, len(usable), study.seed), EDGE, 1.0 - EDGE)
+    spread = np.clip(_spread(sample.method, sample.runs, len(usable), study.seed), EDGE, 1.0 - EDGE)
     numbers = np.column_stack([of(spread[:, i]) for i, (_, of) in enumerate(usable)])
     samples = Samples(tuple(column for column, _ in usable), numbers)
     # Only the extremes can break a bound.
@@ -137,16 +140,20 @@ def _lines(
     keys = ("sample", "of", key)
     group = key.removesuffix(EVERY)
     if not distribution.tolerance or distribution.name or distribution.also:
-        message = f"'{key}' stands for each parameter with a tolerance."
-        levels.complain(keys, message, "It takes tolerance = true, and neither name nor also.")
+        levels.complain(
+            keys,
+            f"'{key}' stands for each parameter with a tolerance.",
+            "It takes tolerance = true, and neither name nor also.",
+        )
         return
     # All parameters with a tolerance, except those that have a line of their own.
     component = system.components.get(levels.signals_of(key)[0].removesuffix(EVERY))
     names = [f"{group}.{name}" for name in component.tolerances] if component else []
     if not names:
         of_tolerances = [f"{c.name}{EVERY}" for c in system.components.values() if c.tolerances]
-        message = f"No parameter set states a tolerance of {key}."
-        levels.complain(keys, message, suggestion(key, of_tolerances))
+        levels.complain(
+            keys, f"No parameter set states a tolerance of {key}.", suggestion(key, of_tolerances)
+        )
     in_lines = {
         signal
         for line, each in sample.of.items()
@@ -210,22 +217,27 @@ def _distribution(stated: Distribution) -> Callable[[np.ndarray], np.ndarray]:
     # Check name and shape parameters here: scipy's own errors do not name the line.
     names_of_scipy = [name for name in dir(stats) if isinstance(getattr(stats, name), kinds)]
     if stated.distribution not in names_of_scipy:
-        message = f"scipy.stats has no distribution '{stated.distribution}'."
-        raise error_at("", message, suggestion(str(stated.distribution), names_of_scipy))
+        raise error_at(
+            "",
+            f"scipy.stats has no distribution '{stated.distribution}'.",
+            suggestion(str(stated.distribution), names_of_scipy),
+        )
     distribution = getattr(stats, str(stated.distribution))
     needed = (distribution.shapes or "").replace(",", " ").split()
     allowed = [*needed, "loc"] + ([] if isinstance(distribution, stats.rv_discrete) else ["scale"])
     if unknown := [name for name in stated.shape if name not in allowed]:
         raise error_at("", f"unknown key '{unknown[0]}'.", suggestion(unknown[0], allowed))
     if missing := [name for name in needed if name not in stated.shape]:
-        message = f"'{missing[0]}' is missing."
-        raise error_at("", message, f"{stated.distribution} has: {', '.join(allowed)}.")
+        raise error_at(
+            "", f"'{missing[0]}' is missing.", f"{stated.distribution} has: {', '.join(allowed)}."
+        )
     # Wrong parameters show as values that are not finite.
     if not np.isfinite(distribution.ppf([EDGE, 0.5, 1.0 - EDGE], **stated.shape)).all():
         numbers = ", ".join(f"{name} = {value:g}" for name, value in stated.shape.items())
-        message = f"{stated.distribution} with {numbers or 'no numbers'}."
         raise error_at(
-            "", message, "These numbers make no distribution, or one without finite values."
+            "",
+            f"{stated.distribution} with {numbers or 'no numbers'}.",
+            "These numbers make no distribution, or one without finite values.",
         )
     return lambda shares: distribution.ppf(shares, **stated.shape)
 
@@ -238,8 +250,11 @@ def _with_tolerance(system: System, signal: str) -> Callable[[np.ndarray], np.nd
     tolerances = {} if component is None else system.components[component].tolerances
     if name not in tolerances:
         with_tolerance = [f"{c.name}.{n}" for c in system.components.values() for n in c.tolerances]
-        message = f"No parameter set states a tolerance of {signal}."
-        raise error_at("", message, suggestion(signal, with_tolerance))
+        raise error_at(
+            "",
+            f"No parameter set states a tolerance of {signal}.",
+            suggestion(signal, with_tolerance),
+        )
     return lambda shares: norm.ppf(
         shares, loc=system.start_value(component, name), scale=tolerances[name]
     )
@@ -257,52 +272,31 @@ def _check_ends(levels: Levels, samples: Samples, lines: Sequence[str]) -> None:
                 levels.checked(dict.fromkeys(column.signals, value), keys)
 
 
-def _sobol(runs: int, parameters: int, seed: int) -> np.ndarray:
-    from scipy.stats import qmc
-
-    with warnings.catch_warnings():
-        warnings.simplefilter(
-            "ignore"
-        )  # of a number of runs that is no power of two: less even, not wrong
-        return qmc.Sobol(parameters, rng=seed).random(runs)
-
-
-def _latin_hypercube(runs: int, parameters: int, seed: int) -> np.ndarray:
-    from scipy.stats import qmc
-
-    return qmc.LatinHypercube(parameters, rng=seed).random(runs)
-
-
-def _random(runs: int, parameters: int, seed: int) -> np.ndarray:
-    return np.random.default_rng(seed).random((runs, parameters))
-
-
-def _saltelli(runs: int, parameters: int, seed: int) -> np.ndarray:
-    """Saltelli's design for first-order and total Sobol indices: blocks of parameters + 2 samples.
+def _spread(method: str, runs: int, parameters: int, seed: int) -> np.ndarray:
+    """Points in the unit cube, (samples, parameters).
 
     References
     ----------
-    Saltelli et al., Variance based sensitivity analysis of model output, Comput. Phys. Commun. 181, 2010.
+    Saltelli et al., Variance based sensitivity analysis of model output, Comput. Phys. Commun. 181, 2010: blocks of
+    parameters + 2 samples for first-order and total Sobol indices.
     """
-    with imported("sample.method", "saltelli comes from SALib, which is missing."):
-        from SALib.sample import sobol
+    from scipy.stats import qmc
+
+    if method == "random":
+        return np.random.default_rng(seed).random((runs, parameters))
     with warnings.catch_warnings():
-        warnings.simplefilter(
-            "ignore"
-        )  # of a number of runs that is no power of two: less even, not wrong
-        return sobol.sample(salib_problem(parameters), runs, calc_second_order=False, seed=seed)
+        # Of a number of runs that is no power of two: less even, not wrong.
+        warnings.simplefilter("ignore")
+        if method == "saltelli":
+            with imported("sample.method", "saltelli comes from SALib, which is missing."):
+                from SALib.sample import sobol
+            problem = salib_problem(parameters)
+            return sobol.sample(problem, runs, calc_second_order=False, seed=seed)
+        design = qmc.Sobol if method == "sobol" else qmc.LatinHypercube
+        return design(parameters, rng=seed).random(runs)
 
 
 def salib_problem(parameters: int) -> dict[str, Any]:
     """Parameters of the unit cube in SALib's form."""
     names = [str(number) for number in range(parameters)]
     return {"num_vars": parameters, "names": names, "bounds": [[0.0, 1.0]] * parameters}
-
-
-SPREADS: dict[str, Callable[[int, int, int], np.ndarray]] = {
-    "sobol": _sobol,
-    "latin_hypercube": _latin_hypercube,
-    "random": _random,
-    "saltelli": _saltelli,
-}
-"""Points in the unit cube, (samples, parameters), of (runs, parameters, seed)."""

@@ -353,9 +353,11 @@ def _naming_file(folder: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        message = f"Results cannot be written here: {error.strerror or error}."
-        remedy = "Make room and run the study again: it goes on from what is done."
-        raise error_at(str(folder), message, remedy) from error
+        raise error_at(
+            str(folder),
+            f"Results cannot be written here: {error.strerror or error}.",
+            "Make room and run the study again: it goes on from what is done.",
+        ) from error
 
 
 def _kind(labels: list[Value]) -> Any:

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     import pandas
 
 CONFIDENCE = 0.95
-_NORMAL = 1.959963984540054  # quantile of the normal distribution at (1 + CONFIDENCE) / 2
 SHARE = 0.9
 """Share of the runs of a case that have to hold, if a summary names none."""
 
@@ -147,15 +146,12 @@ def wilson(held: int, n: int) -> Interval:
     >>> [round(value, 3) for value in wilson(9, 10)]
     [0.9, 0.596, 0.982]
     """
+    from scipy.stats import binomtest
+
     if n == 0:
         return np.nan, np.nan, np.nan
-    # Wilson's score interval: middle and half width before division by 1 + z²/n. Unlike p ± z σ it
-    # stays within 0 and 1.
-    share = held / n
-    z2 = _NORMAL**2
-    middle = share + z2 / (2 * n)
-    half = _NORMAL * sqrt(share * (1 - share) / n + z2 / (4 * n * n))
-    return share, max((middle - half) / (1 + z2 / n), 0.0), min((middle + half) / (1 + z2 / n), 1.0)
+    low, high = binomtest(held, n).proportion_ci(CONFIDENCE, "wilson")
+    return held / n, float(low), float(high)
 
 
 def percentile(values: np.ndarray, percent: float) -> Interval:
@@ -184,36 +180,30 @@ def percentile(values: np.ndarray, percent: float) -> Interval:
     >>> percentile(np.array([1.0, 2.0, np.inf]), 90.0)[0]
     inf
     """
-    from scipy.stats import binom
+    from scipy.stats import quantile_test
 
-    # The number of values below the true percentile is binomial, B(n, p). Its quantiles are the
-    # ranks of the limits.
-    n = len(values)
-    ordered = np.sort(values)
-    each = (1.0 - CONFIDENCE) / 2.0
-    if n == 0:
+    if not len(values):
         return np.nan, np.nan, np.nan
-    # Largest rank whose tail is at most 2.5 %.
-    low = int(binom.ppf(each, n, percent / 100.0))
-    if binom.cdf(low, n, percent / 100.0) > each:
-        low -= 1
-    high = int(binom.ppf(1.0 - each, n, percent / 100.0)) + 1
-    # Beyond the sample no limit can be given: more runs are needed.
-    limits = (
-        float(ordered[low]) if low >= 0 else np.nan,
-        float(ordered[high - 1]) if high <= n else np.nan,
-    )
+    low, high = quantile_test(values, p=percent / 100.0).confidence_interval(CONFIDENCE)
     # Interpolation between a finite and an infinite value makes no sense: take the upper neighbour.
-    after = ordered[int(np.ceil(percent / 100.0 * (n - 1) - 1e-9))]
-    return float(np.percentile(values, percent) if np.isfinite(after) else after), *limits
+    after = np.sort(values)[int(np.ceil(percent / 100.0 * (len(values) - 1) - 1e-9))]
+    value = np.percentile(values, percent) if np.isfinite(after) else after
+    return float(value), float(low), float(high)
 
 
-def _mean(values: np.ndarray) -> Interval:
+def mean(values: np.ndarray) -> Interval:
+    """Mean of a sample, with Student's interval.
+
+    Examples
+    --------
+    >>> [round(value, 2) for value in mean(np.array([1.0, 2.0, 3.0]))]
+    [2.0, -0.48, 4.48]
+    """
     from scipy.stats import t
 
     if len(values) < 2:
         return (float(values.mean()) if len(values) else np.nan), np.nan, np.nan
-    # Student's t interval of the mean, mean ± t s / √n.
+    # Mean ± t s / √n.
     half = t.ppf((1.0 + CONFIDENCE) / 2.0, len(values) - 1) * values.std(ddof=1) / sqrt(len(values))
     return float(values.mean()), float(values.mean() - half), float(values.mean() + half)
 
@@ -229,7 +219,7 @@ def _plain(reduce: Any, least: int = 1) -> Any:
 WITH_LIMITS = ("percentile", "mean", "share")
 STATISTICS: dict[str, Any] = {
     "percentile": lambda values, summary: percentile(values, summary.percentile),
-    "mean": lambda values, summary: _mean(values),
+    "mean": lambda values, summary: mean(values),
     "std": _plain(lambda values: values.std(ddof=1), 2),
     "maximum": _plain(np.max),
     "minimum": _plain(np.min),

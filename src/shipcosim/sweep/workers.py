@@ -131,17 +131,17 @@ class Cluster(Workers):
         try:
             self._client = Client(address, timeout=10, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
-            remedy = (
-                "Start one: dask scheduler, and on each machine dask worker ADDRESS --nthreads 1."
-            )
-            message = f"No scheduler of Dask answers: {str(error) or type(error).__name__}."
-            raise error_at(self._where, message, remedy) from None
+            raise error_at(
+                self._where,
+                f"No scheduler of Dask answers: {str(error) or type(error).__name__}.",
+                "Start one: dask scheduler, and on each machine dask worker ADDRESS --nthreads 1.",
+            ) from None
         self.n = len(self._client.scheduler_info(n_workers=-1)["workers"])
         if not self.n:
             self._client.close()
-            message = "It has no worker."
-            remedy = f"Start some: dask worker {address} --nthreads 1."
-            raise error_at(self._where, message, remedy)
+            raise error_at(
+                self._where, "It has no worker.", f"Start some: dask worker {address} --nthreads 1."
+            )
         # The job goes to all workers once; each chunk then only refers to it.
         self._packed: PackedJob = pack(plan, engine, with_fmus=True)
         self._executor = self._client.get_executor(pure=False, retries=2)
@@ -170,8 +170,11 @@ class Cluster(Workers):
             raise self._gone(str(error)) from None
 
     def _gone(self, why: str) -> ShipcosimError:
-        remedy = "Start it again, then the same command, which goes on."
-        return error_at(self._where, f"The cluster answers no more: {why}.", remedy)
+        return error_at(
+            self._where,
+            f"The cluster answers no more: {why}.",
+            "Start it again, then the same command, which goes on.",
+        )
 
     def close(self) -> None:
         """See `Workers`."""

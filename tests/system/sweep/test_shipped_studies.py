@@ -84,7 +84,7 @@ def test_dp_capability_is_the_last_condition_that_its_seeds_hold(swept):
 
 def test_page_of_dp_capability_has_the_static_numbers_beside_it(swept):
     _, page = swept("dp_capability_small")
-    assert page.undrawn == () and page.remarks == ()
+    assert page.remarks == []
     intact, lost, position = page.plots
     capability = capability_of(vessel_of("gunnerus_dp", ["gunnerus-33m9"]))
     curves = {trace["name"]: trace for trace in intact.traces}

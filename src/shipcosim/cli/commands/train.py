@@ -91,8 +91,11 @@ def _train(component: str, kind: str, out: Path | None, force: bool) -> None:
     except ModuleNotFoundError as error:
         if error.name != "torch":
             raise
-        remedy = 'Install the extra `learn`: pip install "shipcosim[learn]".'
-        raise error_at("train", "Training needs torch, which is not installed.", remedy) from None
+        raise error_at(
+            "train",
+            "Training needs torch, which is not installed.",
+            'Install the extra `learn`: pip install "shipcosim[learn]".',
+        ) from None
     kinds = list(learn.COMPONENTS[component])
     if kind not in kinds:
         raise error_at("--kind", f"There is no '{kind}'.", suggestion(kind, kinds))

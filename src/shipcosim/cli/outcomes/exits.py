@@ -90,8 +90,12 @@ class Output:
             conclusion.show()
         if self.is_published:
             outcome = conclusion.result.outcome
-            sentence = f"{outcome.word} {outcome.sentence}"
-            self.publish(conclusion.name, sentence, conclusion.result.checks, conclusion.folder)
+            self.publish(
+                conclusion.name,
+                f"{outcome.word} {outcome.sentence}",
+                conclusion.result.checks,
+                conclusion.folder,
+            )
         if not conclusion.result.passed:
             raise typer.Exit(FAILED if conclusion.result.is_usable else UNUSABLE)
 

@@ -113,8 +113,11 @@ def origin_of_package() -> dict[str, str]:
 def fmu_files(name: str) -> Files:
     """An FMU that can be built as it is."""
     if not (name.isidentifier() and name.isascii()):
-        remedy = "Its name is one of Python: letters, digits and '_', no digit at the start."
-        raise error_at(name, "This cannot name an FMU.", remedy)
+        raise error_at(
+            name,
+            "This cannot name an FMU.",
+            "Its name is one of Python: letters, digits and '_', no digit at the start.",
+        )
     class_name = "".join(part[:1].upper() + part[1:] for part in name.split("_")) or name
     values = {"name": name, "class_name": class_name}
     return {
@@ -141,8 +144,11 @@ def system_files(name: str, origin: str) -> Files:
     _check_name(name, "system")
     folder = library.find("system", origin, "--from")
     if not (folder / STRUCTURE).is_file():
-        remedy = f"Unpack it into ssp/{name}; an .ssp is a ZIP archive."
-        raise error_at(origin, f"This folder has no {STRUCTURE}, so it is not copied.", remedy)
+        raise error_at(
+            origin,
+            f"This folder has no {STRUCTURE}, so it is not copied.",
+            f"Unpack it into ssp/{name}; an .ssp is a ZIP archive.",
+        )
     with reading(folder / STRUCTURE):
         text = (folder / STRUCTURE).read_text(encoding="utf-8")
     named = re.search(r'<(?:\w+:)?System\b[^>]*?\sname="([^"]*)"', text)
@@ -284,8 +290,11 @@ def _own_system() -> str | None:
 
 def _check_name(name: str, kind: str) -> None:
     if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", name):
-        message = f"This cannot name a {kind}: '{name}'."
-        raise error_at("NAME", message, "Use letters, digits, '_', '-' and '.'.")
+        raise error_at(
+            "NAME",
+            f"This cannot name a {kind}: '{name}'.",
+            "Use letters, digits, '_', '-' and '.'.",
+        )
 
 
 def _filled(template: str, **values: object) -> str:

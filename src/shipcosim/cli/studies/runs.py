@@ -40,8 +40,9 @@ def serve(study: PlannedStudy, swept: StudyResult, port: int = 0) -> None:
 
     numbers = [int(number) for number in swept.runs["run"]]
     server = study_server(swept.folder, numbers, simulate, port)
-    text = f"{shown_path(swept.folder)} is shown at {server.url} on this machine; Ctrl-C ends it."
-    make_console(soft_wrap=True).print(text)
+    make_console(soft_wrap=True).print(
+        f"{shown_path(swept.folder)} is shown at {server.url} on this machine; Ctrl-C ends it."
+    )
     try:
         server.serve_forever()
     except KeyboardInterrupt:

@@ -59,8 +59,11 @@ def check_installed() -> None:
 
         libcosimc()
     except (ImportError, OSError) as error:
-        remedy = "Install it: pip install libcosimpy (Linux and Windows on x86-64)."
-        raise error_at("libcosim", f"is not installed: {error}.", remedy) from error
+        raise error_at(
+            "libcosim",
+            f"is not installed: {error}.",
+            "Install it: pip install libcosimpy (Linux and Windows on x86-64).",
+        ) from error
 
 
 class LibcosimSession:

@@ -91,8 +91,11 @@ def _add_units(root, system, exposed):
         # An FMU has one definition per unit name; two definitions in its parts cannot be merged.
         units = {c.fmu.units[name] for c in system.components.values() if name in c.fmu.units}
         if len({(unit.exponents, unit.factor, unit.offset) for unit in units}) > 1:
-            text = f"The unit {name} is defined in two ways by its FMUs."
-            raise error_at(system.name, text, "An FMU can have one definition of a unit.")
+            raise error_at(
+                system.name,
+                f"The unit {name} is defined in two ways by its FMUs.",
+                "An FMU can have one definition of a unit.",
+            )
         element = xml.SubElement(definitions, "Unit", name=name)
         for unit in units:
             xml.SubElement(element, "BaseUnit", unit.base_unit_attributes)

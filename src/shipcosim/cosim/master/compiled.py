@@ -39,58 +39,52 @@ INT = ctypes.c_int64
 P = ctypes.c_void_p
 
 
+def _fields(kind: Any, names: str) -> list[tuple[str, Any]]:
+    """Fields of one type, named as in `native/loop.c`."""
+    return [(name, kind) for name in names.split()]
+
+
 class _Exchange(ctypes.Structure):
     _fields_ = [
         ("is_real", ctypes.c_int),
-        *((name, INT) for name in ("n_sources", "n_outputs", "n_inputs", "n_transferred")),
-        *((name, P) for name in ("sources", "modified", "transferred", "inputs")),
+        *_fields(INT, "n_sources n_outputs n_inputs n_transferred"),
+        *_fields(P, "sources modified transferred inputs"),
         ("n_connections", INT),
-        *(
-            (name, P)
-            for name in (
-                "source",
-                "target",
-                "period",
-                "factor",
-                "offset",
-                "mapped",
-                "mapping_first",
-            )
-        ),
-        *((name, P) for name in ("mapping_from", "mapping_to")),
+        *_fields(P, "source target period factor offset mapped mapping_first"),
+        *_fields(P, "mapping_from mapping_to"),
         ("n_sums", INT),
-        *((name, P) for name in ("sum_row", "sum_first", "sum_end")),
+        *_fields(P, "sum_row sum_first sum_end"),
         ("n_changes", INT),
-        *((name, P) for name in ("change_row", "change_exchange", "change_source")),
-        *((name, INT) for name in ("n_output_modifiers", "n_input_modifiers")),
-        *((name, P) for name in ("output_row", "input_row")),
-        *((name, P) for name in ("output_scale", "output_shift", "input_scale", "input_shift")),
-        *((name, P) for name in ("external", "rows")),
-        *((name, INT) for name in ("n_columns", "n_external_columns", "n_input_columns")),
-        *((name, P) for name in ("external_columns", "input_columns")),
+        *_fields(P, "change_row change_exchange change_source"),
+        *_fields(INT, "n_output_modifiers n_input_modifiers"),
+        *_fields(P, "output_row input_row"),
+        *_fields(P, "output_scale output_shift input_scale input_shift"),
+        *_fields(P, "external rows"),
+        *_fields(INT, "n_columns n_external_columns n_input_columns"),
+        *_fields(P, "external_columns input_columns"),
         ("version", INT),
     ]
 
 
 class _Component(ctypes.Structure):
     _fields_ = [
-        *((name, P) for name in ("step", "memory", "kept")),
+        *_fields(P, "step memory kept"),
         ("call", CALL),
-        *((name, INT) for name in ("n_memory", "multiple")),
+        *_fields(INT, "n_memory multiple"),
         ("fixed_step", ctypes.c_double),
-        *((name, INT) for name in ("n_inputs", "n_outputs")),
-        *((name, P) for name in ("input_place", "input_exchange", "input_row")),
-        *((name, P) for name in ("output_place", "output_exchange", "output_row")),
+        *_fields(INT, "n_inputs n_outputs"),
+        *_fields(P, "input_place input_exchange input_row"),
+        *_fields(P, "output_place output_exchange output_row"),
     ]
 
 
 class _System(ctypes.Structure):
     _fields_ = [
-        *((name, INT) for name in ("n_exchanges", "n_components")),
-        *((name, P) for name in ("exchanges", "components", "clock")),
-        *((name, INT) for name in ("first", "steps_per_row", "n_rows")),
+        *_fields(INT, "n_exchanges n_components"),
+        *_fields(P, "exchanges components clock"),
+        *_fields(INT, "first steps_per_row n_rows"),
         ("host", HOST),
-        *((name, INT) for name in ("real", "stop")),
+        *_fields(INT, "real stop"),
         ("seconds", P),
     ]
 

@@ -142,10 +142,9 @@ def digest(table: xarray.Dataset) -> str:
 def _unknown(table, system):
     unknown = [str(name) for name in table.data_vars if name not in system.inputs]
     if unknown:
-        message = f"{system.name} has no input {shortened(map(repr, unknown), 8)}."
         yield Problem(
             "inputs",
-            message,
+            f"{system.name} has no input {shortened(map(repr, unknown), 8)}.",
             f"{suggestion(unknown[0], system.inputs)} Rename or drop such columns.",
         )
     if not table.data_vars:
@@ -164,8 +163,9 @@ def _clock_problems(clock):
     elif len(back := np.flatnonzero((np.diff(clock) < 0.0) | _third_of_a_time(clock))):
         row = int(back[0]) + 1
         message = f"The time of row {row + 1} is {clock[row]:g} s, after {clock[row - 1]:g} s in the row before."
-        remedy = "Times have to grow; two rows of one time are a jump. Sort the rows."
-        yield Problem("inputs", message, remedy)
+        yield Problem(
+            "inputs", message, "Times have to grow; two rows of one time are a jump. Sort the rows."
+        )
 
 
 def _third_of_a_time(clock):
@@ -201,11 +201,11 @@ def _gaps(table, clock):
         longest = LONGEST_GAP * usual if even else np.inf
     for row in np.flatnonzero(apart > longest * (1.0 + 1e-9))[:5]:
         between = f"{clock[row]:.9g} s and {clock[row + 1]:.9g} s"
-        message = f"There is no row between {between}; {longest:.3g} s are allowed."
-        remedy = (
-            "Run the components before and after it, fill it, or allow it (max_gap, --max-gap)."
+        yield Problem(
+            "inputs",
+            f"There is no row between {between}; {longest:.3g} s are allowed.",
+            "Run the components before and after it, fill it, or allow it (max_gap, --max-gap).",
         )
-        yield Problem("inputs", message, remedy)
 
 
 def _column(column, signal, clock, times, largest):
@@ -213,19 +213,27 @@ def _column(column, signal, clock, times, largest):
     how = column.attrs.get("interpolation", "held")
     values = column.values
     if how not in INTERPOLATIONS or (how == "linear" and signal.type != "Real"):
-        remedy = "It can be 'held', or 'linear' for a Real."
-        raise error_at("", f"interpolation = {how!r} of a {signal.type}.", remedy)
+        raise error_at(
+            "",
+            f"interpolation = {how!r} of a {signal.type}.",
+            "It can be 'held', or 'linear' for a Real.",
+        )
     if len(bad := np.flatnonzero(~np.isfinite(values))):
         more = f" So are {len(bad) - 1} more of the rows that are needed." if len(bad) > 1 else ""
-        remedy = "Fill or drop such rows; a dropped row is held or interpolated over."
-        raise error_at("", f"is {values[bad[0]]} at {clock[bad[0]]:.9g} s.{more}", remedy)
+        raise error_at(
+            "",
+            f"is {values[bad[0]]} at {clock[bad[0]]:.9g} s.{more}",
+            "Fill or drop such rows; a dropped row is held or interpolated over.",
+        )
     # Flags and integers must be whole and fit: a rounded or wrapped value would hide an error of the log.
     low, high = (0, 1) if signal.type == "Boolean" else largest
     off = (values != np.round(values)) | (values < low) | (values > high)
     if signal.type != "Real" and off.any():
-        message = f"is {values[off][0]} at {clock[off][0]:.9g} s."
-        remedy = f"It feeds an input of type {signal.type}: whole numbers from {low} to {high}."
-        raise error_at("", message, remedy)
+        raise error_at(
+            "",
+            f"is {values[off][0]} at {clock[off][0]:.9g} s.",
+            f"It feeds an input of type {signal.type}: whole numbers from {low} to {high}.",
+        )
     # Convert the unit before interpolating, so that a full turn is in the input's unit.
     factor, offset = conversion(column.attrs.get("units"), signal.unit)
     values = values if (factor, offset) == (1.0, 0.0) else factor * values + offset

@@ -196,6 +196,9 @@ class ComponentProcess:
             if n <= MOST_LINES:
                 print(f"[{self._name}] {text}", end="", file=sys.stderr, flush=True)
             elif n == MOST_LINES + 1:
-                more = f"[{self._name}] prints more than {MOST_LINES} lines; no more are shown"
-                print(more, file=sys.stderr, flush=True)
+                print(
+                    f"[{self._name}] prints more than {MOST_LINES} lines; no more are shown",
+                    file=sys.stderr,
+                    flush=True,
+                )
         pipe.close()

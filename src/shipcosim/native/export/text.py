@@ -227,8 +227,8 @@ class ModelWriter(Writer):
             for place in self._loaded(symbol)
         ]
         names = ' say(o, " and "); '.join(said) or 'say(o, "a number");'
-        message = f"say(o, {c_text(NOT_FOR_THESE)}); {names}"
-        message += (
+        message = (
+            f"say(o, {c_text(NOT_FOR_THESE)}); {names}"
             ' say(o, ": take the FMU in Python, or build this one again"); o->is_for_others = 1;'
         )
         return f"{{ {message} return GIVEN_UP; }}"

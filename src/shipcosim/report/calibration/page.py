@@ -1,5 +1,6 @@
 """The page of a calibration: what moved, the error before and after, and what the logs could not tell."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from shipcosim.diagnose.calibration_pipeline import CalibratedShip
@@ -35,16 +36,16 @@ class CalibrationPage(FigurePage):
 
     Attributes
     ----------
-    refusals, remarks : tuple of str
-    moved, errors : tuple of Figure
+    refusals, remarks : sequence of str
+    moved, errors : sequence of Figure
         What moved by how many tolerances; errors before and after.
     numbers, error_table, logs : Table
     untold : str
         Numbers that the logs say next to nothing of.
     """
 
-    refusals: tuple[str, ...]
-    remarks: tuple[str, ...]
+    refusals: Sequence[str]
+    remarks: Sequence[str]
     moved: Figures
     errors: Figures
     numbers: Table
@@ -88,7 +89,7 @@ def _page(ship: CalibratedShip) -> CalibrationPage:
     )
 
 
-def _key_figures(ship: CalibratedShip) -> tuple[KeyFigure, ...]:
+def _key_figures(ship: CalibratedShip) -> Sequence[KeyFigure]:
     errors = errors_by_log(ship).values()
     most = max(ship.reference.numbers, key=lambda number: abs(moved(number)))
     figures = [
@@ -109,7 +110,7 @@ def _key_figures(ship: CalibratedShip) -> tuple[KeyFigure, ...]:
             ),
             KeyFigure(metres(worst.position["floor"][-1]), "the same, with this log fitted too"),
         ]
-    return tuple(figures)
+    return figures
 
 
 def _moved_figure(ship: CalibratedShip) -> Figure:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from shipcosim.diagnose.calibration_pipeline import CalibratedShip
 from shipcosim.diagnose.reference.log_errors import LogErrors
 from shipcosim.diagnose.reference.reference import KnownNumber
@@ -39,7 +41,7 @@ def sentence(ship: CalibratedShip) -> str:
     return text
 
 
-def blocks(ship: CalibratedShip) -> tuple[Block, ...]:
+def blocks(ship: CalibratedShip) -> Sequence[Block]:
     """Numbers that moved most and the errors that remain, for terminal and notebook."""
     moved = Table(moved_rows(ship)[:MOST_ROWS], ("", "before", "calibrated", "by tolerances"))
     return (
@@ -55,7 +57,7 @@ def moved(number: KnownNumber) -> float:
     return (number.estimate - number.nominal) / number.tolerance
 
 
-def moved_rows(ship: CalibratedShip) -> list[tuple[str, ...]]:
+def moved_rows(ship: CalibratedShip) -> list[Sequence[str]]:
     """Numbers of the ship, those moved by most tolerances first: name, before, after, tolerances."""
     rows = []
     for number in sorted(ship.reference.numbers, key=lambda number: -abs(moved(number))):
@@ -71,7 +73,7 @@ def errors_by_log(ship: CalibratedShip) -> dict[str, LogErrors]:
     return {log.name: log.errors for log in ship.logs if log.errors}
 
 
-def log_rows(ship: CalibratedShip) -> list[tuple[str, ...]]:
+def log_rows(ship: CalibratedShip) -> list[Sequence[str]]:
     """Logs: name, faults that were repaired, weather fitted beside the ship, unmodelled errors that are left."""
     rows = []
     for log in ship.logs:

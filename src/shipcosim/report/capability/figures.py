@@ -1,5 +1,7 @@
 """Figures of the capability: polar plots, bow up, and the loads by direction."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,7 +11,7 @@ from shipcosim.capability.loads import level_1_parts
 from shipcosim.capability.result import LEVEL_1, SIMULATOR
 from shipcosim.capability.simulator import simulated_parts
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.figures import line, polar_axes, rounded
+from shipcosim.report.theme.figures import line, polar_axes, polar_curve
 from shipcosim.report.theme.views import Figure, Figures, PlotlyDict
 
 TALL = 400
@@ -37,10 +39,10 @@ def capability_figures(capability: Capability) -> Figures:
         _curve("simulator, one thruster lost", single[SIMULATOR], palette.PURPLE, dash="dot"),
     )
     # Every failure as a curve of its own.
-    each = tuple(
+    each = [
         _curve(case.name, row, palette.in_turn(k), dash="solid" if k == 0 else "dot")
         for k, (case, row) in enumerate(zip(capability.cases, numbers[LEVEL_1], strict=True))
-    )
+    ]
     note = "DP capability number over the direction that the weather comes from; bow up, 90° from starboard."
     other = "The same conditions and dynamic factor; loads and thrust as the simulator has them."
     return (
@@ -75,11 +77,11 @@ def load_figures(capability: Capability) -> Figures:
         Figure(
             title,
             unit,
-            tuple(
+            [
                 trace
                 for method, loads in parts.items()
                 for trace in _lines(loads, axis, size, method == LEVEL_1)
-            ),
+            ],
             {"xaxis": {"dtick": 45, "ticksuffix": "°", "range": [0, 350]}},
             note,
         )
@@ -112,19 +114,9 @@ def _curve(
     # Repeat the first direction at 360 deg to close the curve.
     angles = np.degrees(DIRECTIONS)
     values = np.asarray(numbers, float)
-    filled = {} if fill is None else {"fill": "toself", "fillcolor": palette.faded(colour, fill)}
-    return {
-        "type": "scatterpolar",
-        "mode": "lines",
-        "name": name,
-        "hovertemplate": "%{r} from %{theta}",
-        "theta": rounded([*angles, 360.0]),
-        "r": rounded([*values, values[0]]),
-        "line": {"color": colour, "width": 2, "dash": dash},
-        **filled,
-    }
+    return polar_curve(name, [*angles, 360.0], [*values, values[0]], colour, dash=dash, fill=fill)
 
 
-def _polar(title: str, traces: tuple[PlotlyDict, ...], note: str) -> Figure:
+def _polar(title: str, traces: Sequence[PlotlyDict], note: str) -> Figure:
     axes = polar_axes(range=[0, 11], tickvals=[2, 4, 6, 8, 10])
     return Figure(title, "", traces, {"polar": axes}, note, TALL)

@@ -1,5 +1,6 @@
 """The page of a static DP capability: its contents, and the function that writes it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,7 +38,7 @@ class CapabilityPage(FigurePage):
 
     Attributes
     ----------
-    plots, loads : tuple of Figure
+    plots, loads : sequence of Figure
         Polar plots, loads by direction.
     numbers, thrusters, conditions, particulars : Table
         Of each direction; of each thruster; the weather; what was read from the ship's files.
@@ -142,16 +143,16 @@ def _weather(number: int) -> str:
     return f"up to condition {number} ({condition.wind_speed:g} m/s of wind, Hs {condition.wave_height:g} m)"
 
 
-def _key_figures(capability: Capability) -> tuple[KeyFigure, ...]:
+def _key_figures(capability: Capability) -> Sequence[KeyFigure]:
     meanings = (
         "A: intact, weather within 30° of the bow",
         "B: intact, weather from anywhere",
         "C: worst single failure, within 30° of the bow",
         "D: worst single failure, from anywhere",
     )
-    return tuple(
+    return [
         KeyFigure(str(n), text) for n, text in zip(capability.elements(), meanings, strict=True)
-    )
+    ]
 
 
 def _numbers(capability: Capability) -> Table:
@@ -168,14 +169,14 @@ def _numbers(capability: Capability) -> Table:
     ]
     # Wind speed of the highest condition that the intact ship holds.
     speeds = (0.0, *(condition.wind_speed for condition in CONDITIONS))
-    rows = tuple(
+    rows = [
         (
             f"{np.degrees(angle):.0f}°",
             f"{speeds[level_1[0][k]]:g} m/s",
             *(str(int(column[k])) for column in columns),
         )
         for k, angle in enumerate(DIRECTIONS)
-    )
+    ]
     return Table(rows, ("weather from", "wind, intact", *names), tight=(0, 1))
 
 
@@ -225,7 +226,7 @@ def _thrusters(capability: Capability) -> Table:
 
 
 def _conditions() -> Table:
-    rows = tuple(
+    rows = [
         (
             str(c.number),
             f"{c.wind_speed:g} m/s",
@@ -234,5 +235,5 @@ def _conditions() -> Table:
             f"{c.current_speed:g} m/s",
         )
         for c in CONDITIONS
-    )
+    ]
     return Table(rows, ("number", "wind", "Hs", "Tp", "current"), tight=(0, 1, 2, 3, 4))

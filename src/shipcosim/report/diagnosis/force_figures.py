@@ -102,5 +102,10 @@ def _against(sectors: Dataset, label: str, title: str) -> Figure:
             }
         )
     axis = {"title": {"text": label}, "ticksuffix": "°", "range": [0, 360], "dtick": 90}
-    note = "Mean in sectors of 15°; bars are the standard deviation within."
-    return Figure(title, "kN", tuple(traces), {"xaxis": axis}, note)
+    return Figure(
+        title,
+        "kN",
+        tuple(traces),
+        {"xaxis": axis},
+        "Mean in sectors of 15°; bars are the standard deviation within.",
+    )

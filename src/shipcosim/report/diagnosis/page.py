@@ -17,7 +17,7 @@ from shipcosim.report.diagnosis.words import discrepancy_rows, facts_of, next_st
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import (
     Fact,
-    Figure,
+    Figures,
     Link,
     Table,
 )
@@ -40,7 +40,7 @@ class DiagnosisPage(ScenePage):
 
     discrepancies: Table
     next_steps: tuple[str, ...]
-    tracks: tuple[Figure, ...]
+    tracks: Figures
     log: LogSection
     error: ErrorSection
     cause: CauseSection
@@ -98,7 +98,7 @@ def _page(diagnosis: Diagnosis) -> DiagnosisPage:
     )
 
 
-def _track_figures(diagnosis: Diagnosis) -> tuple[Figure, ...]:
+def _track_figures(diagnosis: Diagnosis) -> Figures:
     """Track and speeds of a log; of several logs the tracks."""
     if isinstance(diagnosis, JointDiagnosis):
         return track_figures(diagnosis.errors)

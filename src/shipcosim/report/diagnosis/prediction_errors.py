@@ -12,7 +12,7 @@ from shipcosim.report.diagnosis.force_figures import force_figures
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import TIME, bars, line
 from shipcosim.report.theme.numbers import percent, plain
-from shipcosim.report.theme.views import Figure, Table
+from shipcosim.report.theme.views import Figure, Figures, Table
 
 MODELS = {
     "plain": ("plain model", palette.VERMILLION),
@@ -49,7 +49,7 @@ class ErrorSection:
     """
 
     found: str
-    figures: tuple[Figure, ...]
+    figures: Figures
     errors: Table
     has_floor: bool
     forces: tuple[Figure, ...]

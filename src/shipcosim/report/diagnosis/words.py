@@ -116,7 +116,7 @@ def outcome(diagnosis: Diagnosis) -> Outcome:
     return Outcome(diagnosis.verdict, word, _sentence(diagnosis))
 
 
-def facts_of(diagnosis: Diagnosis) -> tuple[Fact, ...]:
+def facts_of(diagnosis: Diagnosis) -> Sequence[Fact]:
     """System, and length of the log; of several logs their names and what they have in all."""
     if isinstance(diagnosis, JointDiagnosis):
         bases = [log.basis for log in diagnosis.logs.values()]

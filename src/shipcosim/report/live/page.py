@@ -79,8 +79,11 @@ def page_of(
         written = written.model_copy(update={"system": plan.system.name})
     run = make_run(table, goes_on=True)
     if run is None:
-        message = "Nothing in it has a position and a heading, so there is no ship to show."
-        raise error_at(plan.system.name, message, "Run it with `shipcosim run`.")
+        raise error_at(
+            plan.system.name,
+            "Nothing in it has a position and a heading, so there is no ship to show.",
+            "Run it with `shipcosim run`.",
+        )
     return LivePage(
         title=written.description or f"Simulation of {plan.system.name}",
         facts=_facts(written),
@@ -94,7 +97,7 @@ def page_of(
     )
 
 
-def _facts(written: Scenario) -> tuple[Fact, ...]:
+def _facts(written: Scenario) -> Sequence[Fact]:
     return known_facts(
         [
             ("Ship", ", ".join(written.parameters)),

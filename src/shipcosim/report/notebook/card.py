@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -29,13 +29,13 @@ class Card(Page):
 
     Attributes
     ----------
-    blocks : tuple of Block
+    blocks : sequence of Block
         Those with something in them are shown.
     draw : function, optional
         Gives the picture beside the text as SVG; empty where there is nothing to draw.
     """
 
-    blocks: tuple[Block, ...]
+    blocks: Sequence[Block]
     draw: Callable[[], str] | None = None
 
     @cached_property

@@ -27,7 +27,7 @@ def diagnosis_card(diagnosis: Diagnosis) -> Card:
         title=name,
         facts=facts_of(diagnosis),
         outcome=outcome(diagnosis),
-        blocks=(*summary(diagnosis), Block("What to do next", lines=tuple(steps))),
+        blocks=(*summary(diagnosis), Block("What to do next", lines=steps)),
         draw=None if (tracks := diagnosis.tracks) is None else lambda: tracks_svg(tracks, name),
     )
 

@@ -39,7 +39,7 @@ def log_card(
     span = f"{len(time)} rows, {plain(float(np.nanmin(time)))} to {plain(float(np.nanmax(time)))} s"
     steps = np.diff(finite(time))
     facts = (Fact("Rows", span), Fact("Usual step", f"{plain(float(np.median(steps)))} s"))
-    rows = tuple((title_of(fault), where(fault), fault.sentence) for fault in faults)
+    rows = [(title_of(fault), where(fault), fault.sentence) for fault in faults]
     return Card(
         title=name,
         facts=facts,
@@ -47,7 +47,7 @@ def log_card(
         blocks=(
             Block("Faults", Table(rows)),
             Block("Channels", Table(_channels(table), ("", "unit", "least", "largest", "missing"))),
-            Block("Remarks", lines=tuple(remarks)),
+            Block("Remarks", lines=remarks),
         ),
         draw=draw,
     )
@@ -64,7 +64,7 @@ def _outcome(faults: Sequence[Finding]) -> Outcome:
     )
 
 
-def _channels(table: Dataset) -> tuple[tuple[str, ...], ...]:
+def _channels(table: Dataset) -> Sequence[Sequence[str]]:
     """Each channel with its unit, its range and the share of rows without a value."""
     rows = []
     for name, variable in table.data_vars.items():
@@ -84,4 +84,4 @@ def _channels(table: Dataset) -> tuple[tuple[str, ...], ...]:
                 f"{100 * lost:.1f} %" if lost else "",
             )
         )
-    return tuple(rows)
+    return rows

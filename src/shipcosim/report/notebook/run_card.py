@@ -30,10 +30,10 @@ def run_card(
         On what was expected within the run.
     """
     summary = digest(table, verdicts)
-    rows = tuple(
+    rows = [
         ("holds" if expectation.passed else "FAILS", *expectation[1:])
         for expectation in summary.expectations
-    )
+    ]
     name = scenario.name or system.name
     changed = ", ".join(parsed(table.attrs.get("changed", "[]")))
     return Card(
@@ -51,7 +51,7 @@ def run_card(
     )
 
 
-def _facts(table: Dataset, scenario: Scenario, system: System) -> tuple[Fact, ...]:
+def _facts(table: Dataset, scenario: Scenario, system: System) -> Sequence[Fact]:
     """What ran, for how long, in which steps."""
     time = table["time"].values
     span = f"{time[0]:g} to {time[-1]:g} s" if len(time) else "nothing"
@@ -64,10 +64,10 @@ def _facts(table: Dataset, scenario: Scenario, system: System) -> tuple[Fact, ..
     return known_facts(facts)
 
 
-def _signals(table: Dataset) -> tuple[tuple[str, str], ...]:
+def _signals(table: Dataset) -> Sequence[tuple[str, str]]:
     """Connectors by component."""
     parts: dict[str, list[str]] = {}
     for name in map(str, table.data_vars):
         component, _, connector = name.rpartition(".")
         parts.setdefault(component or "system", []).append(connector)
-    return tuple((component, ", ".join(connectors)) for component, connectors in parts.items())
+    return [(component, ", ".join(connectors)) for component, connectors in parts.items()]

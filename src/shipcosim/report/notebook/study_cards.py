@@ -27,17 +27,15 @@ def comparison_card(comparison: Comparison, name: str) -> Card:
     others = [engine for engine in comparison.seconds if engine != OURS]
     table = comparison_table(comparison)
     rows = table.rows[:MOST_ROWS]
-    lines = tuple(f"{engine}: {why}" for engine, why in comparison.left_out.items())
-    lines += tuple(
+    lines = [f"{engine}: {why}" for engine, why in comparison.left_out.items()]
+    lines += [
         f"{engine}: {remark}"
         for engine, remarks in comparison.remarks.items()
         for remark in remarks
-    )
+    ]
     return Card(
         title=f"Engines on {name}",
-        facts=tuple(
-            Fact(engine, f"{seconds:.1f} s") for engine, seconds in comparison.seconds.items()
-        ),
+        facts=[Fact(engine, f"{seconds:.1f} s") for engine, seconds in comparison.seconds.items()],
         outcome=_agreement(comparison, others),
         blocks=(
             Block(

@@ -1,5 +1,6 @@
 """The page of a replay: a log, and its simulation by one or two systems."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from shipcosim.diagnose.replays import LogReplay
@@ -18,12 +19,12 @@ class ReplayPage(ScenePage):
     Attributes
     ----------
     errors : Table
-    remarks : tuple of str
+    remarks : sequence of str
         What was found in the log and handled.
     """
 
     errors: Table
-    remarks: tuple[str, ...]
+    remarks: Sequence[str]
 
 
 def render(replay: LogReplay, title: str, facts: dict[str, str]) -> str:
@@ -43,7 +44,7 @@ def render(replay: LogReplay, title: str, facts: dict[str, str]) -> str:
     return render_template("replay/templates/replay.html.jinja", page)
 
 
-def remarks_of(replay: LogReplay) -> tuple[str, ...]:
+def remarks_of(replay: LogReplay) -> Sequence[str]:
     """What was found in the log and handled: its faults, then other remarks."""
     faults = (
         f"{fault.label}: {fault.note}" if fault.note else fault.label for fault in replay.faults

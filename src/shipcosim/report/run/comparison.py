@@ -230,10 +230,10 @@ def _page(pair: Pair, merged: Dataset, differing: Sequence[Difference]) -> RunPa
         scenario = parsed(table.attrs.get("scenario", "")) or "run"
         facts.append(Fact(name, f"{scenario}, {start:g} to {end:g} s"))
     # Where the two differ most by what people compare runs by.
-    moments = tuple(
+    moments = [
         Moment(d.time, f"{d.signal}: {plain(d.largest)} {d.unit} at {d.time:g} s")
         for d in differing[:MOST_MOMENTS]
-    )
+    ]
     data = drawn_data(drawn, choice, runs, sections, ())
     if moments:
         data["opens_at"] = moments[0].time
@@ -242,7 +242,7 @@ def _page(pair: Pair, merged: Dataset, differing: Sequence[Difference]) -> RunPa
         ]
     return RunPage(
         title=f"{pair.names[0]} and {pair.names[1]}",
-        facts=tuple(facts),
+        facts=facts,
         outcome=_outcome(pair, differing, unlike),
         links=links(runs, sections),
         data=data,
@@ -271,15 +271,15 @@ def _merged(pair: Pair) -> Dataset:
     )
 
 
-def _sections(pair: Pair) -> tuple[Section, ...]:
+def _sections(pair: Pair) -> Sequence[Section]:
     """Panels of the first run, with both runs in each."""
     made = []
     for section in make_sections(pair.shown[0], pair.roles, ()):
         doubled = [_doubled(panel, pair) for panel in section.panels]
-        panels = tuple(panel for panel in doubled if panel is not None)
+        panels = [panel for panel in doubled if panel is not None]
         if panels:
             made.append(replace(section, panels=panels))
-    return tuple(made)
+    return made
 
 
 def _doubled(panel: Panel, pair: Pair) -> Panel | None:
@@ -295,12 +295,12 @@ def _doubled(panel: Panel, pair: Pair) -> Panel | None:
         for name, colour, dash in zip(pair.names, COLOURS, ("solid", "dot"), strict=True):
             signal = f"{name}: {line.signal}"
             if len(main) == 1:
-                look = {"label": name, "colour": colour, "dash": "solid"}
+                both.append(replace(line, signal=signal, label=name, colour=colour, dash="solid"))
             else:
                 # Several curves keep their colours; the line style tells the runs apart.
-                look = {"label": f"{line.label}, {name}", "dash": dash}
-            both.append(replace(line, signal=signal, **look))
-    return replace(panel, lines=tuple(both), bands=())
+                label = f"{line.label}, {name}"
+                both.append(replace(line, signal=signal, label=label, dash=dash))
+    return replace(panel, lines=both, bands=())
 
 
 def _outcome(pair: Pair, differing: Sequence[Difference], unlike: Sequence[str]) -> Outcome:
@@ -384,9 +384,7 @@ def _ordered(pair: Pair, differing: Sequence[Difference]) -> list[Difference]:
     wanted = [roles.signal(roles.ship, axis) for axis in ("x", "y", "psi")]
     wanted += [FROM_REFERENCE, ERRORS["psi"]]
     wanted += [roles.signal(unit, "thrust") for unit in roles.thrusters]
-    by_name = {difference.signal: difference for difference in differing}
-    first = [by_name[name] for name in dict.fromkeys(wanted) if name in by_name]
-    return [*first, *(difference for difference in differing if difference not in first)]
+    return sorted(differing, key=lambda one: [*wanted, one.signal].index(one.signal))
 
 
 def _table(differing: Sequence[Difference]) -> Table:
@@ -417,16 +415,16 @@ def _in_units(name: str, value: Any, pair: Pair) -> str:
     return f"{value * attributes.get('factor', 1.0):.6g} {attributes.get('units', '')}".rstrip()
 
 
-def _changed(pair: Pair) -> tuple[str, ...]:
+def _changed(pair: Pair) -> Sequence[str]:
     """The first start values that differ, for the top of the page."""
     detail = _start_values(pair)
     rows = detail.table.rows if detail else ()
     changes = [f"{name} {first} and {second}" for name, first, second in rows[:MOST_CHANGES]]
     more = len(rows) - len(changes)
-    return (*changes, f"{more} more under Parameters") if more else tuple(changes)
+    return (*changes, f"{more} more under Parameters") if more else changes
 
 
-def _details(pair: Pair) -> tuple[Detail, ...]:
+def _details(pair: Pair) -> Sequence[Detail]:
     """Entries that differ between the attributes of the runs: start values, events, versions."""
     # Start values have a table of their own; long lists are left out.
     left_out = ("start_values", "remarks", "fmus")
@@ -435,12 +433,12 @@ def _details(pair: Pair) -> tuple[Detail, ...]:
         for table in pair.tables
     ]
     tables = (_start_values(pair), _unlike("Runs that differ", pair, rest))
-    return tuple(detail for detail in tables if detail is not None)
+    return [detail for detail in tables if detail is not None]
 
 
 def _unlike(title: str, pair: Pair, contents: Sequence[Mapping[str, Any]]) -> Detail | None:
     """A table of the entries that differ, or None."""
     names: Iterable[str] = dict.fromkeys([*contents[0], *contents[1]])
     entries = [(name, *(str(content.get(name, "–")) for content in contents)) for name in names]
-    rows = tuple(row for row in entries if row[1] != row[2])
+    rows = [row for row in entries if row[1] != row[2]]
     return Detail(title, Table(rows, ("", *pair.names))) if rows else None

@@ -1,7 +1,7 @@
 """Events, start values, versions and further attributes of a run, as tables to unfold."""
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,7 +25,7 @@ class Detail:
 
 def details(
     table: Dataset, scenario: Scenario | None = None, system: System | None = None
-) -> tuple[Detail, ...]:
+) -> Sequence[Detail]:
     """Events and start values of the scenario, and what the attributes of the table say.
 
     Parameters
@@ -39,7 +39,7 @@ def details(
 
     Returns
     -------
-    tuple of Detail
+    sequence of Detail
     """
     sections = []
     if scenario is not None and scenario.events:
@@ -105,7 +105,7 @@ def _unit(system: System | None, component: str, name: str) -> str | None:
 def _detail(title: str, rows: Iterable[tuple[Any, Any]]) -> Detail:
     return Detail(
         capitalised(title.replace("_", " ")),
-        Table(tuple((str(name), _text(value)) for name, value in rows)),
+        Table([(str(name), _text(value)) for name, value in rows]),
     )
 
 

@@ -77,7 +77,7 @@ def outcome(table: Dataset, verdicts: Sequence[Verdict]) -> Outcome:
     return Outcome("passed", "PASS", f"{all_of_them}{judged_on}")
 
 
-def judged(verdicts: Sequence[Verdict], shown: Dataset) -> tuple[Judged, ...]:
+def judged(verdicts: Sequence[Verdict], shown: Dataset) -> Sequence[Judged]:
     """Expectations and their verdicts in the units that people read.
 
     Parameters
@@ -89,12 +89,10 @@ def judged(verdicts: Sequence[Verdict], shown: Dataset) -> tuple[Judged, ...]:
 
     Returns
     -------
-    tuple of Judged
+    sequence of Judged
     """
     whole = str(shown.attrs.get("judged_on", "the whole run"))
-    return tuple(
-        _judged(verdict, shown[verdict.expect.signal[0]].attrs, whole) for verdict in verdicts
-    )
+    return [_judged(verdict, shown[verdict.expect.signal[0]].attrs, whole) for verdict in verdicts]
 
 
 def claims(expectations: Sequence[Expectation], table: Dataset) -> list[str]:

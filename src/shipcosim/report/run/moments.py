@@ -19,7 +19,7 @@ class Moment(NamedTuple):
 
 def find_moments(
     verdicts: Sequence[Verdict], judged: Sequence[Judged], scenario: Scenario | None
-) -> tuple[Moment, ...]:
+) -> Sequence[Moment]:
     """What a reader looks at first.
 
     Parameters
@@ -33,7 +33,7 @@ def find_moments(
 
     Returns
     -------
-    tuple of Moment
+    sequence of Moment
         Missed expectations, then events by time.
     """
     # A missed expectation is seen where it is missed by most. One without a row has no such time.

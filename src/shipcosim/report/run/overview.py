@@ -26,10 +26,10 @@ class OverviewPage(Page):
 
     Attributes
     ----------
-    rows : tuple of ScenarioRow
+    rows : sequence of ScenarioRow
     """
 
-    rows: tuple[ScenarioRow, ...]
+    rows: Sequence[ScenarioRow]
 
 
 def overview_outcome(rows: Sequence[ScenarioRow]) -> Outcome:
@@ -62,5 +62,5 @@ def write_overview(rows: Sequence[ScenarioRow], path: AnyPath, *, title: str) ->
         If the file cannot be written.
     """
     facts = (Fact("Scenarios", str(len(rows))),)
-    page = OverviewPage(title=title, facts=facts, outcome=overview_outcome(rows), rows=tuple(rows))
+    page = OverviewPage(title=title, facts=facts, outcome=overview_outcome(rows), rows=rows)
     write_file(path, render("run/templates/overview.html.jinja", page).encode())

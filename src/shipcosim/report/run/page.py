@@ -45,38 +45,38 @@ class RunPage(Page):
 
     Attributes
     ----------
-    remarks : tuple of str
+    remarks : sequence of str
         What must not be overlooked.
-    changed : tuple of str
+    changed : sequence of str
         What the command line changed of what the files say.
-    weather : tuple of Flow
-    expectations : tuple of Judged
+    weather : sequence of Flow
+    expectations : sequence of Judged
     key_figures : Table
     thinned : Thinned, optional
         Where not every row is drawn.
-    sections : tuple of Section
+    sections : sequence of Section
         Panels over time.
-    details : tuple of Detail
+    details : sequence of Detail
         Tables to unfold.
     figures_title : str
         Heading of the key figures.
     changed_title : str
         What stands before `changed`.
-    moments : tuple of Moment
+    moments : sequence of Moment
         Buttons that lead there.
     """
 
-    remarks: tuple[str, ...]
-    weather: tuple[Flow, ...]
-    expectations: tuple[Judged, ...]
+    remarks: Sequence[str]
+    weather: Sequence[Flow]
+    expectations: Sequence[Judged]
     key_figures: Table
     thinned: Thinned | None
-    sections: tuple[Section, ...]
-    details: tuple[Detail, ...]
-    changed: tuple[str, ...] = ()
+    sections: Sequence[Section]
+    details: Sequence[Detail]
+    changed: Sequence[str] = ()
     figures_title: str = "Key figures"
     changed_title: str = "Changed for this run"
-    moments: tuple[Moment, ...] = ()
+    moments: Sequence[Moment] = ()
 
 
 class Digest(NamedTuple):
@@ -84,7 +84,7 @@ class Digest(NamedTuple):
 
     outcome: Outcome
     remarks: list[str]
-    expectations: tuple[Judged, ...]
+    expectations: Sequence[Judged]
 
 
 def write_report(
@@ -199,7 +199,7 @@ def _title(scenario: Scenario | None, system: System | None) -> str:
     return f"Simulation of {system.name}" if system is not None and system.name else "Simulation"
 
 
-def _facts(table: Dataset, scenario: Scenario | None) -> tuple[Fact, ...]:
+def _facts(table: Dataset, scenario: Scenario | None) -> Sequence[Fact]:
     """What was run, for how long, with which step size and engine."""
     facts = []
     if scenario is not None:
@@ -218,7 +218,7 @@ def _facts(table: Dataset, scenario: Scenario | None) -> tuple[Fact, ...]:
     return known_facts(facts)
 
 
-def links(runs: Sequence[Run], sections: Sequence[Section]) -> tuple[Link, ...]:
+def links(runs: Sequence[Run], sections: Sequence[Section]) -> Sequence[Link]:
     """Navigation of the page."""
     chart = [Link("scene", "Scene")] if runs else []
     panels = [Link(f"section-{k}", section.title) for k, section in enumerate(sections)]

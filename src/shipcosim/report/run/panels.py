@@ -39,10 +39,10 @@ class Panel:
 
     title: str
     unit: str
-    lines: tuple[Line, ...]
-    bands: tuple[Band, ...] = ()
+    lines: Sequence[Line]
+    bands: Sequence[Band] = ()
     states: bool = False
-    zones: tuple[Zone, ...] = ()
+    zones: Sequence[Zone] = ()
 
 
 @dataclass(frozen=True)
@@ -50,11 +50,11 @@ class Section:
     """Panels under one heading, and sentences for signals that stay constant."""
 
     title: str
-    panels: tuple[Panel, ...]
-    constant: tuple[str, ...] = ()
+    panels: Sequence[Panel]
+    constant: Sequence[str] = ()
 
 
-def make_sections(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> tuple[Section, ...]:
+def make_sections(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> Sequence[Section]:
     """Every section that the table has signals for.
 
     Parameters
@@ -68,7 +68,7 @@ def make_sections(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> 
 
     Returns
     -------
-    tuple of Section
+    sequence of Section
     """
     motion = _motion(shown, roles, verdicts)
     # A panel for every signal with an expectation that no other panel shows with its limits.
@@ -86,10 +86,10 @@ def make_sections(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> 
         "Allocation": _allocation(shown, roles),
         "Environment": _environment(shown, roles),
     }
-    return tuple(Section(title, tuple(panels)) for title, panels in made.items() if panels)
+    return [Section(title, panels) for title, panels in made.items() if panels]
 
 
-def constants_as_words(sections: Sequence[Section], shown: Dataset) -> tuple[Section, ...]:
+def constants_as_words(sections: Sequence[Section], shown: Dataset) -> Sequence[Section]:
     """Sections in which panels without limits and without change have become words.
 
     Parameters
@@ -101,10 +101,10 @@ def constants_as_words(sections: Sequence[Section], shown: Dataset) -> tuple[Sec
 
     Returns
     -------
-    tuple of Section
+    sequence of Section
         In their order.
     """
-    return tuple(_section(section, shown) for section in sections)
+    return [_section(section, shown) for section in sections]
 
 
 def _section(section: Section, shown: Dataset) -> Section:
@@ -119,7 +119,7 @@ def _section(section: Section, shown: Dataset) -> Section:
             constant.append(f"{panel.title}: {', '.join(flags) or 'none'}")
         else:
             constant.append(f"{panel.title} {_levels(values, panel.unit)}")
-    return Section(section.title, tuple(drawn), tuple(constant))
+    return Section(section.title, drawn, constant)
 
 
 def _levels(values: Mapping[str, NDArray], unit: str) -> str:
@@ -135,14 +135,14 @@ def _panel(
     shown: Dataset,
     title: str,
     lines: Iterable[Line],
-    bands: Iterable[Band] = (),
+    bands: Sequence[Band] = (),
     states: bool = False,
 ) -> list[Panel]:
     """List with the panel of the available lines; empty if there are none."""
-    there = tuple(line for line in lines if line.signal in shown)
+    there = [line for line in lines if line.signal in shown]
     if not there:
         return []
-    return [Panel(title, shown[there[0].signal].attrs["units"], there, tuple(bands), states)]
+    return [Panel(title, shown[there[0].signal].attrs["units"], there, bands, states)]
 
 
 def _coloured(labels: Mapping[str | None, str]) -> list[Line]:

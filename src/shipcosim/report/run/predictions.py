@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from shipcosim.angles import unwrap_series, wrap_series
 from shipcosim.report.run.roles import Roles, find_roles, join
-from shipcosim.report.theme.numbers import finite
 from shipcosim.report.theme.packing import LEVELS, packed_series
 from shipcosim.series import write_file
 
@@ -42,13 +41,6 @@ UNITS = {
     "learned": "1",
 }
 """Columns of the table of predictions, with their units."""
-SUMMARISED = (
-    "error_north",
-    "error_east",
-    "error_heading",
-    "in_position_region",
-    "in_heading_region",
-)
 
 
 class PredictionSummary(NamedTuple):
@@ -76,7 +68,7 @@ class PredictionSummary(NamedTuple):
     in_heading_region: float
 
 
-def find_predictors(roles: Roles) -> dict[str, tuple[int, ...]]:
+def find_predictors(roles: Roles) -> dict[str, Sequence[int]]:
     """Components with the outputs of `interfaces.MotionPredictor`, and their horizons. [s]"""
     predictors = {}
     for component, connectors in roles.connectors.items():
@@ -252,27 +244,18 @@ def summarise(predictions: pandas.DataFrame) -> list[PredictionSummary]:
     list of PredictionSummary
         Without what no run reached.
     """
-    columns = {name: predictions[name].to_numpy() for name in predictions}
     # Predictions whose horizon lies beyond the run have no truth.
-    has_truth = np.isfinite(columns["true_x"].astype(float))
+    reached = predictions[np.isfinite(predictions["true_x"])]
     summaries = []
-    for component, horizon in sorted(
-        set(zip(columns["component"][has_truth], columns["horizon"][has_truth], strict=True))
-    ):
+    groups: Any = reached.groupby(["component", "horizon"])
+    for (component, horizon), of in groups:
         # Rms errors, and shares within the regions where there are regions.
-        of = has_truth & (columns["component"] == component) & (columns["horizon"] == horizon)
-        north, east, heading, place, width = (columns[name][of] for name in SUMMARISED)
+        squares = of[["error_north", "error_east", "error_heading"]] ** 2
+        north, east, heading = squares.mean(skipna=False)
+        shares = of[["in_position_region", "in_heading_region"]].mean()
         summaries.append(
             PredictionSummary(
-                str(component),
-                float(horizon),
-                int(of.sum()),
-                float(np.sqrt(np.mean(north**2 + east**2))),
-                float(np.sqrt(np.mean(heading**2))),
-                *(
-                    float(np.mean(finite(series))) if np.isfinite(series).any() else np.nan
-                    for series in (place, width)
-                ),
+                component, horizon, len(of), np.sqrt(north + east), np.sqrt(heading), *shares
             )
         )
     return summaries

@@ -8,7 +8,7 @@ from xarray import Dataset
 from shipcosim.errors import shortened
 from shipcosim.report.run.derived import ERRORS, FROM_EXPECTED, FROM_REFERENCE
 from shipcosim.report.run.details import parsed
-from shipcosim.report.run.roles import Roles, join
+from shipcosim.report.run.roles import Roles
 from shipcosim.report.theme.display import series_in
 
 STRETCH = 60.0  # s over which a ship that cannot hold is recognised
@@ -79,19 +79,17 @@ def _first_times(shown: Dataset, flags: Mapping[str, str]) -> dict[float, list[s
 def _rejected(shown: Dataset, roles: Roles) -> list[str]:
     """Sensors that a controller rejected, and when first."""
     sentences = []
-    for component, connectors in roles.connectors.items():
-        for connector in (
-            c for c in connectors if c.endswith("_rejected") and join(component, c) in shown
-        ):
-            # Only rejections that happened.
-            flags = shown[join(component, connector)].values > 0.5
-            if flags.any():
-                first = shown["time"].values[np.argmax(flags)]
-                share = 100.0 * flags.mean()
-                what = connector.removesuffix("_rejected").replace("_", " ")
-                sentences.append(
-                    f"{component} rejects {what} from {first:g} s on, in {share:.0f} % of the run."
-                )
+    for signal in roles.ending("_rejected"):
+        # Only rejections that happened.
+        flags = shown[signal].values > 0.5 if signal in shown else np.zeros(0, bool)
+        if flags.any():
+            first = shown["time"].values[np.argmax(flags)]
+            share = 100.0 * flags.mean()
+            component, _, sensor = signal.removesuffix("_rejected").rpartition(".")
+            what = sensor.replace("_", " ")
+            sentences.append(
+                f"{component} rejects {what} from {first:g} s on, in {share:.0f} % of the run."
+            )
     return sentences
 
 
@@ -111,13 +109,7 @@ def _reckoned(shown: Dataset, roles: Roles) -> list[str]:
 
 def _alarms(shown: Dataset, roles: Roles) -> list[str]:
     """Alarms and their times: signals that end in _alarm or _faulty."""
-    signals = [
-        join(component, name)
-        for component, connectors in roles.connectors.items()
-        for name in connectors
-        if name.endswith(("_alarm", "_faulty"))
-    ]
-    begin = _first_times(shown, dict(zip(signals, signals, strict=True)))
+    begin = _first_times(shown, {signal: signal for signal in roles.ending("_alarm", "_faulty")})
     return [f"Alarm from {time:g} s on: {', '.join(begin[time])}." for time in sorted(begin)]
 
 

@@ -1,7 +1,7 @@
 """Roles of signals, found by their names alone, so that any system's table makes a page."""
 
 import re
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass, field
 
 LOAD = re.compile(r"tau_([A-Za-z]\w*)_([XYN])")
@@ -19,7 +19,7 @@ class Roles:
         Component with x, y and psi.
     reference : str or None
         Component with x_d, y_d and psi_d.
-    thrusters : tuple of str
+    thrusters : sequence of str
         Components with a thrust, and with a shaft or the force that they give the ship.
     environment : str or None
         Component with the wind over ground.
@@ -31,7 +31,7 @@ class Roles:
 
     ship: str | None
     reference: str | None
-    thrusters: tuple[str, ...]
+    thrusters: Sequence[str]
     environment: str | None
     harbour: str | None
     connectors: dict[str, list[str]] = field(repr=False)
@@ -74,6 +74,15 @@ class Roles:
             if connector in has
         }
 
+    def ending(self, *ends: str) -> list[str]:
+        """Names of all signals whose connector ends so, in the table's order."""
+        return [
+            join(component, c)
+            for component, has in self.connectors.items()
+            for c in has
+            if c.endswith(ends)
+        ]
+
     def sources(self) -> list[str]:
         """Sources of load on the ship: wind, drift, hull, thrusters, in the table's order."""
         # Loads are named tau_SOURCE_AXIS; commands and limits of loads are no sources.
@@ -102,7 +111,7 @@ def find_roles(names: Iterable[Hashable]) -> Roles:
     Examples
     --------
     >>> find_roles(["boat.x", "boat.y", "boat.psi", "boat.tau_wind_X", "bow.thrust", "bow.rpm"]).thrusters
-    ('bow',)
+    ['bow']
     """
     # Group connectors by component: roles follow from what a component has.
     connectors: dict[str, list[str]] = {}
@@ -131,11 +140,11 @@ def find_roles(names: Iterable[Hashable]) -> Roles:
     return Roles(
         ship=next(iter(ships), None),
         reference=next(iter(having("x_d", "y_d", "psi_d")), None),
-        thrusters=tuple(
+        thrusters=[
             c
             for c in having("thrust")
             if {"rpm", "power", "torque"} & set(connectors[c]) or c in having(*FORCE)
-        ),
+        ],
         environment=environment,
         harbour=next((c for c in local if c not in ships), None),
         connectors=connectors,

@@ -1,7 +1,7 @@
 """Vessels of a table and their signals, found by the names of signals of any tool."""
 
 import re
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from os.path import commonprefix
 from typing import Any
@@ -81,25 +81,25 @@ class Vessel:
     name : str
     pose : (str, str, str)
         Signals north, east, heading.
-    velocity : tuple of str or None
+    velocity : sequence of str or None
         Signals u, v, r.
     aims : dict of str to tuple of str or None
         Signals north, east, heading of "reference" and "set point".
     size : (float, float), optional
         Length and breadth. [m, m]
-    units : tuple of DrawnThruster
+    units : sequence of DrawnThruster
         Thrusters.
     """
 
     name: str
     pose: Pose
-    velocity: tuple[str | None, ...]
+    velocity: Sequence[str | None]
     aims: dict[str, tuple[str, str, str | None]]
     size: Pair | None
-    units: tuple[DrawnThruster, ...]
+    units: Sequence[DrawnThruster]
 
 
-def find_vessels(table: Dataset) -> tuple[Vessel, ...]:
+def find_vessels(table: Dataset) -> Sequence[Vessel]:
     """Every vessel of a table, the most important first.
 
     Parameters
@@ -109,7 +109,7 @@ def find_vessels(table: Dataset) -> tuple[Vessel, ...]:
 
     Returns
     -------
-    tuple of Vessel
+    sequence of Vessel
     """
     names = list(series_in(table))
     main = find_roles(names).ship
@@ -134,7 +134,7 @@ def find_vessels(table: Dataset) -> tuple[Vessel, ...]:
         if all(_apart(table, pose, other) for other in apart):
             apart.append(pose)
     starts = start_values(table)
-    return tuple(_vessel(pose, _belonging(pose, apart, names), starts) for pose in apart)
+    return [_vessel(pose, _belonging(pose, apart, names), starts) for pose in apart]
 
 
 def start_values(table: Dataset) -> dict[str, Any]:
@@ -284,7 +284,7 @@ def _vessel(pose: Pose, names: list[str], starts: Mapping[str, Any]) -> Vessel:
     return Vessel(
         name=owner or "ship",
         pose=pose,
-        velocity=tuple(name if name in names else None for name in velocity),
+        velocity=[name if name in names else None for name in velocity],
         aims=_aims(pose, names),
         size=None
         if length is None or breadth is None or min(length, breadth) <= 0.0
@@ -311,7 +311,7 @@ def _aims(pose: Pose, names: list[str]) -> dict[str, tuple[str, str, str | None]
     return aims
 
 
-def find_units(names: Iterable[Hashable], starts: Mapping[str, Any]) -> tuple[DrawnThruster, ...]:
+def find_units(names: Iterable[Hashable], starts: Mapping[str, Any]) -> Sequence[DrawnThruster]:
     """Thrusters of these signals.
 
     Parameters
@@ -323,7 +323,7 @@ def find_units(names: Iterable[Hashable], starts: Mapping[str, Any]) -> tuple[Dr
 
     Returns
     -------
-    tuple of DrawnThruster
+    sequence of DrawnThruster
     """
     # Forces on the ship, where a thruster puts out both.
     roles = find_roles(names)
@@ -350,7 +350,7 @@ def find_units(names: Iterable[Hashable], starts: Mapping[str, Any]) -> tuple[Dr
                 sectors=_sectors(unit, place, roles.allocators(), starts) if azimuth else (),
             )
         )
-    return tuple(drawn)
+    return drawn
 
 
 def _place(unit: str, starts: Mapping[str, Any]) -> Pair | None:

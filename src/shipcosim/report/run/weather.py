@@ -1,5 +1,6 @@
 """The weather of a run: mean size and direction of wind, current and waves."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,7 +37,7 @@ class Flow:
         return self.degrees if self.sense == "from" else self.degrees + 180.0
 
 
-def weather(shown: Dataset, roles: Roles) -> tuple[Flow, ...]:
+def weather(shown: Dataset, roles: Roles) -> Sequence[Flow]:
     """Wind, current and waves of the run, where there are any."""
     flows = []
     for what, sense in [("wind", "from"), ("current", "to")]:
@@ -67,4 +68,4 @@ def weather(shown: Dataset, roles: Roles) -> tuple[Flow, ...]:
             way = np.radians(shown[angle].values)
             mean = np.degrees(np.arctan2(np.nanmean(np.sin(way)), np.nanmean(np.cos(way))))
             shown_flows.append(Flow(what, text, unit, float(mean % 360.0), sense))
-    return tuple(shown_flows)
+    return shown_flows

@@ -24,7 +24,7 @@ class Zone:
 
 def thrust_zones(
     shown: Dataset, signals: Sequence[str | None], limits: Pair | None
-) -> tuple[Zone, ...]:
+) -> Sequence[Zone]:
     """Zones beyond the limits of a thruster, of those limits that the curves come near.
 
     Parameters
@@ -38,7 +38,7 @@ def thrust_zones(
 
     Returns
     -------
-    tuple of Zone
+    sequence of Zone
     """
     # Limits in the unit of the panel.
     span = _span(shown, signals)
@@ -53,12 +53,12 @@ def thrust_zones(
         zones.append(Zone(most, max(most, span[1]) + margin))
     if span[0] <= NEAR * least < 0.0:
         zones.append(Zone(min(least, span[0]) - margin, least))
-    return tuple(zones)
+    return zones
 
 
 def angle_zones(
     shown: Dataset, signals: Sequence[str | None], sectors: Sequence[Pair]
-) -> tuple[Zone, ...]:
+) -> Sequence[Zone]:
     """Forbidden sectors among the angles that a panel shows, as often as the curves turn round.
 
     Parameters
@@ -72,7 +72,7 @@ def angle_zones(
 
     Returns
     -------
-    tuple of Zone
+    sequence of Zone
     """
     # Angles in the panel run over several turns: repeat each sector on every turn in view.
     span = _span(shown, signals)
@@ -87,7 +87,7 @@ def angle_zones(
             for turn in range(ceil((least - end) / 360.0), floor((most - start) / 360.0) + 1)
         ]
         zones += [Zone(max(start + turn, least), min(end + turn, most)) for turn in turns]
-    return tuple(zones)
+    return zones
 
 
 def _span(shown: Dataset, signals: Sequence[str | None]) -> Pair | None:

@@ -1,5 +1,7 @@
 """Figures of sea trials: tracks of turning circles, errors of features, what manoeuvres would tell."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -41,10 +43,10 @@ def track_figure(study: SeaTrialStudy, before: list[NDArray], after: list[NDArra
         "hovermode": "closest",
     }
     note = "From where the order was given. The measured circles drift with the current; the model sails in still water."
-    return Figure("Turning circles", "m", tuple(traces), layout, note, height=520)
+    return Figure("Turning circles", "m", traces, layout, note, height=520)
 
 
-def _chosen(trials: tuple[SeaTrial, ...]) -> list[int]:
+def _chosen(trials: Sequence[SeaTrial]) -> list[int]:
     """One circle by side and steering."""
     circles: dict[tuple[int, int], int] = {}
     for i, trial in enumerate(trials):
@@ -109,12 +111,10 @@ def error_figure(study: SeaTrialStudy) -> Figure:
         "legend": {"orientation": "h", "x": 0.5, "xanchor": "center", "y": -0.1},
     }
     note = "Root mean square over all trials of the kind. Upright strokes: standard deviation with which trials repeat."
-    return Figure(
-        "Errors of the features", "%", tuple(traces), layout, note, 110 + _ROW * len(names)
-    )
+    return Figure("Errors of the features", "%", traces, layout, note, 110 + _ROW * len(names))
 
 
-def places_of(trials: tuple[SeaTrial, ...], kind: str) -> dict[str, list[int]]:
+def places_of(trials: Sequence[SeaTrial], kind: str) -> dict[str, list[int]]:
     """By feature of a kind, its places among the features of all trials."""
     places: dict[str, list[int]] = {name: [] for name in FEATURES[kind]}
     at = 0
@@ -152,9 +152,11 @@ def separation_figure(study: SeaTrialStudy) -> Figure:
         "hovermode": "closest",
         "legend": {"orientation": "h", "x": 0.5, "xanchor": "center", "y": -0.18},
     }
-    note = (
-        "Dotted: beyond it a pair of causes counts as separated. What is below 0.1 is drawn there."
-    )
     return Figure(
-        "What manoeuvres would tell", "nats", tuple(traces), layout, note, 140 + _ROW * len(ranked)
+        "What manoeuvres would tell",
+        "nats",
+        traces,
+        layout,
+        "Dotted: beyond it a pair of causes counts as separated. What is below 0.1 is drawn there.",
+        140 + _ROW * len(ranked),
     )

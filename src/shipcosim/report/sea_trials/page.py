@@ -1,5 +1,6 @@
 """The page of sea trials: tracks, features before and after, causes, and what would tell them apart."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from shipcosim.diagnose.sea_trials.study import SeaTrialStudy, motions_of
@@ -43,10 +44,10 @@ class SeaTrialPage(FigurePage):
 
     Attributes
     ----------
-    tracks, errors, manoeuvres : tuple of Figure
+    tracks, errors, manoeuvres : sequence of Figure
         Tracks of circles; errors of features; what manoeuvres would tell.
     sets, held_out, features, separations : Table
-    steps : tuple of str
+    steps : sequence of str
         What to sail next.
     """
 
@@ -57,7 +58,7 @@ class SeaTrialPage(FigurePage):
     held_out: Table
     features: Table
     separations: Table
-    steps: tuple[str, ...]
+    steps: Sequence[str]
 
 
 def render(study: SeaTrialStudy, facts: dict[str, str]) -> str:
@@ -91,7 +92,7 @@ def _page(study: SeaTrialStudy, facts: dict[str, str]) -> SeaTrialPage:
     )
 
 
-def _key_figures(study: SeaTrialStudy) -> tuple[KeyFigure, ...]:
+def _key_figures(study: SeaTrialStudy) -> Sequence[KeyFigure]:
     """Errors on what was not fitted, before and after, the worse of both sides."""
     figures = []
     for name, meaning in KEY_FEATURES.items():
@@ -105,4 +106,4 @@ def _key_figures(study: SeaTrialStudy) -> tuple[KeyFigure, ...]:
             before, after = (max(values) for values in zip(*both, strict=True))
             text = f"{meaning}: error on circles that were not fitted, before and after, the worse of both sides"
             figures.append(KeyFigure(f"{before:.0f} → {after:.0f} %", text))
-    return tuple(figures)
+    return figures

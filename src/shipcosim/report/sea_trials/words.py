@@ -1,6 +1,7 @@
 """Texts and rows of sea trials."""
 
 from collections import Counter
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -45,7 +46,7 @@ def trials(study: SeaTrialStudy) -> str:
     return ", ".join(f"{count} {kind}{'s' * (count > 1)}" for kind, count in counts.items())
 
 
-def blocks(study: SeaTrialStudy) -> tuple[Block, ...]:
+def blocks(study: SeaTrialStudy) -> Sequence[Block]:
     """Sets of causes, how they predict the side that was not fitted, and what to sail, for terminal and notebook."""
     return (
         Block("Causes", sets_table(study)),
@@ -126,7 +127,7 @@ def _read(name, value):
     return f"{plain(size)} {'s' if is_time else 'm'}"
 
 
-def next_steps(study: SeaTrialStudy) -> tuple[str, ...]:
+def next_steps(study: SeaTrialStudy) -> Sequence[str]:
     """What to sail, and what stays open."""
     steps = []
     for prescription in study.prescriptions:

@@ -20,8 +20,9 @@ from shipcosim.report.study.frames import (
 )
 from shipcosim.report.study.statistics import distribution, pareto_front
 from shipcosim.report.study.tables import Column, StudyTables
+from shipcosim.report.study.words import is_failed
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.figures import evenly, line, polar_axes, rounded
+from shipcosim.report.theme.figures import band, evenly, line, polar_axes, polar_curve, rounded
 from shipcosim.report.theme.numbers import finite
 from shipcosim.report.theme.views import Figure, PlotlyDict
 from shipcosim.sweep.study_model import View
@@ -86,36 +87,17 @@ def _around(
         np.append(degrees, degrees[0] + 360.0)
     ).max() <= 1.5 * 360.0 / len(degrees)
     end = [0] if closed else []
-    theta = rounded([*degrees, *degrees[end]])
+    theta = [*degrees, *degrees[end]]
+    value, low, high = np.concatenate([points, points[end]]).T
     # The curve itself, filled for the first series only.
-    curve = {
-        "type": "scatterpolar",
-        "mode": "lines+markers",
-        "name": series.label or "all",
-        "theta": theta,
-        "r": rounded([*points[:, 0], *points[end, 0]]),
-        "hovertemplate": "%{r:.3~g} from %{theta}",
-        "line": {"color": series.colour, "width": 2},
-        "marker": {"size": 4},
-    }
-    if fill is not None and closed:
-        curve |= {"fill": "toself", "fillcolor": palette.faded(series.colour, fill)}
+    name = series.label or "all"
+    look: PlotlyDict = {"mode": "lines+markers", "marker": {"size": 4}}
+    traces = [polar_curve(name, theta, value, series.colour, fill=fill if closed else None, **look)]
     # The interval as dotted curves, where it is known.
-    has_band = np.isfinite(points[:, 1:]).all(axis=1)
-    if not with_band or not has_band.any():
-        return [curve]
-    ends = {
-        "type": "scatterpolar",
-        "mode": "lines",
-        "showlegend": False,
-        "hoverinfo": "skip",
-        "theta": theta,
-    }
-    look = {"line": {"color": series.colour, "width": 1, "dash": "dot"}}
-    return [
-        curve,
-        *(ends | {"r": rounded([*points[:, k], *points[end, k]])} | look for k in (1, 2)),
-    ]
+    if with_band and (np.isfinite(low) & np.isfinite(high)).any():
+        look = {"width": 1, "dash": "dot", "showlegend": False, "hoverinfo": "skip"}
+        traces += [polar_curve("", theta, edge, series.colour, **look) for edge in (low, high)]
+    return traces
 
 
 def _static_curves(
@@ -131,20 +113,15 @@ def _static_curves(
         )
         if is_asked and str(entry["series"]) in colours:
             degrees = np.degrees(np.asarray(entry["angle"], float))
+            radius = entry["radius_values"]
             traces.append(
-                {
-                    "type": "scatterpolar",
-                    "mode": "lines",
-                    "name": str(entry["name"]),
-                    "theta": rounded([*degrees, degrees[0]]),
-                    "hovertemplate": "%{r:.3~g} from %{theta}",
-                    "r": rounded([*entry["radius_values"], entry["radius_values"][0]]),
-                    "line": {
-                        "color": colours[str(entry["series"])],
-                        "width": 2,
-                        "dash": entry.get("dash", "dash"),
-                    },
-                }
+                polar_curve(
+                    str(entry["name"]),
+                    [*degrees, degrees[0]],
+                    [*radius, radius[0]],
+                    colours[str(entry["series"])],
+                    dash=entry.get("dash", "dash"),
+                )
             )
     return traces
 
@@ -155,20 +132,16 @@ def curves(tables: StudyTables, view: View) -> Figure:
     frame = frame_of(tables, view.table or "runs", [view.quantity])
     quantity = frame.column(view.quantity)
     series = series_of(frame, view.series, [quantity.name])
-    done = (
-        np.array([not str(error or "") for error in tables.runs["error"]])
-        if "error" in tables.runs
-        else None
-    )
+    failed = is_failed(tables)
     traces = []
     never = 0
     widths = []
     largest = np.nanmax(quantity.values) if np.isfinite(quantity.values).any() else 1.0
     # Runs that never reach a value keep the curve below 1.
     for curve in series:
-        rows = (
-            curve.rows if done is None or len(done) != frame.rows else curve.rows[done[curve.rows]]
-        )
+        rows = curve.rows
+        if len(failed) == frame.rows:
+            rows = rows[~failed[rows]]
         # Empirical distribution with its simultaneous band.
         reached, share, half = distribution(quantity.values[rows])
         never += len(rows) - len(reached)
@@ -186,8 +159,15 @@ def curves(tables: StudyTables, view: View) -> Figure:
         "xaxis": {"title": {"text": quantity.titled}},
         "yaxis": {"range": [0, 1.02], "title": {"text": "share"}},
     }
-    title = f"Distribution of {quantity.name}"
-    return _figure(view, title, "", traces, layout | {"hovermode": "closest"}, notes, TALL)
+    return _figure(
+        view,
+        f"Distribution of {quantity.name}",
+        "",
+        traces,
+        layout | {"hovermode": "closest"},
+        notes,
+        TALL,
+    )
 
 
 def _steps(
@@ -210,18 +190,13 @@ def _steps(
         width=2,
         hovertemplate="%{y:.3~f} up to %{x:.4~g}",
     )
-    # Steps: the share is constant between two values.
-    curve["line"] |= {"shape": "hv"}
-    if not with_band:
-        return [curve]
-    look: PlotlyDict = {"showlegend": False, "hoverinfo": "skip"}
     # Band of the distribution, within 0 and 1.
-    low, high = (
-        line("", x, np.clip(y + k * half, 0, 1), series.colour, width=0, **look) for k in (-1, 1)
-    )
-    for edge in (low, high):
-        edge["line"] |= {"shape": "hv"}
-    return [low, high | {"fill": "tonexty", "fillcolor": palette.faded(series.colour, 0.15)}, curve]
+    low, high = (np.clip(y + edge, 0, 1) for edge in (-half, half))
+    traces = [*band(x, low, high, series.colour), curve] if with_band else [curve]
+    # Steps: the share is constant between two values.
+    for trace in traces:
+        trace["line"] |= {"shape": "hv"}
+    return traces
 
 
 def bars(tables: StudyTables, view: View) -> Figure:
@@ -387,8 +362,7 @@ def scatter(tables: StudyTables, view: View) -> Figure:
         if share < 1.0
         else "",
     ]
-    title = f"{view.y} against {view.x}"
-    return _figure(view, title, "", traces, _axes(*columns), notes, TALL)
+    return _figure(view, f"{view.y} against {view.x}", "", traces, _axes(*columns), notes, TALL)
 
 
 def _dots(
@@ -450,7 +424,7 @@ def _figure(
     return Figure(
         view.title or title,
         unit,
-        tuple(traces),
+        traces,
         dict(layout),
         " ".join(filter(None, notes)),
         height,
@@ -470,24 +444,20 @@ def distance_figure(time: NDArray, spread: Sequence[tuple[SeriesOfRows, NDArray]
     traces = []
     for group, (low, middle, high) in spread:
         # Band between the outer quantiles, then the median on top.
-        look: PlotlyDict = {"showlegend": False, "hoverinfo": "skip"}
-        top = line("", time, high, group.colour, width=0, **look)
-        traces += [line("", time, low, group.colour, width=0, **look)]
-        traces += [top | {"fill": "tonexty", "fillcolor": palette.faded(group.colour, 0.15)}]
-        traces += [
-            line(
-                group.label or "all runs",
-                time,
-                middle,
-                group.colour,
-                width=2,
-                hovertemplate="%{y:.3~g} m",
-            )
-        ]
+        name = group.label or "all runs"
+        look: PlotlyDict = {"width": 2, "hovertemplate": "%{y:.3~g} m"}
+        traces += band(time, low, high, group.colour)
+        traces.append(line(name, time, middle, group.colour, **look))
     layout = {
         "xaxis": {"title": {"text": "time [s]"}},
         "yaxis": {"rangemode": "tozero"},
         "hovermode": "x unified",
     }
-    note = "Line: median of the runs; band: from 5 to 95 % of them at each time."
-    return Figure("Distance from where each run began", "m", tuple(traces), layout, note, TALL)
+    return Figure(
+        "Distance from where each run began",
+        "m",
+        traces,
+        layout,
+        "Line: median of the runs; band: from 5 to 95 % of them at each time.",
+        TALL,
+    )

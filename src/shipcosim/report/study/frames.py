@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from shipcosim.report.study.statistics import mean_interval
-from shipcosim.report.study.tables import FACTOR, Column, Columns, StudyTables, columns_of, label
+from shipcosim.report.study.tables import FACTOR, Column, Columns, StudyTables, label
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.numbers import finite
 from shipcosim.sweep.study_model import View
-from shipcosim.sweep.summary import wilson
+from shipcosim.sweep.summary import mean, wilson
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -82,32 +81,22 @@ def narrowed(tables: StudyTables, view: View) -> StudyTables:
     Lacking
         If no table has such a column, or none such a value.
     """
-    runs = tables.runs
-    summary = tables.summary
-    others = dict(tables.tables)
+    every = tables.every
     # A misspelt column or value must not give an empty figure.
     for name, values in view.only.items():
-        having = [table for table in (runs, summary, *others.values()) if name in table]
+        having = {key: table for key, table in every.items() if name in table}
         if not having:
             raise Lacking(
-                f"only: there is no column '{name}'. There is: {', '.join(map(str, runs.columns))}."
+                f"only: there is no column '{name}'. There is: {', '.join(map(str, tables.runs.columns))}."
             )
         # A single value counts as a list of one.
         wanted = {label(value) for value in (values if isinstance(values, list) else [values])}
-        if missing := wanted - {label(value) for table in having for value in table[name]}:
+        if missing := wanted - {label(value) for table in having.values() for value in table[name]}:
             raise Lacking(f"only: no row has {name} = {', '.join(sorted(missing))}.")
         # Every table that has the column is narrowed.
-        runs, summary = (_with(table, name, wanted) for table in (runs, summary))
-        others = {key: _with(table, name, wanted) for key, table in others.items()}
-    return replace(tables, runs=runs, summary=summary, tables=others) if view.only else tables
-
-
-def _with(table: DataFrame, name: str, wanted: set[str]) -> DataFrame:
-    return (
-        cast("DataFrame", table[[label(value) in wanted for value in table[name]]])
-        if name in table
-        else table
-    )
+        for key, table in having.items():
+            every[key] = cast("DataFrame", table[table[name].map(label).isin(list(wanted))])
+    return replace(tables, runs=every.pop("runs"), summary=every.pop("summary"), tables=every)
 
 
 def frame_of(tables: StudyTables, name: str | None, needed: Sequence[str | None]) -> Frame:
@@ -118,20 +107,19 @@ def frame_of(tables: StudyTables, name: str | None, needed: Sequence[str | None]
     Lacking
         If the table that it names is not there.
     """
-    about_columns = tables.about.get("columns", ())
     if name:
-        every = {"runs": tables.runs, "summary": tables.summary, **tables.tables}
+        every = tables.every
         if name not in every:
             raise Lacking(f"There is no table '{name}'. There is: {', '.join(every)}.")
         title = f"the table '{name}'" if name in tables.tables else f"the {name}"
-        return Frame(title, columns_of(every[name], about_columns))
+        return Frame(title, tables.columns(every[name]))
     # The summary serves only if it has all needed columns.
     if not {*needed} <= {*map(str, tables.summary.columns)}:
-        return Frame(RUNS, columns_of(tables.runs, about_columns))
+        return Frame(RUNS, tables.columns(tables.runs))
     rows = tables.summary.dropna(
         subset=list(needed)
     )  # summaries over other factors have rows of their own
-    return Frame("the summary", columns_of(rows.dropna(axis="columns", how="all"), about_columns))
+    return Frame("the summary", tables.columns(rows.dropna(axis="columns", how="all")))
 
 
 def series_of(
@@ -192,12 +180,11 @@ def gathered(frame: Frame, column: Column, rows: NDArray) -> Point:
         limits = [frame.columns.get(f"{column.name}_{end}") for end in ("low", "high")]
         ends = [np.nan if limit is None else float(limit.values[rows[0]]) for limit in limits]
         return Point(float(column.values[rows[0]]), *ends)
-    # Several rows: share with Wilson's interval, or mean with a normal one.
-    numbers = column.values[rows]
-    numbers = finite(numbers)
+    # Several rows: share with Wilson's interval, or mean with Student's.
+    numbers = finite(column.values[rows])
     if column.is_truth and len(numbers):
         return Point(*wilson(int(numbers.sum()), len(numbers)))
-    return Point(*mean_interval(numbers))
+    return Point(*mean(numbers))
 
 
 def how_gathered(frame: Frame, column: Column, groups: Sequence[NDArray]) -> str:

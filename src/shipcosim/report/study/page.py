@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from shipcosim.report.study import figures, words
 from shipcosim.report.study.frames import Lacking, narrowed
-from shipcosim.report.study.tables import Column, Columns, StudyTables, columns_of, signed
+from shipcosim.report.study.tables import Column, Columns, StudyTables, signed
 from shipcosim.report.study.tracks import TracksView, tracks_view
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import evenly
@@ -55,7 +55,7 @@ class ErrorOfRuns:
 
     text: str
     count: int
-    runs: tuple[int, ...]
+    runs: Sequence[int]
 
 
 class Choice(NamedTuple):
@@ -63,7 +63,7 @@ class Choice(NamedTuple):
 
     column: str
     title: str
-    levels: tuple[tuple[float, str], ...]
+    levels: Sequence[tuple[float, str]]
 
 
 @dataclass(frozen=True)
@@ -72,36 +72,33 @@ class StudyPage(Page):
 
     Attributes
     ----------
-    remarks : tuple of str
-        What must not be overlooked.
-    key_figures : tuple of KeyFigure
-    tracks : tuple of TracksView
+    remarks : sequence of str
+        What must not be overlooked, and views that cannot be drawn.
+    key_figures : sequence of KeyFigure
+    tracks : sequence of TracksView
         Charts of recorded tracks.
-    plots, figures : tuple of Figure
+    plots, figures : sequence of Figure
         Views, and all figures in the order of `data["figures"]`.
-    undrawn : tuple of str
-        Views that cannot be drawn, and why.
     quantities, summary, varied, measured, setup : Table
     thinned : tuple of int, optional
         How many runs the page holds of how many, where it does not hold all.
-    errors : tuple of ErrorOfRuns
-    choices : tuple of Choice
+    errors : sequence of ErrorOfRuns
+    choices : sequence of Choice
         Columns that are filtered by level.
     text : str
         The study as it was read.
     """
 
-    remarks: tuple[str, ...]
-    key_figures: tuple[KeyFigure, ...]
-    tracks: tuple[TracksView, ...]
+    remarks: Sequence[str]
+    key_figures: Sequence[KeyFigure]
+    tracks: Sequence[TracksView]
     plots: Figures
     figures: Figures
-    undrawn: tuple[str, ...]
     quantities: Table
     summary: Table
     thinned: tuple[int, int] | None
-    errors: tuple[ErrorOfRuns, ...]
-    choices: tuple[Choice, ...]
+    errors: Sequence[ErrorOfRuns]
+    choices: Sequence[Choice]
     varied: Table
     measured: Table
     setup: Table
@@ -115,26 +112,22 @@ def render(tables: StudyTables) -> str:
 
 def outcome_of(tables: StudyTables) -> Outcome:
     """Result of a study in one sentence, without its views."""
-    about_columns = tables.about.get("columns", ())
-    return words.outcome(
-        tables, columns_of(tables.runs, about_columns), columns_of(tables.summary, about_columns)
-    )
+    return words.outcome(tables, tables.columns(tables.runs), tables.columns(tables.summary))
 
 
 def page_of(tables: StudyTables) -> StudyPage:
     """Contents of the page of a study."""
     # Columns with units and roles, as the study describes them.
-    about_columns = tables.about.get("columns", ())
-    runs = columns_of(tables.runs, about_columns)
-    summary = columns_of(tables.summary, about_columns)
+    runs = tables.columns(tables.runs)
+    summary = tables.columns(tables.summary)
     # Views first: a section without content is left out.
     tracks, plots, undrawn = _views(tables)
     drawn = (*plots, *(view.distance for view in tracks))
     # As many runs as the page has room for.
     rows = _kept_rows(tables, list(runs.values()))
-    errors = tuple(
+    errors = [
         ErrorOfRuns(text, len(numbers), numbers[:20]) for text, numbers in words.errors(tables)
-    )
+    ]
     there = {"views": tracks or plots, "failed": errors, "summary": len(tables.summary)}
     return StudyPage(
         title=str(tables.study.get("description") or tables.name),
@@ -142,12 +135,11 @@ def page_of(tables: StudyTables) -> StudyPage:
         outcome=words.outcome(tables, runs, summary),
         links=links_of(SECTIONS, there),
         data=_data(tables, runs, rows, tracks, drawn),
-        remarks=tuple(map(str, tables.about.get("remarks") or ())),
+        remarks=[*map(str, tables.about.get("remarks") or ()), *undrawn],
         key_figures=words.key_figures(tables, runs, summary),
         tracks=tracks,
         plots=plots,
         figures=drawn,
-        undrawn=undrawn,
         quantities=words.quantities_table(runs),
         summary=summary_table(summary),
         thinned=(len(rows), len(tables.runs)) if len(rows) < len(tables.runs) else None,
@@ -162,7 +154,7 @@ def page_of(tables: StudyTables) -> StudyPage:
 
 def _views(
     tables: StudyTables,
-) -> tuple[tuple[TracksView, ...], Figures, tuple[str, ...]]:
+) -> tuple[Sequence[TracksView], Figures, Sequence[str]]:
     """Views of the study; a view that cannot be drawn does not affect the others."""
     tracks = []
     plots = []
@@ -178,7 +170,7 @@ def _views(
                 plots.append(VIEWS[view.kind](shown, view))
         except (Lacking, ValidationError) as lack:
             undrawn.append(f"View '{content.get('kind')}' is not drawn. {lack}")
-    return tuple(tracks), tuple(plots), tuple(undrawn)
+    return tracks, plots, undrawn
 
 
 def _kept_rows(tables: StudyTables, columns: Sequence[Column]) -> NDArray:
@@ -256,7 +248,7 @@ def _packed(column: Column, rows: NDArray) -> JsonObject:
     return made | {"values": packed_series(values), "digits": digits}
 
 
-def _choices(columns: Columns) -> tuple[Choice, ...]:
+def _choices(columns: Columns) -> Sequence[Choice]:
     chosen = [
         c for c in columns.values() if len(c.levels) > 1 and (c.role == "factor" or c.is_truth)
     ]
@@ -264,8 +256,8 @@ def _choices(columns: Columns) -> tuple[Choice, ...]:
     for column in chosen:
         # Levels are written without their unit, which the column's title has.
         levels = [(level, _cell(column, level, 6)) for level in column.levels]
-        choices.append(Choice(column.name, column.titled, tuple(levels)))
-    return tuple(choices)
+        choices.append(Choice(column.name, column.titled, levels))
+    return choices
 
 
 def summary_table(columns: Columns) -> Table:
@@ -274,10 +266,8 @@ def summary_table(columns: Columns) -> Table:
     ends = {f"{name}_{end}" for name in columns for end in ("low", "high")}
     shown = [column for name, column in columns.items() if name not in ends]
     count = min(len(shown[0].values), MOST_SUMMARY) if shown else 0
-    rows = tuple(
-        tuple(_with_interval(columns, column, k) for column in shown) for k in range(count)
-    )
-    return Table(rows, tuple(column.titled for column in shown), tight=tuple(range(len(shown))))
+    rows = tuple([_with_interval(columns, column, k) for column in shown] for k in range(count))
+    return Table(rows, [column.titled for column in shown], tight=tuple(range(len(shown))))
 
 
 def _with_interval(columns: Columns, column: Column, row: int) -> str:

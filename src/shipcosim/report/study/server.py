@@ -98,8 +98,11 @@ def study_server(
     try:
         return StudyServer(folder, runs, simulate, port)
     except (OSError, OverflowError) as error:
-        text = f"Port {port} cannot be used: {getattr(error, 'strerror', None) or error}."
-        raise error_at("--port", text, "Choose another, or leave it to the system.") from error
+        raise error_at(
+            "--port",
+            f"Port {port} cannot be used: {getattr(error, 'strerror', None) or error}.",
+            "Choose another, or leave it to the system.",
+        ) from error
 
 
 def page_of_run(folder: Path, run: int) -> Path:

@@ -1,4 +1,4 @@
-"""Statistics of the page: intervals, distributions, explained variance, Pareto fronts."""
+"""Statistics of the page: distributions, explained variance, Pareto fronts."""
 
 from collections.abc import Sequence
 
@@ -7,28 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from shipcosim.report.theme.numbers import finite
 
-Z = 1.959964
-"""Standard normal deviate of two-sided 95 %."""
 LEVEL = 0.95
 BINS = 10
-
-
-def mean_interval(values: ArrayLike) -> tuple[float, float, float]:
-    """Mean and its normal 95 % interval; no interval for a single value.
-
-    Examples
-    --------
-    >>> [round(float(v), 2) for v in mean_interval([1.0, 2.0, 3.0])]
-    [2.0, 0.87, 3.13]
-    """
-    # Interval z s / sqrt(n); values that are not finite do not count.
-    numbers = np.asarray(values, float)
-    numbers = finite(numbers)
-    if not numbers.size:
-        return np.nan, np.nan, np.nan
-    middle = float(numbers.mean())
-    half = Z * float(numbers.std(ddof=1)) / np.sqrt(numbers.size) if numbers.size > 1 else np.nan
-    return middle, middle - half, middle + half
 
 
 def distribution(values: ArrayLike) -> tuple[NDArray, NDArray, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, cast
 
@@ -71,6 +71,15 @@ class StudyTables:
         """Name of the study."""
         return str(self.about.get("name") or "study")
 
+    @property
+    def every(self) -> dict[str, DataFrame]:
+        """All tables that a view can name."""
+        return {"runs": self.runs, "summary": self.summary, **self.tables}
+
+    def columns(self, frame: DataFrame) -> dict[str, Column]:
+        """Columns of one of the tables, as the study describes them."""
+        return columns_of(frame, self.about.get("columns", ()))
+
 
 def tables_of(swept: Swept, command: str) -> StudyTables:
     """Results of a study, with tables and pages of runs in its folder.
@@ -130,11 +139,11 @@ class Column:
         As it is shown.
     values : (n,) array
         Numbers in `unit`, NaN where there is none; 0 and 1 of what is true or false; places in `labels`.
-    labels : tuple of str
+    labels : sequence of str
         Of what is no number, in their order.
     is_truth : bool
         Whether it is true or false.
-    ranges : tuple of str
+    ranges : sequence of str
         Of a value that a study tells in part, as it runs not every case: ``">= 4"``, ``"1 to 3"``; else empty.
     """
 
@@ -143,9 +152,9 @@ class Column:
     description: str
     unit: str
     values: NDArray
-    labels: tuple[str, ...] = ()
+    labels: Sequence[str] = ()
     is_truth: bool = False
-    ranges: tuple[str, ...] = ()
+    ranges: Sequence[str] = ()
 
     def text_at(self, row: int) -> str:
         """Value of a row as text for readers; its bounds where not every case was run."""
@@ -157,11 +166,11 @@ class Column:
         return not self.labels and not self.is_truth
 
     @property
-    def levels(self) -> tuple[float, ...]:
+    def levels(self) -> Sequence[float]:
         """Distinct values of a factor, or whole numbers, in order; empty if they are too many."""
         # Labels are levels; numbers only if they are few, and whole or a factor's.
         if self.labels:
-            return tuple(float(k) for k in range(len(self.labels)))
+            return [float(k) for k in range(len(self.labels))]
         levels = np.unique(finite(self.values))
         are_few = len(levels) <= MOST_LEVELS and (
             self.role == FACTOR or bool(np.all(levels == np.round(levels)))
@@ -305,9 +314,7 @@ def readable(values: ArrayLike, unit: str | None) -> tuple[NDArray, str]:
 
 
 def _numbers(values: Series) -> NDArray:
-    return np.array(
-        [float(v) if v is not None and v == v else np.nan for v in values.astype(object)], float
-    )
+    return values.to_numpy(float, na_value=np.nan)
 
 
 def label(value: object) -> str:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from shipcosim.report.run.track import hull_outline, symbol_size
 from shipcosim.report.study.figures import distance_figure
 from shipcosim.report.study.frames import RUNS, Frame, Lacking, SeriesOfRows, left_out, series_of
-from shipcosim.report.study.tables import StudyTables, columns_of
+from shipcosim.report.study.tables import StudyTables
 from shipcosim.report.theme.figures import evenly
 from shipcosim.report.theme.numbers import finite
 from shipcosim.report.theme.packing import packed_series
@@ -32,7 +32,7 @@ class TracksView:
     Attributes
     ----------
     title, note : str
-    series : tuple of (str, str)
+    series : sequence of (str, str)
         Label and colour of each.
     data : dict
         What the script draws: times, tracks, density and the share beyond each circle over time.
@@ -42,7 +42,7 @@ class TracksView:
 
     title: str
     note: str
-    series: tuple[tuple[str, str], ...]
+    series: Sequence[tuple[str, str]]
     data: JsonObject
     distance: Figure
 
@@ -66,7 +66,7 @@ def tracks_view(tables: StudyTables, view: View) -> TracksView:
         If no tracks were kept.
     """
     # Series of the runs that have a track.
-    frame = Frame(RUNS, columns_of(tables.runs, tables.about.get("columns", ())))
+    frame = Frame(RUNS, tables.columns(tables.runs))
     tracks = _read(tables)
     has_track = np.asarray(np.isfinite(tracks.north).any(axis=1))
     series = [
@@ -82,8 +82,10 @@ def tracks_view(tables: StudyTables, view: View) -> TracksView:
         group.rows[evenly(len(group.rows), most)] if len(group.rows) else group.rows
         for group in series
     ]
-    note = f"North up, each from where it began. Drawn are {sum(map(len, drawn))} of {sum(len(s.rows) for s in series)} "
-    note += "tracks, with her outline at the time shown; shaded: where all of them were, the darker the longer."
+    note = (
+        f"North up, each from where it began. Drawn are {sum(map(len, drawn))} of {sum(len(s.rows) for s in series)} "
+        "tracks, with her outline at the time shown; shaded: where all of them were, the darker the longer."
+    )
     # Rows without a track, which do not count as left out.
     there = np.concatenate([group.rows for group in series]) if series else np.zeros(0, int)
     without = [SeriesOfRows("", "", np.setdiff1d(np.arange(frame.rows), there))]
@@ -100,7 +102,7 @@ def tracks_view(tables: StudyTables, view: View) -> TracksView:
     return TracksView(
         title=view.title or "Tracks",
         note=" ".join(filter(None, sentences)),
-        series=tuple((group.label or "all runs", group.colour) for group in series),
+        series=[(group.label or "all runs", group.colour) for group in series],
         data=_data(tables, tracks, series, drawn, circles),
         distance=distance_figure(tracks.time, spread),
     )

@@ -32,7 +32,7 @@ MATTERS = 0.05
 """Share of a variance from which a factor is named."""
 
 
-def facts(tables: StudyTables) -> tuple[Fact, ...]:
+def facts(tables: StudyTables) -> Sequence[Fact]:
     """Facts of a study: scenario, number of runs, seed, engine."""
     about = tables.about
     study = tables.study
@@ -48,7 +48,7 @@ def facts(tables: StudyTables) -> tuple[Fact, ...]:
         "Seed": study.get("seed", about.get("seed")),
         "Engine": about.get("engine"),
     }
-    return tuple(Fact(name, str(text)) for name, text in texts.items() if text not in (None, ""))
+    return [Fact(name, str(text)) for name, text in texts.items() if text not in (None, "")]
 
 
 def outcome(tables: StudyTables, runs: Columns, summary: Columns) -> Outcome:
@@ -108,7 +108,7 @@ def _of_runs(runs: Columns) -> str:
     return f"{name}: {column.text(middle)} in the median, {column.text(high)} in nine of ten runs, {most} at most."
 
 
-def key_figures(tables: StudyTables, runs: Columns, summary: Columns) -> tuple[KeyFigure, ...]:
+def key_figures(tables: StudyTables, runs: Columns, summary: Columns) -> Sequence[KeyFigure]:
     """Number of runs, and values of the first quantities and summaries."""
     figures = [KeyFigure(str(len(tables.runs)), f"runs, {int(is_failed(tables).sum())} failed")]
     # Summaries first: they are what the study asks for.
@@ -157,7 +157,7 @@ def quantities_table(runs: Columns) -> Table:
             share = percent(finite_values.mean(), 1) if len(finite_values) else "–"
             numbers = ("", f"yes in {share}", "", "")
         else:
-            numbers = tuple(plain(v) for v in np.quantile(finite_values, [0.0, 0.5, 0.9, 1.0]))
+            numbers = [plain(v) for v in np.quantile(finite_values, [0.0, 0.5, 0.9, 1.0])]
         rows.append((column.name, column.unit, *numbers, missing, _varies_with(column, causes)))
     head = (
         "quantity",
@@ -195,7 +195,7 @@ def is_failed(tables: StudyTables) -> NDArray:
     )
 
 
-def errors(tables: StudyTables) -> tuple[tuple[str, tuple[int, ...]], ...]:
+def errors(tables: StudyTables) -> Sequence[tuple[str, Sequence[int]]]:
     """Error messages with their runs, the most frequent first."""
     by_message: dict[str, list[int]] = {}
     # Runs with the same message form one entry.
@@ -203,143 +203,53 @@ def errors(tables: StudyTables) -> tuple[tuple[str, tuple[int, ...]], ...]:
     for number, error in zip(failed["run"], failed["error"] if len(failed) else (), strict=True):
         by_message.setdefault(str(error), []).append(int(number))
     ordered = sorted(by_message.items(), key=lambda entry: -len(entry[1]))
-    return tuple((text, tuple(numbers)) for text, numbers in ordered)
+    return tuple((text, numbers) for text, numbers in ordered)
 
 
-# ---- how it was made
+# ---- how it was made, in the keys of the study file
 
 
 def varied_table(study: Mapping[str, Any]) -> Table:
     """Varied factors and sampled values, a row each."""
     # Factors of the grid, then sampled signals, then tuned ones.
-    rows = [
-        (str(part.get("name", "")), _signals(part), _values(part))
-        for part in _parts(study, "factor")
-    ]
-    for part, in_words in (("sample", _distribution), ("tune", _range)):
-        for signal, how in _given(_given(study.get(part) or {}).get("of") or {}).items():
-            # Others may get the same value.
-            signals = ", ".join([signal, *how.get("also", ())])
-            rows.append((str(how.get("name") or signal), signals, in_words(_given(how))))
-    return Table(rows, ("name", "what it sets", "values"), tight=(0,))
-
-
-def _range(how: Mapping[str, Any]) -> str:
-    """Range of a search in words."""
-    spread = " in the logarithm" if how.get("log") else ""
-    return f"sought from {how['low']} to {how['high']}{spread}"
-
-
-def _given(part: Mapping[str, Any]) -> dict[str, Any]:
-    """Entries of a part of a study file, without empty ones."""
-    return {key: value for key, value in part.items() if value not in (None, "", [], {}, False)}
-
-
-def _parts(study: Mapping[str, Any], name: str) -> list[dict[str, Any]]:
-    """Tables of one kind in a study file."""
-    return [_given(part) for part in study.get(name) or ()]
-
-
-def _signals(factor: Mapping[str, Any]) -> str:
-    # What a factor sets: signals of its cases, weather, seeds, or its own signals.
-    if cases := factor.get("case"):
-        names = dict.fromkeys(name for case in cases for name in case.get("set") or {})
-        events = ["events"] if any(case.get("events") for case in cases) else []
-        return ", ".join([*names, *events]) or "cases"
-    if "directions" in factor:
-        return "where wind, waves and current come from"
-    if "conditions" in factor:
-        return "wind, waves and current"
-    signals = factor.get("signal") or factor.get("signals")
-    if "seeds" in factor and not signals:
-        return "every parameter named seed"
-    return _plain(signals or factor.get("name", "")) + (
-        " (at the fork)" if factor.get("at_fork") else ""
-    )
-
-
-def _values(factor: Mapping[str, Any]) -> str:
-    # How the values are given: seeds, cases, directions, conditions, a list or a range.
-    if "seeds" in factor:
-        return f"{factor['seeds']} seeds, drawn from the study's seed"
-    if cases := factor.get("case"):
-        return _listed([str(case.get("label", "")) for case in cases])
-    if "directions" in factor:
-        return f"{factor['directions']} directions, evenly spaced"
-    if "conditions" in factor:
-        return f"DP capability numbers {_listed([str(number) for number in factor['conditions']])}"
-    if "values" in factor:
-        return _listed([str(value) for value in factor["values"]])
-    stretch = f"{factor.get('from', 0)} to {factor.get('to', 0)}"
-    return (
-        f"{stretch} by {factor['step']}"
-        if "step" in factor
-        else f"{stretch}, {factor.get('count')} values"
-    )
-
-
-def _listed(texts: Sequence[str]) -> str:
-    shown = ", ".join(texts[:MOST_VALUES])
-    return shown if len(texts) <= MOST_VALUES else f"{shown}, ... ({len(texts)})"
-
-
-def _distribution(how: Mapping[str, Any]) -> str:
-    """A distribution in words."""
-    # Normal about the start value, or as the study writes it.
-    later = " (at the fork)" if how.get("at_fork") else ""
-    if how.get("tolerance"):
-        return f"normal about the start value, standard deviation: the tolerance of the parameter set{later}"
-    others = ("distribution", "unit", "name", "at_fork", "tolerance", "also")
-    numbers = ", ".join(f"{name} {value}" for name, value in how.items() if name not in others)
-    unit = f" {how['unit']}" if how.get("unit") else ""
-    return f"{how.get('distribution', '')}: {numbers}{unit}{later}"
+    rows = [_row(part) for part in study.get("factor") or ()]
+    for part in ("sample", "tune"):
+        for signal, how in ((study.get(part) or {}).get("of") or {}).items():
+            rows.append(_row({"name": signal, "signal": signal} | _given(how)))
+    return Table(rows, ("name", "what is varied"), tight=(0,))
 
 
 def measured_table(study: Mapping[str, Any]) -> Table:
     """Quantities of each run, and summaries over similar runs."""
-    rows = [(str(part.get("name", "")), _quantity(part)) for part in _parts(study, "quantity")]
-    for summary in _parts(study, "summary"):
-        statistic = str(summary.get("statistic", "")).replace("_", " ")
-        words = [f"{statistic} of {summary.get('quantity')} over {_plain(summary.get('over', ''))}"]
-        words += _keys(summary, "percentile", "along", "share")
-        rows.append((str(summary.get("name", "")), ", ".join(words)))
-    return Table(rows, ("name", "what it is"), tight=(0,))
+    parts = [*(study.get("quantity") or ()), *(study.get("summary") or ())]
+    return Table(list(map(_row, parts)), ("name", "what it is"), tight=(0,))
 
 
-def _keys(part: Mapping[str, Any], *names: str) -> list[str]:
-    """Entries of a part of the study file, as written there."""
-    return [f"{name} {part[name]}" for name in names if name in part]
+def _row(part: Mapping[str, Any]) -> tuple[str, str]:
+    """Name and other entries of a part of the study file; its title and description are shown elsewhere."""
+    others = {key: value for key, value in part.items() if key not in ("name", "description")}
+    return str(part.get("name", "")), _entries(others)
 
 
-def _quantity(part: Mapping[str, Any]) -> str:
-    # The scenario's expectations, the study's own, a margin, or a statistic of signals.
-    if part.get("scenario_expectations"):
-        return "whether all that the scenario expects holds"
-    if wanted := part.get("expect"):
-        return f"whether all holds: {'; '.join(_plain(_given(claim)) for claim in wanted)}"
-    if "margin" in part:
-        waves = f"wave filter adapted to waves of {part.get('peak_period')} s"
-        return f"{part['margin']} margin of {part.get('component', 'controller')}, the least of its axes, {waves}"
-    of = _plain(part.get("signal", ""))
-    if "near" in part:
-        of = f"the distance of {of} from {_plain(part['near'])}"
-    words = [f"{str(part.get('reduce', '')).replace('_', ' ')} of {of}"]
-    words += _keys(part, "percentile", "limit", "time")
-    if "during" in part:
-        words.append(f"during {' to '.join(map(str, part['during']))}")
-    return ", ".join(words)
+def _given(part: Mapping[str, Any]) -> dict[str, Any]:
+    """Entries of a part of a study file, without empty ones."""
+    empty = (None, "", [], {})
+    return {key: value for key, value in part.items() if value is not False and value not in empty}
 
 
 def _plain(value: Any) -> str:
-    """A value of a study file on one line."""
+    """A value of a study file on one line: of cases their labels, of what is true its key."""
     if isinstance(value, list | tuple):
-        return ", ".join(map(_plain, value))
-    if isinstance(value, Mapping):
-        return ", ".join(
-            f"{key} {f'({_plain(v)})' if isinstance(v, list | tuple) else v}"
-            for key, v in value.items()
-        )
-    return str(value)
+        shown = ", ".join(map(_plain, value[:MOST_VALUES]))
+        return shown if len(value) <= MOST_VALUES else f"{shown}, ... ({len(value)})"
+    if isinstance(value, Mapping) and "label" in value:
+        return str(value["label"])
+    return f"({_entries(value)})" if isinstance(value, Mapping) else str(value)
+
+
+def _entries(part: Mapping[str, Any]) -> str:
+    entries = _given(part).items()
+    return "; ".join(key if value is True else f"{key}: {_plain(value)}" for key, value in entries)
 
 
 def setup_table(tables: StudyTables) -> Table:
@@ -354,7 +264,7 @@ def setup_table(tables: StudyTables) -> Table:
     ]
     entries: dict[str, Any] = {
         "scenario": study.get("scenario"),
-        "start values of all runs": _plain(study["set"]) if study.get("set") else None,
+        "start values of all runs": _entries(study.get("set", {})),
         "stop time": study.get("stop_time"),
         "runs share the time before": study.get("fork_at"),
         "sampling": f"{sample['method']}, {sample.get('runs')} points"
@@ -366,10 +276,10 @@ def setup_table(tables: StudyTables) -> Table:
         "seed": study.get("seed", about.get("seed")),
         "engine": about.get("engine"),
         "plan": about.get("plan"),
-        "versions": _plain(about["versions"]) if about.get("versions") else None,
+        "versions": _entries(about.get("versions") or {}),
     }
     return Table(
-        tuple((name, str(value)) for name, value in entries.items() if value not in (None, "")),
+        [(name, str(value)) for name, value in entries.items() if value not in (None, "")],
         tight=(0,),
     )
 

@@ -106,6 +106,16 @@ def line(
     return {"type": "scatter", "mode": "lines", "name": name, **places, "line": look} | more
 
 
+def band(x: ArrayLike, low: ArrayLike, high: ArrayLike, colour: str) -> list[PlotlyDict]:
+    """A shaded band between two curves, which no legend names."""
+    edges = [
+        line("", x, edge, colour, width=0, showlegend=False, hoverinfo="skip")
+        for edge in (low, high)
+    ]
+    edges[1] |= {"fill": "tonexty", "fillcolor": palette.faded(colour, 0.15)}
+    return edges
+
+
 def bars(
     name: str, categories: Sequence[str], sizes: ArrayLike, colour: str, unit: str
 ) -> PlotlyDict:
@@ -117,6 +127,32 @@ def bars(
         "y": rounded(sizes, 3),
         "marker": {"color": colour},
         "hovertemplate": f"%{{y:.3~g}} {unit}",
+    }
+
+
+def polar_curve(
+    name: str,
+    degrees: ArrayLike,
+    radius: ArrayLike,
+    colour: str,
+    *,
+    width: float = 2,
+    dash: str = "solid",
+    fill: float | None = None,
+    **more: Any,
+) -> PlotlyDict:
+    """A curve of a polar plot; `fill` is the opacity of the area within."""
+    filled = {} if fill is None else {"fill": "toself", "fillcolor": palette.faded(colour, fill)}
+    return {
+        "type": "scatterpolar",
+        "mode": "lines",
+        "name": name,
+        "theta": rounded(degrees),
+        "r": rounded(radius),
+        "hovertemplate": "%{r:.3~g} from %{theta}",
+        "line": {"color": colour, "width": width, "dash": dash},
+        **filled,
+        **more,
     }
 
 

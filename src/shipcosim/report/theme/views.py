@@ -19,14 +19,14 @@ class Fact(NamedTuple):
     text: str
 
 
-def facts_of(texts: Mapping[str, str]) -> tuple[Fact, ...]:
+def facts_of(texts: Mapping[str, str]) -> Sequence[Fact]:
     """Facts from texts by their names."""
-    return tuple(Fact(name, text) for name, text in texts.items())
+    return [Fact(name, text) for name, text in texts.items()]
 
 
-def known_facts(facts: Iterable[tuple[str, str]]) -> tuple[Fact, ...]:
+def known_facts(facts: Iterable[tuple[str, str]]) -> Sequence[Fact]:
     """Facts from names and texts; those without a text are left out."""
-    return tuple(Fact(name, text) for name, text in facts if text)
+    return [Fact(name, text) for name, text in facts if text]
 
 
 class KeyFigure(NamedTuple):
@@ -56,20 +56,18 @@ class Link:
 
 def links_of(
     sections: Mapping[str, str], there: Mapping[str, object] = MappingProxyType({})
-) -> tuple[Link, ...]:
+) -> Sequence[Link]:
     """Links to sections, from titles by anchor, without those that a page lacks."""
-    return tuple(
-        Link(anchor, title) for anchor, title in sections.items() if there.get(anchor, True)
-    )
+    return [Link(anchor, title) for anchor, title in sections.items() if there.get(anchor, True)]
 
 
 @dataclass(frozen=True)
 class Table:
     """A table of texts; the columns numbered in `tight` do not wrap."""
 
-    rows: Sequence[tuple[str, ...]]
-    head: tuple[str, ...] = ()
-    tight: tuple[int, ...] = ()
+    rows: Sequence[Sequence[str]]
+    head: Sequence[str] = ()
+    tight: Sequence[int] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "rows", tuple(self.rows))
@@ -81,7 +79,7 @@ class Block:
 
     heading: str
     table: Table = Table(())
-    lines: tuple[str, ...] = ()
+    lines: Sequence[str] = ()
     folded: bool = False
 
     def __bool__(self) -> bool:
@@ -95,7 +93,7 @@ class Figure:
     Attributes
     ----------
     title, unit, note : str
-    traces : tuple of dict
+    traces : sequence of dict
         Traces of plotly. A text is plain text: `templates/figures.js` turns line breaks and special characters into
         what plotly wants. A colour is a name of `palette`. `named`: whether the name of the trace is shown at the
         pointer, yes by default.
@@ -107,7 +105,7 @@ class Figure:
 
     title: str
     unit: str
-    traces: tuple[PlotlyDict, ...]
+    traces: Sequence[PlotlyDict]
     layout: dict[str, Any] = field(default_factory=dict)
     note: str = ""
     height: int | None = None
@@ -118,7 +116,7 @@ class Figure:
         return {"data": self.traces, "layout": self.layout}
 
 
-Figures = tuple[Figure, ...]
+Figures = Sequence[Figure]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,20 +127,20 @@ class Page:
     ----------
     title : str
         Title in the browser and first heading.
-    facts : tuple of Fact
+    facts : sequence of Fact
         Below the title.
     outcome : Outcome
-    links : tuple of Link
+    links : sequence of Link
         Navigation within the page.
     data : mapping or tuple
         What the script of the page draws, as JSON.
     """
 
     title: str
-    facts: tuple[Fact, ...]
+    facts: Sequence[Fact]
     outcome: Outcome
-    links: tuple[Link, ...] = ()
-    data: Mapping[str, Any] | tuple[Any, ...] = ()
+    links: Sequence[Link] = ()
+    data: Mapping[str, Any] | Sequence[Any] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,13 +149,13 @@ class FigurePage(Page):
 
     Attributes
     ----------
-    key_figures : tuple of KeyFigure
-    figures : tuple of Figure
+    key_figures : sequence of KeyFigure
+    figures : sequence of Figure
         All of the page, in the order of `data`.
     """
 
-    key_figures: tuple[KeyFigure, ...] = ()
+    key_figures: Sequence[KeyFigure] = ()
     figures: Figures = ()
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "data", tuple(figure.drawn for figure in self.figures))
+        object.__setattr__(self, "data", [figure.drawn for figure in self.figures])

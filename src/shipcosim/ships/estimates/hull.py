@@ -145,8 +145,11 @@ def inertia_yaw(mass: float, length: float, breadth: float, centre_x: float) -> 
     about_centre = mass * (0.25 * length) ** 2
     # A box has m (L² + B²) / 12: what its breadth adds is unknown of a ship.
     tolerance = hypot(0.15 * about_centre, mass * breadth**2 / 12.0)
-    source = "gyration radius 0.25 L, Fossen 2021; tolerance 15 % and the breadth of a box"
-    return EstimatedNumber(about_centre + mass * centre_x**2, tolerance, source)
+    return EstimatedNumber(
+        about_centre + mass * centre_x**2,
+        tolerance,
+        "gyration radius 0.25 L, Fossen 2021; tolerance 15 % and the breadth of a box",
+    )
 
 
 def cross_flow_drag(form: HullDimensions) -> EstimatedNumber:

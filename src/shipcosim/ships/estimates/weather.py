@@ -116,10 +116,11 @@ def wind_table(
         rows.append(
             f"{angle} " + " ".join(f"{0.0 if abs(load) < 1e-9 else load:.6g}" for load in (X, Y, N))
         )
-    source = (
-        f"Blendermann 1994, {kind}, A_F {front:.4g} m2, A_L {side:.4g} m2, s_L {centre_x:.3g} m"
+    return EstimatedNumber(
+        "; ".join(rows),
+        0.0,
+        f"Blendermann 1994, {kind}, A_F {front:.4g} m2, A_L {side:.4g} m2, s_L {centre_x:.3g} m",
     )
-    return EstimatedNumber("; ".join(rows), 0.0, source)
 
 
 def drift_table(length: float, breadth: float, draught: float, density: float) -> EstimatedNumber:

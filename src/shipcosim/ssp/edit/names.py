@@ -185,8 +185,11 @@ def best_pair(
         if _names_an_element(reading):
             names = [part.get("name", "") for part in parts(system)]
             element = signal.partition(".")[0]
-            message = f"There is no element '{element}' in {system.get('name')}."
-            raise error_at(where, message, suggestion(element, names))
+            raise error_at(
+                where,
+                f"There is no element '{element}' in {system.get('name')}.",
+                suggestion(element, names),
+            )
     return start, end
 
 

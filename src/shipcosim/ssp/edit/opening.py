@@ -45,8 +45,11 @@ def read(path: AnyPath, *, fmus: Iterable[AnyPath] | None = None) -> SystemStruc
     # OSP structures are run, not edited: they have no place for everything in an SSD.
     findings = Findings()
     if osp_file(path):
-        message = "An OspSystemStructure.xml cannot be edited."
-        raise error_at(str(path), message, "`simulate` and `read_system` take it.")
+        raise error_at(
+            str(path),
+            "An OspSystemStructure.xml cannot be edited.",
+            "`simulate` and `read_system` take it.",
+        )
     package = open_package(
         path, findings, library.fmus(path, build=False) if fmus is None else fmus
     )

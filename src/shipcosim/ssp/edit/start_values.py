@@ -136,9 +136,9 @@ class StartValues(MutableMapping[str, Value]):
 
     def _kind(self, name: str, value: Value, kind: str | None) -> str:
         if type(value) not in KIND_OF:
-            message = f"{value!r} is no value."
-            remedy = "A value is a number, true or false, or a text."
-            raise self._draft.error(name, message, remedy)
+            raise self._draft.error(
+                name, f"{value!r} is no value.", "A value is a number, true or false, or a text."
+            )
         if isinstance(value, float) and not isfinite(value):
             raise self._draft.error(name, f"{value} is not a finite number.")
         own_kind = KIND_OF[type(value)]
@@ -155,10 +155,11 @@ class StartValues(MutableMapping[str, Value]):
             or own_unit is None
             or relation(given, own_unit) in ("unknown", "incompatible")
         ):
-            message = (
-                f"A value in {unit}, but {name} is in {own_unit.name if own_unit else 'no unit'}."
+            raise self._draft.error(
+                name,
+                f"A value in {unit}, but {name} is in {own_unit.name if own_unit else 'no unit'}.",
+                "These cannot be converted.",
             )
-            raise self._draft.error(name, message, "These cannot be converted.")
         factor, offset = conversion(given, own_unit)
         return factor * value + offset
 

@@ -104,10 +104,9 @@ def element_links(link: Link, start: Dimensions, end: Dimensions, findings: Find
     # An index picks one element, which is a scalar. Shapes must be equal then.
     shapes = [() if link.start_indices else start, () if link.end_indices else end]
     if shapes[0] != shapes[1]:
-        message = f"{shape_text(shapes[0])} cannot be connected to {shape_text(shapes[1])}."
         findings.error(
             link.place,
-            message,
+            f"{shape_text(shapes[0])} cannot be connected to {shape_text(shapes[1])}.",
             "Both must have the same shape; startIndices and endIndices name an element.",
         )
         return []
@@ -152,10 +151,11 @@ def element_values(value: ParameterValue, findings: Findings) -> list[ParameterV
     if not value.dimensions:
         return [value]
     if min(value.dimensions) < 1 or prod(value.dimensions) != len(value.value):
-        message = (
-            f"{value.name} is {shape_text(value.dimensions)}, but has {len(value.value)} values."
+        findings.error(
+            value.place,
+            f"{value.name} is {shape_text(value.dimensions)}, but has {len(value.value)} values.",
+            f"Give {prod(value.dimensions)}.",
         )
-        findings.error(value.place, message, f"Give {prod(value.dimensions)}.")
         return []
     pairs = zip(element_names(value.name, value.dimensions), value.value, strict=True)
     return [replace(value, name=name, value=element, dimensions=()) for name, element in pairs]

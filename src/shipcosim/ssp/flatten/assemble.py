@@ -134,8 +134,11 @@ def _remark_replaced(
     for name, component in components.items():
         replaced = [variable for variable in component.start if (name, variable) in fed]
         if replaced:
-            message = f"Connections replace the values that are set for {shortened(replaced)}."
-            findings.remark(name, message, "Take the values or the connections out.")
+            findings.remark(
+                name,
+                f"Connections replace the values that are set for {shortened(replaced)}.",
+                "Take the values or the connections out.",
+            )
 
 
 def components_of(tree: Hierarchy, settings: Settings) -> dict[str, Component]:
@@ -188,13 +191,22 @@ def _check_names(tree: Hierarchy, findings: Findings) -> None:
         for name in () if fmu is None else fmu.named("input", "output", "parameter"):
             signal = ".".join((*path, name))
             if signals.setdefault(signal, path) != path:
-                message = f"Two components have a variable whose full name is '{signal}'."
-                findings.error(element.place, message, "Rename one of the components.")
+                findings.error(
+                    element.place,
+                    f"Two components have a variable whose full name is '{signal}'.",
+                    "Rename one of the components.",
+                )
     for key, port in tree.ports.items():
         if key.path == () and port.owner == "system":
             if key.name == "time":
-                message = "A connector of the system is called 'time', as the time of the results."
-                findings.error(port.place, message, "Rename it.")
+                findings.error(
+                    port.place,
+                    "A connector of the system is called 'time', as the time of the results.",
+                    "Rename it.",
+                )
             elif key.name in signals:
-                message = f"A connector of the system is called as the variable {key.name}."
-                findings.error(port.place, message, "Rename it.")
+                findings.error(
+                    port.place,
+                    f"A connector of the system is called as the variable {key.name}.",
+                    "Rename it.",
+                )

@@ -95,14 +95,20 @@ def _mapped(
     # The mapping may convert the value too; the conversion happens on the way to the variable.
     templates = [entry for entry in mapping if not entry.source and "" not in by_name]
     if templates:
-        message = f"{len(templates)} entries of the mapping name no source; they are not used."
-        tree.findings.flaw(templates[0].place, message, "Fill them in, or remove them.")
+        tree.findings.flaw(
+            templates[0].place,
+            f"{len(templates)} entries of the mapping name no source; they are not used.",
+            "Fill them in, or remove them.",
+        )
     for entry in mapping:
         if entry in templates:
             continue
         if entry.source not in by_name:
-            message = f"The parameter set '{values.name}' has no '{entry.source}'."
-            tree.findings.error(entry.place, message, it_has(entry.source, by_name))
+            tree.findings.error(
+                entry.place,
+                f"The parameter set '{values.name}' has no '{entry.source}'.",
+                it_has(entry.source, by_name),
+            )
             continue
         how = (entry.transformation, entry.suppress_unit_conversion)
         renamed = replace(by_name[entry.source], name=entry.target)

@@ -124,8 +124,11 @@ def advance(
     # A linear transformation works on the number in the port's unit.
     if transformation is not None and transformation.kind == "Linear":
         if flow.type not in ("Real", None):
-            message = f"A linear transformation of {flow.type} values."
-            findings.error(place, message, "It is for Real; use a mapping transformation.")
+            findings.error(
+                place,
+                f"A linear transformation of {flow.type} values.",
+                "It is for Real; use a mapping transformation.",
+            )
         return flow.in_unit(port.unit).scaled(transformation.factor, transformation.offset)
     return flow
 
@@ -190,8 +193,9 @@ def _mapped(
         for names, items in ((table, flow.items), (table.values(), target)):
             for name in names:
                 if name not in items:
-                    message = f"The enumeration has no item '{name}'."
-                    findings.error(place, message, it_has(name, items))
+                    findings.error(
+                        place, f"The enumeration has no item '{name}'.", it_has(name, items)
+                    )
         table = {
             flow.items[a]: target[b] for a, b in table.items() if a in flow.items and b in target
         }

@@ -59,10 +59,11 @@ def take_reference(
     owner, entries = next(lookup, (None, None))
     if entries is None:
         visible = {name for names in place.dictionaries for name in names}
-        message = (
-            f"There is no signal dictionary '{element.dictionary}' here or in a system around."
+        tree.findings.error(
+            element.place,
+            f"There is no signal dictionary '{element.dictionary}' here or in a system around.",
+            suggestion(element.dictionary, visible),
         )
-        tree.findings.error(element.place, message, suggestion(element.dictionary, visible))
     for connector in element.connectors:
         key = Key(path, connector.name)
         fields = (connector.kind, connector.type, "reference", connector.unit, connector.items)
@@ -70,8 +71,11 @@ def take_reference(
         if owner is None or entries is None:
             continue
         if connector.name not in entries:
-            message = f"The dictionary '{element.dictionary}' has no '{connector.name}'."
-            tree.findings.error(connector.place, message, it_has(connector.name, entries))
+            tree.findings.error(
+                connector.place,
+                f"The dictionary '{element.dictionary}' has no '{connector.name}'.",
+                it_has(connector.name, entries),
+            )
             continue
         entry = entries[connector.name]
         # The entry becomes a port itself, so that all references to it share one value.

@@ -58,9 +58,10 @@ def take_fmu(
         wanted = element.implementation
         forms = ("CoSimulation", "ModelExchange") if wanted == "any" else (wanted,)
         if not any(form in fmu.interfaces for form in forms):
-            remedy = f"It offers {', '.join(fmu.interfaces)}."
             tree.findings.error(
-                element.place, f"{fmu.path.name} offers no {' and no '.join(forms)}.", remedy
+                element.place,
+                f"{fmu.path.name} offers no {' and no '.join(forms)}.",
+                f"It offers {', '.join(fmu.interfaces)}.",
             )
     # The component's own bindings come first: those of outer systems replace them.
     take_bindings(tree, element.bindings, path, place, near=True, fmu=fmu)

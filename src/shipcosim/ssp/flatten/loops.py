@@ -1,8 +1,9 @@
 """Algebraic loops: connections and direct feedthrough that lead back to their start."""
 
 from collections import defaultdict, deque
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from graphlib import CycleError, TopologicalSorter
 from typing import Any
 
 from shipcosim.errors import Problem
@@ -64,7 +65,7 @@ def find_loops(system: System) -> list[AlgebraicLoop]:
     links = [c for c in system.connections if c.source[0] and c.target[0] and not c.initial]
     links = list({(c.source, c.target): None for c in links})
     rough = [(source[0], target[0]) for source, target in links]
-    circling = {name for part in _strong(_graph(rough), rough) for name in part}
+    circling = {name for part in _strong(rough) for name in part}
     links = [link for link in links if link[0][0] in circling and link[1][0] in circling]
     fmus = {name: system.components[name].fmu for name in circling}
     # Each FMU file is read once, however many components use it.
@@ -73,9 +74,7 @@ def find_loops(system: System) -> list[AlgebraicLoop]:
     # Graph of variables: connections between components, feedthrough inside them. Each strongly
     # connected part is a loop.
     edges = links + [edge for name in circling for edge in _inside(name, links, stated[name])]
-    return [
-        _loop(part, edges, links, list(system.components)) for part in _strong(_graph(edges), edges)
-    ]
+    return [_loop(part, edges, links, list(system.components)) for part in _strong(edges)]
 
 
 def loop_problems(system: System) -> Iterator[Problem]:
@@ -91,8 +90,9 @@ def loop_problems(system: System) -> Iterator[Problem]:
         message += " and the start is iterated, which may not settle."
         if loop.silent:
             message += f" These FMUs do not declare it, so it is assumed: {', '.join(loop.silent)}."
-        where = f"{system.file}: {', '.join(loop.components)}"
-        yield Problem(where, message, _remedy(loop), "remark")
+        yield Problem(
+            f"{system.file}: {', '.join(loop.components)}", message, _remedy(loop), "remark"
+        )
 
 
 def _remedy(loop: AlgebraicLoop) -> str:
@@ -117,10 +117,7 @@ def _inside(name: str, links: list[Edge], stated: Mapping[str, frozenset[str]]) 
             yield knot, output
 
 
-def _loop(
-    nodes: list[Node], edges: list[Edge], links: list[Edge], names: list[str]
-) -> AlgebraicLoop:
-    part = set(nodes)
+def _loop(part: set[Node], edges: list[Edge], links: list[Edge], names: list[str]) -> AlgebraicLoop:
     inside, edges = (
         [edge for edge in several if part.issuperset(edge)] for several in (links, edges)
     )
@@ -136,7 +133,11 @@ def _loop(
 def _breaks(name: str, edges: list[Edge]) -> bool:
     """True if no cycle remains without the inside of a component."""
     rest = [edge for edge in edges if not edge[0][0] == edge[1][0] == name]
-    return not _strong(_graph(rest), rest)
+    try:
+        TopologicalSorter(_graph(rest)).prepare()
+    except CycleError:
+        return False
+    return True
 
 
 def _shortest(links: list[Edge], edges: list[Edge]) -> list[Edge]:
@@ -173,37 +174,30 @@ def _graph(edges: Iterable[tuple]) -> dict:
     return dict(graph)
 
 
-def _strong(graph: Mapping, edges: Iterable[tuple]) -> list[list]:
-    """Strongly connected parts with an inner edge: Kosaraju's algorithm, iterative."""
-    done = set()
-    order = []
-    # First pass: order of completion of a depth-first search.
-    for start in graph:
-        stack = [(start, iter(graph[start]))] if start not in done else []
-        done.add(start)
-        while stack:
-            node, following = stack[-1]
-            fresh = next((successor for successor in following if successor not in done), None)
-            if fresh is None:
-                order.append(node)
-                stack.pop()
-            else:
-                done.add(fresh)
-                stack.append((fresh, iter(graph[fresh])))
-    # Second pass on the reversed graph, last completed first: each tree is one part.
+def _strong(edges: Sequence[tuple]) -> list[set]:
+    """Strongly connected parts with an inner edge, in the order of the edges."""
+    graph = _graph(edges)
     back = _graph([(target, source) for source, target in edges])
     parts = []
-    placed = set()
-    for start in reversed(order):
-        part = []
-        queue = deque([start] if start not in placed else [])
-        placed.add(start)
-        while queue:
-            part.append(node := queue.popleft())
-            fresh = [predecessor for predecessor in back[node] if predecessor not in placed]
-            placed.update(fresh)
-            queue.extend(dict.fromkeys(fresh))
+    left = set(graph)
+    for start in graph:
+        if start not in left:
+            continue
+        # Nodes that lead to the start; those of them that it leads to are its part.
+        part = _reached(graph, start, _reached(back, start, left))
+        left -= part
         # A single node counts only if it has an edge to itself.
-        if len(part) > 1 or (part and part[0] in graph[part[0]]):
+        if len(part) > 1 or start in graph[start]:
             parts.append(part)
     return parts
+
+
+def _reached(graph: Mapping, start: Node, within: set) -> set:
+    """The start, and all nodes to which the edges of a graph lead from it within some nodes."""
+    found = {start}
+    due = [start]
+    while due:
+        fresh = within.intersection(graph[due.pop()]) - found
+        found |= fresh
+        due += fresh
+    return found

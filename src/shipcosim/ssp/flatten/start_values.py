@@ -118,8 +118,9 @@ class Settings:
             if place not in used:
                 files[place.partition(", line")[0]][place] = name
         for unused in files.values():
-            message = f"No mapping names {shortened(unused.values())}; not used."
-            self.findings.remark(next(iter(unused)), message)
+            self.findings.remark(
+                next(iter(unused)), f"No mapping names {shortened(unused.values())}; not used."
+            )
 
     def _deliver(
         self, value: Value, flow: Flow, step: Wire | Setting, key: Key, place: str
@@ -202,10 +203,11 @@ class Settings:
             return  # its FMU is missing, which is an error already
         # FMI lets parameters and inputs be set, not calculated variables.
         if not variable.settable:
-            message = (
-                f"{key} is of causality {variable.causality}, a value that the FMU calculates."
+            self.findings.error(
+                place,
+                f"{key} is of causality {variable.causality}, a value that the FMU calculates.",
+                "Set parameters and inputs.",
             )
-            self.findings.error(place, message, "Set parameters and inputs.")
             return
         # Convert to the FMU's own unit, then check its bounds.
         convert = self._in_unit(flow, port.variable_unit or port.unit, key, place)
@@ -214,8 +216,11 @@ class Settings:
             earlier = self.start[key.path].pop(key.name, None)
             latest = self.start[key.path][key.name] = convert(value)
             if earlier not in (None, latest) and self.origins[key] == self.origin:
-                message = f"{key} has got {earlier} from here already; {latest} is used."
-                self.findings.remark(place, message, "Keep one of them.")
+                self.findings.remark(
+                    place,
+                    f"{key} has got {earlier} from here already; {latest} is used.",
+                    "Keep one of them.",
+                )
             self.origins[key] = self.origin
             self.tolerances[key.path].pop(key.name, None)
             # The tolerance is a difference: the offset of the unit must not enter.

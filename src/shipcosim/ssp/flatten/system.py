@@ -244,8 +244,10 @@ def alias_remarks(
         for (_, reference, _), values in names.items():
             if len(set(values.values())) > 1:
                 *others, used = values
-                message = f"{', '.join(others)} and {used} are one variable of its FMU (value reference {reference})"
-                message += f" and get different values; that of {used} is used."
+                message = (
+                    f"{', '.join(others)} and {used} are one variable of its FMU (value reference {reference})"
+                    f" and get different values; that of {used} is used."
+                )
                 where = f"{component.name}.{used}"
                 remarks.append(Problem(where, message, "Give one of them.", "remark"))
     return remarks

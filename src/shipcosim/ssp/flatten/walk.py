@@ -111,9 +111,10 @@ def _take_component(
     elif element.type == FMU:
         take_fmu(tree, element, path, place)
     else:
-        remedy = f"Known are {FMU}, {SSD}, {SSP}."
         tree.findings.error(
-            element.place, f"Components of type '{element.type}' are not known.", remedy
+            element.place,
+            f"Components of type '{element.type}' are not known.",
+            f"Known are {FMU}, {SSD}, {SSP}.",
         )
         tree.components[path] = element, None
 

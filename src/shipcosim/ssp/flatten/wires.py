@@ -91,8 +91,11 @@ def _directed(
         takes = kinds[target] in FREE or not target.gives(kinds[target])
         feeding = FEEDS.get(kinds[target], KIND_NAMES)
         if gives and takes and kinds[source] not in (*FREE, *feeding):
-            message = f"{source} ({kinds[source]}) cannot feed {target} ({kinds[target]})."
-            findings.error(link.place, message, f"Feed it from one of: {', '.join(feeding)}.")
+            findings.error(
+                link.place,
+                f"{source} ({kinds[source]}) cannot feed {target} ({kinds[target]}).",
+                f"Feed it from one of: {', '.join(feeding)}.",
+            )
             return None
         if gives and takes:
             return source, target
@@ -101,8 +104,11 @@ def _directed(
         if start.gives(kinds[start])
         else "take a value, and neither gives one"
     )
-    message = f"{start} ({kinds[start]}) and {end} ({kinds[end]}): both {which}."
-    findings.error(link.place, message, "Connect an output to an input.")
+    findings.error(
+        link.place,
+        f"{start} ({kinds[start]}) and {end} ({kinds[end]}): both {which}.",
+        "Connect an output to an input.",
+    )
     return None
 
 
@@ -112,17 +118,22 @@ def _exists(end: End, ends: list[End], link: Link, system: SystemElement, tree: 
         return True
     names = [part.name for part in system.elements]
     if end.element is not None and end.element not in names:
-        message = f"There is no element '{end.element}' in {system.name}."
-        tree.findings.error(link.place, message, suggestion(end.element, names))
+        tree.findings.error(
+            link.place,
+            f"There is no element '{end.element}' in {system.name}.",
+            suggestion(end.element, names),
+        )
         return False
     # The FMU may have the variable although the SSD declares no connector: accept it.
     component, fmu = tree.components.get(end.key.path, (None, None))
     if fmu is not None and end.name in fmu.variables:
         port = variable_port(fmu.variables[end.name], fmu, link.place)
         tree.ports[end.key] = port
-        message = f"{end} is not declared as a connector; it is taken from {fmu.path.name}."
-        remedy = f'Add <Connector name="{end.name}" kind="{port.kind}"/>.'
-        tree.findings.remark(link.place, message, remedy)
+        tree.findings.remark(
+            link.place,
+            f"{end} is not declared as a connector; it is taken from {fmu.path.name}.",
+            f'Add <Connector name="{end.name}" kind="{port.kind}"/>.',
+        )
         return True
     if component is None or fmu is not None:
         wanted, there = _wanted(end, ends, fmu, tree)

@@ -50,8 +50,11 @@ def with_values(system: System, values: Mapping[str, Value], where: str = "") ->
             continue
         if (component, name) in feeding:
             source = label(feeding[component, name])
-            remedy = "Set what feeds it, or hold it with an event (override)."
-            findings.error(place, f"It is connected: {source} gives its value.", remedy)
+            findings.error(
+                place,
+                f"It is connected: {source} gives its value.",
+                "Set what feeds it, or hold it with an event (override).",
+            )
         elif component is not None:
             variable = system.components[component].variables[name]
             unit = system.unit_of(component, name)
@@ -115,8 +118,11 @@ def _set(
     if not _fits(value, variable, variable.kind, place, findings):
         return
     if not variable.settable:
-        message = f"It is of causality {variable.causality}, a value that the FMU calculates."
-        findings.error(place, message, "Set parameters and inputs.")
+        findings.error(
+            place,
+            f"It is of causality {variable.causality}, a value that the FMU calculates.",
+            "Set parameters and inputs.",
+        )
     elif check_bounds(value, variable, place, variable.name, findings):
         # In the order of setting: of two names of one variable the last one holds.
         start.pop(variable.name, None)
@@ -138,8 +144,9 @@ def _fits(
         return False
     # JSON and TOML can hold NaN and infinity; models cannot start from them.
     if isinstance(value, (int, float)) and not is_finite(value):
-        message = f"{str(value):.60} is not a finite number."
-        findings.error(place, message, _wanted(kind, owner.unit))
+        findings.error(
+            place, f"{str(value):.60} is not a finite number.", _wanted(kind, owner.unit)
+        )
         return False
     if kind == "Integer" and not -LARGEST <= value < LARGEST:
         findings.error(

@@ -131,9 +131,10 @@ def _is_fmi(root: etree._Element, file: str, findings: Findings) -> bool:
         )
         return False
     if not version.startswith(("1.", "2.", "3.")):
-        message = f"FMI version '{version}'."
         findings.error(
-            file, message, "Versions 1.0, 2.0 and 3.0 are read: export the FMU in one of them."
+            file,
+            f"FMI version '{version}'.",
+            "Versions 1.0, 2.0 and 3.0 are read: export the FMU in one of them.",
         )
         return False
     return True
@@ -190,9 +191,10 @@ def _experiment(document: Document, given: dict[str, str], findings: Findings) -
     if numbers.get("stopTime", inf) < numbers.get("startTime", 0.0):
         unusable.add("stopTime")
     for name in sorted(unusable):
-        message = f"The default experiment has {name}={given[name]!r}, which is not used."
         findings.flaw(
-            f"{document.file}: DefaultExperiment", message, "Correct it, or leave it out."
+            f"{document.file}: DefaultExperiment",
+            f"The default experiment has {name}={given[name]!r}, which is not used.",
+            "Correct it, or leave it out.",
         )
         del numbers[name]
     return numbers

@@ -166,9 +166,10 @@ class ConnectionReader:
             units.append(find_unit(fmu.variables[variable].unit, fmu.units))
         if None not in units and relation(units[0], units[1]) in ("convertible", "incompatible"):
             source, target = told_apart(units[0], units[1])
-            message = f"{names[0]} is in {source}, {names[1]} in {target}: OSP converts no units."
             self.findings.remark(
-                connection.place, message, "Put a LinearTransformation between them."
+                connection.place,
+                f"{names[0]} is in {source}, {names[1]} in {target}: OSP converts no units.",
+                "Put a LinearTransformation between them.",
             )
 
     def _signal(self, variable: etree._Element, signal: etree._Element, place: str) -> None:
@@ -219,8 +220,11 @@ class ConnectionReader:
             self._groups[fmu.path] = read_groups(fmu, self.document.folder, self.findings)
         groups = self._groups[fmu.path]
         if groups is None:
-            message = f"The variable groups of {fmu.path.name} are described nowhere."
-            self.findings.error(place, message, f"Put {file_names(fmu)[0]} beside it.")
+            self.findings.error(
+                place,
+                f"The variable groups of {fmu.path.name} are described nowhere.",
+                f"Put {file_names(fmu)[0]} beside it.",
+            )
         elif name not in groups:
             self.findings.error(
                 place, f"{simulator} has no variable group '{name}'.", it_has(name, groups)

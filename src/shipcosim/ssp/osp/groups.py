@@ -86,8 +86,11 @@ def _file(fmu: FmuDescription, folder: Path, findings: Findings) -> Path | None:
         for place in (fmu.path.parent, folder):
             if "/" not in name and (place / name).is_file():
                 if name != names[0]:
-                    message = f"libcosim looks for {names[0]} instead, by the model's name."
-                    findings.remark(str(place / name), message, "Rename the file.")
+                    findings.remark(
+                        str(place / name),
+                        f"libcosim looks for {names[0]} instead, by the model's name.",
+                        "Rename the file.",
+                    )
                 return place / name
     return None
 
@@ -102,10 +105,9 @@ def _group(
         if local(part) == "Variable":
             name = part.get("ref", "")
             if name not in fmu.variables:
-                message = f"{fmu.path.name} has no variable '{name}'."
                 findings.error(
                     document.place(part, element.get("name", "")),
-                    message,
+                    f"{fmu.path.name} has no variable '{name}'.",
                     it_has(name, fmu.variables),
                 )
             variables.append(name)

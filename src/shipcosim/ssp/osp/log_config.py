@@ -50,8 +50,10 @@ def read_log_config(path: AnyPath) -> LogConfig:
         signals += [f"{name}.{variable}" for variable in variables or ["*"]]
         factor = simulator.get("decimationFactor", "1")
         if not factor.isascii() or not factor.isdecimal() or int(factor) < 1:
-            where = f"{path}, line {simulator.sourceline}: {name}"
-            message = f"decimationFactor = '{factor}' is no number of steps."
-            raise error_at(where, message, "Right would be a whole number from 1 on.")
+            raise error_at(
+                f"{path}, line {simulator.sourceline}: {name}",
+                f"decimationFactor = '{factor}' is no number of steps.",
+                "Right would be a whole number from 1 on.",
+            )
         steps.append(int(factor))
     return LogConfig(tuple(signals), min(steps, default=1))

@@ -48,8 +48,9 @@ def mend_osp(document: Document, findings: Findings) -> None:
     if version != VERSION:
         message = "It has no version" if not version else f"Its version is '{version}'"
         root.set("version", VERSION)
-        remedy = f'Write version="{VERSION}".'
-        findings.flaw(document.place(root), f"{message}; {VERSION} is taken.", remedy)
+        findings.flaw(
+            document.place(root), f"{message}; {VERSION} is taken.", f'Write version="{VERSION}".'
+        )
     names = names_in(SCHEMA).elements
     for element in list(root.iter(etree.Element)):
         drop_unknown(document, element, names, findings)
@@ -73,5 +74,8 @@ def _set_namespace(document: Document, findings: Findings) -> None:
     for element in root.iter(f"{{{space}}}*"):
         element.tag = f"{{{NAMESPACE}}}{local(element)}"
     its = f"the namespace '{space}'" if space else "no namespace"
-    message = f"It is in {its}; it is taken for one of {NAMESPACE}."
-    findings.flaw(document.place(root), message, f'Add xmlns="{NAMESPACE}".')
+    findings.flaw(
+        document.place(root),
+        f"It is in {its}; it is taken for one of {NAMESPACE}.",
+        f'Add xmlns="{NAMESPACE}".',
+    )

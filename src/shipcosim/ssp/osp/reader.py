@@ -88,8 +88,11 @@ def _is_osp(document: Document, findings: Findings) -> bool:
     if document.root.tag == f"{{{NAMESPACE}}}OspSystemStructure":
         return True
     message = f"Its outermost element is <{local(document.root)}> of '{document.root.tag.partition('}')[0].lstrip('{')}'."
-    remedy = f'Right would be <OspSystemStructure xmlns="{NAMESPACE}">.'
-    findings.error(document.place(document.root), message, remedy)
+    findings.error(
+        document.place(document.root),
+        message,
+        f'Right would be <OspSystemStructure xmlns="{NAMESPACE}">.',
+    )
     return False
 
 

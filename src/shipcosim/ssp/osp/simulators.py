@@ -57,8 +57,9 @@ class Simulators:
     def fmu_of(self, simulator: str, place: str) -> FmuDescription | None:
         """FMU of a simulator, or None, with an error unless it was reported before."""
         if (simulator,) not in self.tree.components:
-            message = f"There is no simulator '{simulator}'."
-            self.findings.error(place, message, suggestion(simulator, self.names))
+            self.findings.error(
+                place, f"There is no simulator '{simulator}'.", suggestion(simulator, self.names)
+            )
             return None
         return self.tree.components[simulator,][1]
 

@@ -29,8 +29,11 @@ def read_experiment(document: Document, findings: Findings) -> Experiment:
     read = {name: _seconds(document, part, part.text, findings) for name, part in times.items()}
     # Without a base step libcosim takes its default: so do we.
     if "BaseStepSize" not in times:
-        message = f"It has no BaseStepSize: {DEFAULT_STEP} s is taken, as libcosim does."
-        findings.remark(document.place(root), message, "Add one.")
+        findings.remark(
+            document.place(root),
+            f"It has no BaseStepSize: {DEFAULT_STEP} s is taken, as libcosim does.",
+            "Add one.",
+        )
     elif read["BaseStepSize"] is not None and read["BaseStepSize"] <= 0.0:
         place = document.place(times["BaseStepSize"])
         findings.error(place, "The base step size must be positive.", "Give it in seconds.")
@@ -60,9 +63,10 @@ def own_step(document: Document, element: etree._Element, findings: Findings) ->
         return None
     step = _seconds(document, element, element.get("stepSize"), findings)
     if step is not None and step < 0.0:
-        message = f"stepSize is {step:g}."
         findings.error(
-            document.place(element, element.get("name")), message, "It must be positive."
+            document.place(element, element.get("name")),
+            f"stepSize is {step:g}.",
+            "It must be positive.",
         )
     return step or None
 
@@ -71,13 +75,16 @@ def _remark_algorithm(document: Document, findings: Findings) -> None:
     # Only the fixed step algorithm is known to libcosim.
     parts = {local(part): part for part in document.root}
     if "Algorithm" not in parts:
-        message = "It names no algorithm, and libcosim refuses such a file."
         findings.remark(
-            document.place(document.root), message, "Add <Algorithm>fixedStep</Algorithm>."
+            document.place(document.root),
+            "It names no algorithm, and libcosim refuses such a file.",
+            "Add <Algorithm>fixedStep</Algorithm>.",
         )
     elif (name := (parts["Algorithm"].text or "").strip()) != "fixedStep":
-        message = f"The algorithm '{name}' is not known: it runs with fixed steps."
-        findings.remark(document.place(parts["Algorithm"]), message)
+        findings.remark(
+            document.place(parts["Algorithm"]),
+            f"The algorithm '{name}' is not known: it runs with fixed steps.",
+        )
     if "EccoConfiguration" in parts:
         place = document.place(parts["EccoConfiguration"])
         findings.remark(place, "The configuration of the algorithm ecco is not used.")

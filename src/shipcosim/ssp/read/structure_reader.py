@@ -199,8 +199,11 @@ class _Reader:
             if is_slip(name, self.enumerations):
                 self.findings.error(place, what, suggestion(name, self.enumerations))
             else:
-                message = f"{what} Its items are those of the variable, where there is one."
-                self.findings.flaw(place, message, "Add it to Enumerations.")
+                self.findings.flaw(
+                    place,
+                    f"{what} Its items are those of the variable, where there is one.",
+                    "Add it to Enumerations.",
+                )
         return self.enumerations.get(name, {})
 
     def distinct(self, named: Iterable, what: str, owner: str) -> None:
@@ -276,8 +279,11 @@ class _Reader:
         start = start or 0.0
         if stop is not None and stop <= start:
             place = self.place(element, "DefaultExperiment")
-            message = f"startTime is {start:g}, stopTime {stop:g}."
-            self.findings.error(place, message, "The stop comes after the start.")
+            self.findings.error(
+                place,
+                f"startTime is {start:g}, stopTime {stop:g}.",
+                "The stop comes after the start.",
+            )
         return Experiment(
             start, stop, annotated_number(self.document, element, STEP_SIZES, self.findings)
         )

@@ -43,9 +43,10 @@ def unpack(path: AnyPath, folder: AnyPath, shown: str | None = None) -> None:
             for entry in archive.infolist():
                 archive.extract(entry, folder)
         except OSError as error:
-            message = f"Cannot be unpacked into {folder}: {error.strerror}."
             raise error_at(
-                shown, message, "Make room there, or name another folder in TMPDIR."
+                shown,
+                f"Cannot be unpacked into {folder}: {error.strerror}.",
+                "Make room there, or name another folder in TMPDIR.",
             ) from None
         except Exception as error:  # of a damaged archive the decompressors raise anything
             raise _damaged(shown, error) from None
@@ -109,8 +110,11 @@ def _opened(path: AnyPath, shown: str) -> zipfile.ZipFile:
         raise error_at(shown, f"Cannot be read: {error.strerror}.") from None
     except Exception as error:
         if is_pointer:
-            remedy = "Get the file: `git lfs pull` in its repository."
-            raise error_at(shown, "This is a pointer of Git LFS, not the file.", remedy) from None
+            raise error_at(
+                shown,
+                "This is a pointer of Git LFS, not the file.",
+                "Get the file: `git lfs pull` in its repository.",
+            ) from None
         raise _damaged(shown, error) from None
     # The first entry must start at 0: otherwise this is the tail of another archive.
     if min((entry.header_offset for entry in archive.infolist()), default=0) > 0:

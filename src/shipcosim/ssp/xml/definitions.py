@@ -74,8 +74,11 @@ def noted_units(
                 usual = None if name in AMBIGUOUS else spelled_unit(name)
                 if usual is not None and contradicts(unit, usual):
                     message = f"'{name}' is defined as {unit.definition}; commonly it is {usual.definition}."
-                    remedy = "Correct the definition, or give the unit another name."
-                    findings.remark(document.place(element), message, remedy)
+                    findings.remark(
+                        document.place(element),
+                        message,
+                        "Correct the definition, or give the unit another name.",
+                    )
         for base in parts_in(element, "BaseUnit"):
             if _says_nothing(element, base):
                 message = f"The base unit of '{name}' is empty; the unit has its usual meaning."

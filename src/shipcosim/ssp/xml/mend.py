@@ -232,8 +232,11 @@ def _move_source(document: Document, element: etree._Element, noted: Findings) -
     if local(element) == "ParameterValues" and element.get("source") and parent is not None:
         if parent.get("source") in (None, "", element.get("source")):
             parent.set("source", element.attrib.pop("source"))
-            message = "The source stands at <ParameterValues>; it is taken for that of the binding."
-            noted.flaw(document.place(element), message, "Write it at <ParameterBinding>.")
+            noted.flaw(
+                document.place(element),
+                "The source stands at <ParameterValues>; it is taken for that of the binding.",
+                "Write it at <ParameterBinding>.",
+            )
             parent.remove(element)
 
 
@@ -309,8 +312,11 @@ def _join_lists(document: Document, element: etree._Element, noted: Findings) ->
             continue
         first[name].extend(list(part))
         element.remove(part)
-        message = f"A second <{name}>; its parts are taken for parts of the first."
-        noted.flaw(document.place(part), message, "Write them into one list.")
+        noted.flaw(
+            document.place(part),
+            f"A second <{name}>; its parts are taken for parts of the first.",
+            "Write them into one list.",
+        )
 
 
 def _drop_empty_lists(document: Document, element: etree._Element, noted: Findings) -> None:
@@ -330,8 +336,11 @@ def _drop_repeated(document: Document, element: etree._Element, noted: Findings)
     for part in parts_in(element, *ONCE):
         content = _content(part)
         if content in seen:
-            message = f"<{local(part)}> says the same as line {seen[content]}; it counts once."
-            noted.flaw(document.place(part, part.get("name") or ""), message, "Keep one of them.")
+            noted.flaw(
+                document.place(part, part.get("name") or ""),
+                f"<{local(part)}> says the same as line {seen[content]}; it counts once.",
+                "Keep one of them.",
+            )
             element.remove(part)
         seen.setdefault(content, part.sourceline)
 

@@ -157,10 +157,10 @@ def test_view_that_cannot_be_drawn_says_why_and_the_others_are(tables):
     ]
     good = {"kind": "scatter", "x": "current", "y": "excursion"}
     page = page_of(with_views(tables, *bad, good))
-    assert len(page.plots) == 1 and len(page.undrawn) == 4
-    assert "no column 'directon'" in page.undrawn[0] and "no table 'nothing'" in page.undrawn[1]
+    assert len(page.plots) == 1 and len(page.remarks) == 4
+    assert "no column 'directon'" in page.remarks[0] and "no table 'nothing'" in page.remarks[1]
     bare = page_of(with_views(tables, {"kind": "tracks"}, tracks=None))
-    assert "No tracks were kept" in bare.undrawn[0]
+    assert "No tracks were kept" in bare.remarks[0]
 
 
 def test_same_study_makes_the_same_page(study_of, file, tmp_path):

@@ -7,10 +7,9 @@ from scipy import stats
 from shipcosim.report.study.statistics import (
     distribution,
     explained,
-    mean_interval,
     pareto_front,
 )
-from shipcosim.sweep.summary import wilson
+from shipcosim.sweep.summary import mean, wilson
 
 
 @pytest.mark.parametrize(("count", "of"), [(0, 10), (3, 10), (10, 10), (57, 64)])
@@ -21,7 +20,7 @@ def test_interval_of_a_share_is_that_of_scipy(count, of):
 
 def test_interval_of_a_mean_covers_it_in_95_of_100_samples():
     samples = np.random.default_rng(1).normal(3.0, 2.0, (4000, 60))
-    inside = [low <= 3.0 <= high for _, low, high in map(mean_interval, samples)]
+    inside = [low <= 3.0 <= high for _, low, high in map(mean, samples)]
     assert np.mean(inside) == pytest.approx(0.95, abs=0.015)
 
 
