@@ -267,8 +267,8 @@ simulator the largest was 5.1; in white noise it is fifteen standard deviations 
 JUMP_AT_ONCE = 0.6
 """Share of a jump that is made from one row to the next. Assumed."""
 ON_HER_WAY = 0.9
-"""Cosine of the angle between a jump and the velocity, above which rows were lost there. At 15 places of ESSO Osaka's
-and R/V Gunnerus' logs of 2022 it was above 0.95."""
+"""Cosine of the angle between a jump and the velocity, above which rows were lost there. At 15 places of the logs of
+two craft it was above 0.95."""
 MOST_JUMPS = 6
 """Jumps of one log, above which its positions are rough throughout. Assumed."""
 

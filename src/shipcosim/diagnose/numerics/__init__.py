@@ -10,7 +10,7 @@ from shipcosim.diagnose.numerics.finite import finite, usual_rise
 from shipcosim.diagnose.numerics.least_squares import least_squares
 from shipcosim.diagnose.numerics.quantiles import quantile
 from shipcosim.diagnose.numerics.root_mean_square import root_mean_square
-from shipcosim.diagnose.numerics.sequences import between, places, running_sums, runs
+from shipcosim.diagnose.numerics.sequences import between, places, running_sums, runs, trapezium
 from shipcosim.diagnose.numerics.splines import spline_integral
 from shipcosim.diagnose.numerics.tridiagonal import solve_tridiagonal
 from shipcosim.diagnose.numerics.white_noise import noise_by_differences, normal_size
@@ -33,5 +33,6 @@ __all__ = [
     "solve_tridiagonal",
     "spline_integral",
     "survival",
+    "trapezium",
     "usual_rise",
 ]

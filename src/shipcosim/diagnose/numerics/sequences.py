@@ -14,6 +14,20 @@ def running_sums(values: np.ndarray) -> np.ndarray:
     return np.concatenate([[0], np.cumsum(values)])
 
 
+def trapezium(rates: np.ndarray, steps: np.ndarray | float) -> np.ndarray:
+    """Integral of rates (n, k) from the first row until each one, by the trapezium rule: (n, k) array.
+
+    `steps` from row to row: one, or an (n - 1, 1) array.
+
+    Examples
+    --------
+    >>> trapezium(np.array([[0.0], [2.0], [2.0]]), 0.5).ravel().tolist()
+    [0.0, 0.5, 1.5]
+    """
+    added = 0.5 * steps * (rates[1:] + rates[:-1])
+    return np.concatenate([np.zeros_like(rates[:1]), np.cumsum(added, axis=0)])
+
+
 def runs(flags: np.ndarray) -> np.ndarray:
     """First and one past the last index of each run of true values: (k, 2).
 

@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
 
-from shipcosim.diagnose.numerics import gaussian_filter, runs
+from shipcosim.diagnose.numerics import gaussian_filter, runs, trapezium
 from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.models.core.constants import GRAVITY
 from shipcosim.models.core.kinematics import eta_dot, to_body
@@ -103,7 +102,7 @@ def way_of(motion: Motion, step: float) -> np.ndarray:
     which measured places differ from this way.
     """
     rates = np.stack(eta_dot(motion.psi, motion.u, motion.v, motion.r), axis=-1)
-    return cumulative_trapezoid(rates, dx=step, axis=0, initial=0.0)
+    return trapezium(rates, step)
 
 
 def is_measured(record: Record, channel: int) -> bool:

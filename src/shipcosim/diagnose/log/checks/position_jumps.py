@@ -8,8 +8,6 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
-from scipy.ndimage import maximum_filter1d
 
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.log.checks.kinematics import (
@@ -29,7 +27,7 @@ from shipcosim.diagnose.log.thresholds import (
     MOST_SURE,
     ON_HER_WAY,
 )
-from shipcosim.diagnose.numerics import normal_size, quantile, running_sums
+from shipcosim.diagnose.numerics import normal_size, quantile, running_sums, trapezium
 
 
 def position_jumps(log: dict) -> list[Finding]:
@@ -53,7 +51,7 @@ def position_jumps(log: dict) -> list[Finding]:
     # It jumps where this is many times what is usual, and from one row to the next.
     at_once = np.hypot(*np.diff(level, axis=0, prepend=level[:1]).T)
     leaps = (size > JUMP_OVER_USUAL * quantile(size, 0.95)) & (at_once > JUMP_AT_ONCE * size)
-    rows = np.flatnonzero(leaps & (size == maximum_filter1d(size, 2 * max(JUMP_ROWS) + 1)))
+    rows = [row for row in np.flatnonzero(leaps) if size[row] == size[_near(row)].max()]
     # Where rows were lost that the clock does not show, she leaps along her way, or her heading leaps too. What leaps
     # again and again is no other reference.
     heading = logged_heading(log)
@@ -81,7 +79,7 @@ def _level(log):
     motion = position_motion(log)
     if motion is not None:
         # By the trapezium: a spline overshoots where a velocity has a spike.
-        way = cumulative_trapezoid(motion.velocity, motion.time, axis=0, initial=0.0)
+        way = trapezium(motion.velocity, np.diff(motion.time)[:, None])
         return motion.time, motion.seen - way, motion.velocity
     rows = complete_rows(log, POSITION)
     seen = (
