@@ -73,13 +73,14 @@ def _long(log, form):
     ]
     if form.name is not None:
         names = [form.name]
-    return [name for name in names if name != value], form.value or value
+    # The device comes before its quantity, as in other names.
+    return [name for name in reversed(names) if name != value], form.value or value
 
 
 def _plain(column):
     """Name of a column as the lists have it: databases write ``_field`` and ``parameter_id``."""
     name = column.strip().lower().strip("_")
-    return name.removesuffix("_id").removesuffix("_name")
+    return name.removesuffix("_id").removesuffix("name").rstrip("_ ") or name
 
 
 def _is_of_names(values):

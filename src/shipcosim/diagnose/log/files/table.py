@@ -14,7 +14,7 @@ from shipcosim.diagnose.log.files.cells import numbers_of, with_unit
 from shipcosim.diagnose.log.files.excel import is_workbook, text_of_sheet
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.json_records import is_json, text_of_records
-from shipcosim.diagnose.log.files.layout import Layout, layout_of
+from shipcosim.diagnose.log.files.layout import Layout, layout_of, without_labview_header
 from shipcosim.diagnose.log.files.matlab import columns_of_matlab, is_matlab
 from shipcosim.diagnose.log.files.nmea import columns_of_sentences, holds_sentences
 from shipcosim.diagnose.log.files.refused_formats import refuse_foreign
@@ -104,7 +104,7 @@ def read_file(path: Path, form: FileLayout) -> LogColumns:
 
 def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
     # Layout first, then the rows of the right length, then the decimal sign, then each column.
-    lines = text.splitlines()
+    lines = without_labview_header(text.splitlines())
     layout = layout_of(source, lines, form, is_unit)
     rows, remarks = _rows(source, lines, layout)
     width = len(layout.header)

@@ -20,7 +20,7 @@ from shipcosim.diagnose.log.names.guesses import (
 )
 from shipcosim.diagnose.log.names.units import unit_for
 from shipcosim.diagnose.log.names.unstated_units import are_axes_open, exchange_axes, settled
-from shipcosim.diagnose.log.names.vocabulary import words_of
+from shipcosim.diagnose.log.names.vocabulary import all_words, meaning_of, words_of
 from shipcosim.diagnose.log.values import LARGEST
 from shipcosim.diagnose.numerics import finite
 
@@ -84,7 +84,8 @@ def propose(
     """
     form = form or FileLayout()
     # Guesses for each column alone, then the best for each role.
-    every = [guess for column in log.values for guess in guesses_of(column, log, thrusters)]
+    site = _site(log)
+    every = [guess for column in log.values for guess in guesses_of(column, log, thrusters, site)]
     every = _known_together(every)
     chosen, left = _chosen([g for g in every if g.role and g.role != "time"])
     left += [g for g in every if not g.role]
@@ -95,6 +96,7 @@ def propose(
     left = _with_quaternion(chosen, log, left)
     left = _with_hemispheres(chosen, log, left)
     _with_directions(chosen, log)
+    _with_its_pair(chosen, left)
     # Conventions and values settle what names leave open.
     _by_convention_of_ros(chosen, log)
     settled(chosen, log, form)
@@ -105,6 +107,12 @@ def propose(
     order = list(log.values)
     used = sorted(chosen.values(), key=lambda g: (g.role != "time", order.index(g.column)))
     return Proposal(tuple(used), tuple(unused[name] for name in order if name in unused), form)
+
+
+def _site(log):
+    """Words that all names of several words share and that no name in names.toml has: historians write the ship's."""
+    names = [set(words_of(column)) for column in log.values if len(words_of(column)) > 1]
+    return frozenset(set.intersection(*names) - all_words() if len(names) > 2 else ())
 
 
 def _known_together(every):
@@ -275,6 +283,28 @@ def _with_directions(chosen, log):
             if are_codes(cells):
                 why = f"it has no sign, and '{name}' may hold it: which code is ahead is not stated"
                 chosen[role] = guess.read_as({"hemisphere": name}, rank=GUESS, why=why)
+
+
+def _with_its_pair(chosen, left):
+    """A wind speed is of the wind that its direction is of; speed and course beside a heading are over ground."""
+    speed = chosen.get("wind_speed")
+    wind_from = chosen.get("wind_from")
+    if speed and speed.rank == EXACT and (wind_from is None or wind_from.rank == GUESS):
+        is_true = "true_wind_from" in chosen and "true_wind_speed" not in chosen
+        role = "true_wind_speed" if is_true else "wind_speed"
+        del chosen["wind_speed"]
+        chosen[role] = replace(speed, role=role, rank=GUESS, why="it may be over ground, as in CF")
+    # AIS, GPX and trackers have both without more words.
+    bare = {words_of(g.column): g for g in left if "heading" in chosen}
+    if (course := bare.get(("course",))) and "course_over_ground" not in chosen:
+        why = "it may be another course"
+        chosen["course_over_ground"] = replace(
+            course, role="course_over_ground", rank=GUESS, why=why
+        )
+    surge = chosen.get("surge")
+    is_bare = surge and surge.why == meaning_of(("speed",)).doubt and "sway" not in chosen
+    if is_bare and "course_over_ground" in chosen and "speed_over_ground" not in chosen:
+        chosen["speed_over_ground"] = replace(chosen.pop("surge"), role="speed_over_ground")
 
 
 def _thruster_words(name):

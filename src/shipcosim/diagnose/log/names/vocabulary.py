@@ -61,6 +61,20 @@ def words_of(name: str) -> tuple[str, ...]:
 
 
 @cache
+def all_words() -> set[str]:
+    """Every word of names.toml."""
+    return {word for text in _texts(vocabulary()) for word in words_of(text)}
+
+
+def _texts(entry):
+    """Texts of a part of a file."""
+    if isinstance(entry, str):
+        return [entry]
+    parts = [*entry, *entry.values()] if isinstance(entry, dict) else entry
+    return [text for part in parts for text in _texts(part)] if not isinstance(entry, float) else []
+
+
+@cache
 def word_parts() -> re.Pattern[str]:
     """Parts of words in scripts without blanks, the longest first."""
     parts = sorted(vocabulary()["words"]["parts"], key=len, reverse=True)
@@ -74,6 +88,8 @@ def meaning_of(words: tuple[str, ...]) -> Meaning:
     --------
     >>> meaning_of(words_of("GPS Latitude")).role
     'latitude'
+    >>> meaning_of(words_of("Speed, apparent wind")) == meaning_of(words_of("apparent wind speed"))
+    True
     >>> meaning_of(words_of("yaw")).doubt
     'yaw may be counted the other way or from east'
     >>> meaning_of(words_of("surge_dot")).reason
@@ -81,10 +97,9 @@ def meaning_of(words: tuple[str, ...]) -> Meaning:
     """
     terms = vocabulary()["words"]
     fillers = set(terms["filler"])
-    whole = " ".join(words)
     # The whole name first, with or without filler words.
-    for phrase in (whole, " ".join(w for w in words if w not in fillers)):
-        if meaning := _phrases().get(phrase):
+    for phrase in (words, [w for w in words if w not in fillers]):
+        if meaning := _phrases().get(frozenset(phrase)):
             return meaning
     for word in words:
         if word in terms["other"]:
@@ -96,7 +111,7 @@ def meaning_of(words: tuple[str, ...]) -> Meaning:
             return Meaning(None, reason="a set point, not a measurement")
         return Meaning(None)
     plain = tuple(w for w in words if w not in fillers and w not in terms["feedback"])
-    if meaning := _phrases().get(" ".join(plain)):
+    if meaning := _phrases().get(frozenset(plain)):
         return meaning
     return _within(plain)
 
@@ -106,8 +121,9 @@ def _within(words):
     # Longest phrase first; short and ambiguous ones are left out.
     for length in range(len(words) - 1, 0, -1):
         for start in range(len(words) - length + 1):
-            phrase = " ".join(words[start : start + length])
-            meaning = _phrases().get(phrase)
+            part = words[start : start + length]
+            phrase = " ".join(part)
+            meaning = _phrases().get(frozenset(part))
             if meaning and len(phrase) >= _SHORTEST and (meaning.role or meaning.reason):
                 if meaning.role is None:
                     return Meaning(None, reason=meaning.reason)
@@ -118,16 +134,16 @@ def _within(words):
 
 
 @cache
-def _phrases() -> dict[str, Meaning]:
-    """Every name of names.toml, in the words that `words_of` gives."""
+def _phrases() -> dict[frozenset[str], Meaning]:
+    """Every name of names.toml, by the words that `words_of` gives, in any order."""
     meanings = {}
     for role, entry in vocabulary().items():
         if isinstance(entry, dict) and "names" in entry:
-            meanings |= {" ".join(words_of(name)): Meaning(role) for name in entry["names"]}
+            meanings |= {frozenset(words_of(name)): Meaning(role) for name in entry["names"]}
     for role, entry in vocabulary().items():
         if isinstance(entry, dict) and "names" in entry:
             for name, doubt in entry.get("maybe", {}).items():
-                meanings.setdefault(" ".join(words_of(name)), Meaning(role, doubt))
+                meanings.setdefault(frozenset(words_of(name)), Meaning(role, doubt))
     for name, reason in vocabulary()["none"].items():
-        meanings.setdefault(" ".join(words_of(name)), Meaning(None, reason=reason))
+        meanings.setdefault(frozenset(words_of(name)), Meaning(None, reason=reason))
     return meanings
