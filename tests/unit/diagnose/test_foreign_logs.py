@@ -146,3 +146,22 @@ def test_the_only_tunnel_thruster_is_at_the_bow_and_this_is_said(tmp_path):
     )
     assert log["tunnel_rpm"].values == pytest.approx(T)
     assert "assumed to be the one at the bow" in " ".join(log.attrs["column_remarks"])
+
+
+def test_standard_names_of_netcdf_go_before_names_that_say_nothing(tmp_path):
+    import xarray
+
+    names = {
+        "HD": "platform_orientation",
+        "VSHIP": "platform_speed_wrt_ground",
+        "DIR": "wind_from_direction",
+    }
+    columns = {name: ("time", HEADING, {"standard_name": title}) for name, title in names.items()}
+    xarray.Dataset(columns, {"time": T}).to_netcdf(tmp_path / "log.nc", engine="h5netcdf")
+    proposal = propose(columns_of(tmp_path / "log.nc"), THRUSTERS)
+    roles = {guess.column: guess.role for guess in (*proposal.used, *proposal.unused)}
+    assert roles["HD"] == "heading"
+    assert roles["DIR"] == "true_wind_from"
+    assert next(g for g in proposal.unused if g.column == "VSHIP").why.startswith(
+        "it is speed over ground"
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -49,6 +50,8 @@ class LogColumns:
         Names that several columns have.
     joined : bool
         Whether rows of several tables stand below each other, each with the columns of its own.
+    titles : mapping of str to str
+        What a file of NetCDF says of a column besides its name.
     """
 
     source: str
@@ -57,6 +60,7 @@ class LogColumns:
     remarks: tuple[str, ...] = ()
     doubled: tuple[str, ...] = field(default=())
     joined: bool = False
+    titles: Mapping[str, str] = field(default_factory=dict)
 
 
 def read_file(path: Path, form: FileLayout) -> LogColumns:
@@ -81,7 +85,8 @@ def read_file(path: Path, form: FileLayout) -> LogColumns:
     if ending_of(path) in (".nc", ".parquet"):
         columns = read_columns(path)
         values = {name: values for name, (values, _) in columns.items()}
-        return LogColumns(str(path), values, {name: unit for name, (_, unit) in columns.items()})
+        units = {name: unit for name, (_, unit) in columns.items()}
+        return LogColumns(str(path), values, units, titles=_titles(path, values))
     if is_matlab(path):
         return LogColumns(str(path), *columns_of_matlab(path))
     refuse_foreign(path)
@@ -100,6 +105,22 @@ def read_file(path: Path, form: FileLayout) -> LogColumns:
         return LogColumns(str(path), values, units, (*remarks, *more))
     read = _of_text(str(path), text, form)
     return replace(read, remarks=(*remarks, *read.remarks))
+
+
+def _titles(path, names):
+    """Standard names of CF, else long names, of the columns of a NetCDF file; empty for others."""
+    import xarray
+
+    if ending_of(path) != ".nc":
+        return {}
+    with xarray.open_dataset(path, decode_times=False) as table:
+        all_attributes = {
+            name: table.variables[name].attrs for name in names if name in table.variables
+        }
+    titles = {
+        name: a.get("standard_name", a.get("long_name")) for name, a in all_attributes.items()
+    }
+    return {name: title for name, title in titles.items() if isinstance(title, str)}
 
 
 def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:

@@ -119,6 +119,10 @@ def guesses_of(
             if guesses[0].role:
                 of_name = {"unit": suffix}
                 return [replace(g, channel=g.channel.model_copy(update=of_name)) for g in guesses]
+    # What a file of NetCDF says of a column goes before a name that has no sure meaning.
+    title = words_of(log.titles.get(column, ""))
+    if meaning_of(words).role is None or meaning_of(words).doubt:
+        words = title if meaning_of(title).role else words
     # A number in a name counts sensors of a kind; with several of them each is a guess.
     guesses = _by_meaning(column, words, stated, values)
     bare = tuple(word for word in words if not word.isdigit())

@@ -289,11 +289,14 @@ def _with_its_pair(chosen, left):
     """A wind speed is of the wind that its direction is of; speed and course beside a heading are over ground."""
     speed = chosen.get("wind_speed")
     wind_from = chosen.get("wind_from")
-    if speed and speed.rank == EXACT and (wind_from is None or wind_from.rank == GUESS):
-        is_true = "true_wind_from" in chosen and "true_wind_speed" not in chosen
-        role = "true_wind_speed" if is_true else "wind_speed"
+    if speed and speed.rank != SURE and (wind_from is None or wind_from.rank == GUESS):
+        role = "wind_speed"
+        why = speed.why or "it may be over ground, as in CF"
+        if wind_from is None and "true_wind_from" in chosen and "true_wind_speed" not in chosen:
+            role = "true_wind_speed"
+            why = "it may be the apparent wind's"
         del chosen["wind_speed"]
-        chosen[role] = replace(speed, role=role, rank=GUESS, why="it may be over ground, as in CF")
+        chosen[role] = replace(speed, role=role, rank=GUESS, why=why)
     # AIS, GPX and trackers have both without more words.
     bare = {words_of(g.column): g for g in left if "heading" in chosen}
     if (course := bare.get(("course",))) and "course_over_ground" not in chosen:
