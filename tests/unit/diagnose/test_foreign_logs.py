@@ -1,11 +1,14 @@
 """Logs by conventions of other tools open with the right channels, or are asked about; none is wrong in silence."""
 
+import json
+
 import numpy as np
 import pytest
 
 from shipcosim.diagnose.log.names.proposal import propose
 from shipcosim.diagnose.log.names.vocabulary import meaning_of, words_of
 from shipcosim.diagnose.log.reader import columns_of, read_log
+from shipcosim.errors import ShipcosimError
 
 THRUSTERS = {"port": ("rpm", "azimuth"), "starboard": ("rpm", "azimuth"), "tunnel": ("rpm",)}
 ROWS = 40
@@ -165,3 +168,33 @@ def test_standard_names_of_netcdf_go_before_names_that_say_nothing(tmp_path):
     assert next(g for g in proposal.unused if g.column == "VSHIP").why.startswith(
         "it is speed over ground"
     )
+
+
+@pytest.mark.parametrize(
+    ("first", "shift", "is_one"), [(52.0, 0.4, True), (0.0, 0.0, False), (52.0, 20.0, False)]
+)
+def test_tables_of_one_clock_that_was_on_before_are_joined(tmp_path, first, shift, is_one):
+    table(tmp_path, {"time": first + T, "heading": HEADING}).rename(tmp_path / "gyro.csv")
+    table(tmp_path, {"time": first + shift + T, "surge": T, "sway": T}).rename(
+        tmp_path / "speed.csv"
+    )
+    if is_one:
+        assert {"heading", "surge", "sway"} <= set(read_log(tmp_path).data_vars)
+    else:
+        with pytest.raises(ShipcosimError, match="may count from different starts"):
+            read_log(tmp_path)
+
+
+def test_deltas_of_signal_k_are_in_radians(tmp_path):
+    lines = []
+    for t, heading in zip(T, HEADING, strict=True):
+        values = {
+            "navigation.headingTrue": np.radians(heading),
+            "environment.wind.angleApparent": -0.5,
+        }
+        entries = [{"path": path, "value": float(value)} for path, value in values.items()]
+        update = {"timestamp": f"2022-10-27T21:57:{t:02.0f}.000Z", "values": entries}
+        lines.append(json.dumps({"context": "vessels.self", "updates": [update]}))
+    log = read_log(saved(tmp_path, lines, "deltas.log"), None, THRUSTERS)
+    assert log["heading"].values == pytest.approx(HEADING)
+    assert log["wind_from"].values == pytest.approx(np.degrees(-0.5))

@@ -15,8 +15,10 @@ from shipcosim.diagnose.numerics import finite, usual_rise
 from shipcosim.errors import ShipcosimError
 
 _STEPS = (0.002, 30.0)  # s between rows of a log that a unit is chosen by. Assumed.
-_DAYS = 20000.0  # days since 1900 in 1954; rows of seconds that close would begin half a day before. Assumed.
-_OF_DAYS = {"day", "jd", "doy", "yearday"}
+_POSSIBLE = (
+    1e-4,
+    1e4,
+)  # s between rows beyond which a log is no log of a ship in seconds. Assumed.
 _UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "d": 86400.0}
 
 
@@ -118,11 +120,12 @@ def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
     step = usual_rise(numbers, 0.0)
     if step == 0.0 or _STEPS[0] <= step <= _STEPS[1]:
         return guess
-    unit = next((u for u, size in _UNITS.items() if _STEPS[0] <= step * size <= _STEPS[1]), None)
-    if unit is None:
+    units = [u for u, size in _UNITS.items() if _STEPS[0] <= step * size <= _STEPS[1]]
+    if not units:
         return guess
-    # Days since an epoch (of Excel, MATLAB or Julius Caesar), or of a year by the name, are no other unit.
-    if unit == "d" and (numbers.min() > _DAYS or _OF_DAYS & set(words_of(guess.column))):
+    unit = units[0]
+    # Days of a spreadsheet, of MATLAB or of a year can be nothing else, nor microseconds a second apart.
+    if len(units) == 1 and not _POSSIBLE[0] < step < _POSSIBLE[1]:
         return guess.read_as({"unit": unit}, rank=SURE, why="", unit=unit)
     why = f"no unit is stated: rows are {step * _UNITS[unit]:g} s apart in {unit}, and {step:g} s in s"
     return guess.read_as({"unit": unit}, rank=GUESS, why=why, unit=unit)
