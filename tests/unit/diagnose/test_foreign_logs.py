@@ -198,3 +198,25 @@ def test_deltas_of_signal_k_are_in_radians(tmp_path):
     log = read_log(saved(tmp_path, lines, "deltas.log"), None, THRUSTERS)
     assert log["heading"].values == pytest.approx(HEADING)
     assert log["wind_from"].values == pytest.approx(np.degrees(-0.5))
+
+
+def test_a_wind_is_a_speed_or_a_direction_by_its_unit(tmp_path):
+    sure = ranks(table(tmp_path, {"time": T, "heading": HEADING, "Rel wind [kn]": T, "Rel wind °": HEADING}))
+    assert sure["wind_speed"] is False and sure["wind_from"] is False
+
+
+def test_columns_of_two_levels_have_the_name_of_their_index(tmp_path):
+    above = [",Heading [deg],Speed [rpm],Speed [rpm]", "Time,,,"]
+    columns = {"": T, "Gyro": HEADING, "Port thruster": T + 1.0, "Stbd thruster": T + 2.0}
+    log = read_log(table(tmp_path, columns, above), None, THRUSTERS)
+    assert log["starboard_rpm"].values == pytest.approx(log["port_rpm"].values + 1.0)
+    assert log["heading"].values == pytest.approx(HEADING)
+
+
+def test_values_of_a_german_database_have_their_units(tmp_path):
+    lines = ["Kanal;Einheit;Zeitpunkt;Wert"]
+    for t in T:
+        stamp = f"27.10.2022 21:57:{t:02.0f}"
+        lines += [f"Heading;°;{stamp};{t:.2f}", f"Drehrate;°/min;{stamp};60,0", f"Tiefe;m;{stamp};38,2"]
+    log = read_log(saved(tmp_path, [line.replace(".00", ",00") for line in lines]), None, THRUSTERS)
+    assert log["yaw_rate"].values == pytest.approx(1.0)

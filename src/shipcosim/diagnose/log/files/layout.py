@@ -133,6 +133,7 @@ def _header(lines, above, separator, width, is_unit):
     """Line of the names, the units of a row of units, and the names; None without names."""
     units = ()
     below = None
+    index = ""
     # Go upwards from the values: perhaps a row of units, then the row of names.
     for k, i in reversed(list(enumerate(above))):
         text = lines[i].lstrip(" ")
@@ -147,6 +148,11 @@ def _header(lines, above, separator, width, is_unit):
                 break
             continue
         filled = [cell for cell in row if cell]
+        # Below names of several levels pandas writes the name of the index, alone.
+        if len(filled) == 1 < width and row[0] and not index:
+            index = row[0]
+            below = i
+            continue
         if not units and filled and _is_row_of_units(row, is_unit):
             units = [cell.strip("[]() ") for cell in row]
             below = i
@@ -157,7 +163,8 @@ def _header(lines, above, separator, width, is_unit):
             below = i
             continue
         if sum(map(is_figure, filled)) < 0.5 * len(filled):
-            return i, units, _with_groups(row, lines[i - 1] if i else "", separator)
+            names = _with_groups(row, lines[i - 1] if i else "", separator)
+            return i, units, [names[0] or index, *names[1:]]
         break
     return 0, (), None
 

@@ -24,6 +24,7 @@ GUESS = 2
 UNUSED = Channel(column="-")
 _THRUSTER_UNITS = {"rpm": "rpm", "azimuth": "deg", "thrust": "N"}
 _OPPOSITE = {"sway": "port", "yaw_rate": "port", "surge": "astern"}  # words for the other sign
+_OF_WIND = {"speed", "velocity", "direction", "angle", "from"}
 _FACTOR = re.compile(r"[*/×xX]\s*10+\b")
 _SUFFIXES = ("m/s", "deg/s", "deg", "s", "m", "rpm", "N", "%")  # units that names end in
 
@@ -141,6 +142,9 @@ def _is_empty(values):
 
 def _by_meaning(column, words, stated, values):
     """By the words of the name, with a unit at its end or without."""
+    # A wind without a quantity is a speed or a direction by its unit.
+    if "wind" in words and stated and not _OF_WIND & set(words):
+        words += ("direction",) if converts(stated, "deg") else ("speed",)
     meaning = meaning_of(words)
     unit = stated
     # A name without a meaning may end in a unit, also before .PV; read it without this.
