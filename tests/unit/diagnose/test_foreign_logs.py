@@ -201,7 +201,9 @@ def test_deltas_of_signal_k_are_in_radians(tmp_path):
 
 
 def test_a_wind_is_a_speed_or_a_direction_by_its_unit(tmp_path):
-    sure = ranks(table(tmp_path, {"time": T, "heading": HEADING, "Rel wind [kn]": T, "Rel wind °": HEADING}))
+    sure = ranks(
+        table(tmp_path, {"time": T, "heading": HEADING, "Rel wind [kn]": T, "Rel wind °": HEADING})
+    )
     assert sure["wind_speed"] is False and sure["wind_from"] is False
 
 
@@ -217,6 +219,30 @@ def test_values_of_a_german_database_have_their_units(tmp_path):
     lines = ["Kanal;Einheit;Zeitpunkt;Wert"]
     for t in T:
         stamp = f"27.10.2022 21:57:{t:02.0f}"
-        lines += [f"Heading;°;{stamp};{t:.2f}", f"Drehrate;°/min;{stamp};60,0", f"Tiefe;m;{stamp};38,2"]
+        lines += [
+            f"Heading;°;{stamp};{t:.2f}",
+            f"Drehrate;°/min;{stamp};60,0",
+            f"Tiefe;m;{stamp};38,2",
+        ]
     log = read_log(saved(tmp_path, [line.replace(".00", ",00") for line in lines]), None, THRUSTERS)
+    assert log["yaw_rate"].values == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "role"), [("Gyrokurs", "heading"), ("Girrate", "yaw_rate"), ("Langskipsfart", "surge")]
+)
+def test_words_of_two_words_without_a_blank_are_known(name, role):
+    assert meaning_of(words_of(name)).role == role
+
+
+def test_points_of_a_plant_are_named_by_their_descriptions(tmp_path):
+    lines = ["Point,Description,Units,Time,Value"]
+    for t, heading in zip(T, HEADING, strict=True):
+        stamp = f"27-Oct-2022 21:57:{t:02.0f}"
+        lines += [
+            f"AI01,Gyro heading,deg,{stamp},{heading:.3f}",
+            f"AI02,Rate of turn,deg/min,{stamp},60",
+        ]
+    log = read_log(saved(tmp_path, lines), None, THRUSTERS)
+    assert log["heading"].values == pytest.approx(HEADING, abs=1e-3)
     assert log["yaw_rate"].values == pytest.approx(1.0)

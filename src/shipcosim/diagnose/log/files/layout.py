@@ -120,7 +120,7 @@ def _first_row(source: str, lines: list[str], separator: str) -> tuple[int, int]
             width > 1
             and len(cells) == width
             and figures
-            and (is_message or figures >= 0.5 * len(filled))
+            and (is_message or figures >= 0.4 * len(filled))
         ):
             return i, width
     if rows and width > 1:

@@ -16,10 +16,8 @@ from shipcosim.diagnose.numerics import finite
 from shipcosim.errors import error_at, suggestion
 
 _NAMES = "name topic signal channel variable tag key parameter quantity item field varname sensor message msg".split()
-_NAMES += "label source id measurement type path kanal kanalname navn kanavn variabel canal bezeichnung".split()
-_VALUES = (
-    "value varvalue val reading data measurement number v y wert verdi valeur valor valore".split()
-)
+_NAMES += "label source id measurement type path kanal kanalname navn kanavn variabel canal bezeichnung description".split()
+_VALUES = "value varvalue val reading data measurement number v y wert verdi valeur valor valore payload".split()
 _UNITS = "unit units einheit enhet unité unidad".split()
 _MOST_NAMES = 500
 _ALONE = 0.1  # share of rows with most channels, below which rows are messages of single sensors. Assumed.

@@ -114,13 +114,12 @@ def _titles(path, names):
     if ending_of(path) != ".nc":
         return {}
     with xarray.open_dataset(path, decode_times=False) as table:
-        all_attributes = {
+        attributes = {
             name: table.variables[name].attrs for name in names if name in table.variables
         }
-    titles = {
-        name: a.get("standard_name", a.get("long_name")) for name, a in all_attributes.items()
+    return {
+        name: str(a.get("standard_name", a.get("long_name", ""))) for name, a in attributes.items()
     }
-    return {name: title for name, title in titles.items() if isinstance(title, str)}
 
 
 def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:

@@ -117,30 +117,17 @@ def _site(log):
 
 def _known_together(every):
     """Letters with one meaning if all of a group occur: N and E; u, v and r."""
-    letters = {guess.column: words_of(guess.column) for guess in every}
-    single = {words[0] for words in letters.values() if len(words) == 1}
-    sure = set()
-    if {"n", "e"} <= single:
-        sure |= {"n", "e"}
-    if {"u", "v", "r"} <= single:
-        sure |= {"u", "v", "r"}
-    roles = {"n": "north", "e": "east"}
-    groups = []
+    single = {words[0] for guess in every if len(words := words_of(guess.column)) == 1}
+    sure = set().union(*(group for group in ({"n", "e"}, {"u", "v", "r"}) if group <= single))
+    together = []
     for guess in every:
-        words = letters[guess.column]
-        letter = words[0] if len(words) == 1 else ""
-        if letter in sure and (
-            guess.role not in ("", roles.get(letter, guess.role)) or not guess.role
-        ):
-            guess = Guess(
-                guess.column, roles.get(letter, ""), Channel(column=guess.column), unit=guess.unit
-            )
-        groups.append(
-            replace(guess, rank=min(guess.rank, SURE), why="")
-            if letter in sure and guess.role
-            else guess
-        )
-    return groups
+        letter = " ".join(words_of(guess.column))
+        role = {"n": "north", "e": "east"}.get(letter, guess.role)
+        if letter in sure and guess.role != role:
+            guess = Guess(guess.column, role, Channel(column=guess.column), unit=guess.unit)
+        is_sure = letter in sure and role
+        together.append(replace(guess, rank=min(guess.rank, SURE), why="") if is_sure else guess)
+    return together
 
 
 def _chosen(guesses):

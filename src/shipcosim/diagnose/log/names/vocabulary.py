@@ -7,6 +7,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+_FILE = Path(__file__).parent / "names.toml"
 _WORDS = re.compile(r"[^\W\d_]+|\d+")
 _HUMP = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z]{2,})")
 _PERCENT = re.compile(r"%(?!\w)|(?<=.)%")  # ROS writes %time
@@ -35,7 +36,7 @@ class Meaning:
 @cache
 def vocabulary() -> dict[str, Any]:
     """Content of names.toml."""
-    return tomllib.loads((Path(__file__).parent / "names.toml").read_text(encoding="utf-8"))
+    return tomllib.loads(_FILE.read_text(encoding="utf-8"))
 
 
 @cache
@@ -57,21 +58,21 @@ def words_of(name: str) -> tuple[str, ...]:
         name = word_parts().sub(lambda match: f" {parts[match[0]]} ", name)
     name = _PERCENT.sub(" percent ", name)
     words = [word.lower() for part in _HUMP.split(name) for word in _WORDS.findall(part)]
-    return tuple(part for word in words for part in same.get(word, word).split())
+    return tuple(part for word in words for part in _written_out(word, same).split())
+
+
+def _written_out(word, same):
+    """A word in English, also one of two such words without a blank between, as northern languages have them."""
+    cuts = range(_SHORTEST, len(word) - _SHORTEST + 1) if word not in same else ()
+    parts = ((word[:cut], word[cut:]) for cut in cuts)
+    both = next((pair for pair in parts if pair[0] in same and pair[1] in same), (word,))
+    return " ".join(same.get(part, part) for part in both)
 
 
 @cache
 def all_words() -> set[str]:
     """Every word of names.toml."""
-    return {word for text in _texts(vocabulary()) for word in words_of(text)}
-
-
-def _texts(entry):
-    """Texts of a part of a file."""
-    if isinstance(entry, str):
-        return [entry]
-    parts = [*entry, *entry.values()] if isinstance(entry, dict) else entry
-    return [text for part in parts for text in _texts(part)] if not isinstance(entry, float) else []
+    return set(words_of(_FILE.read_text(encoding="utf-8")))
 
 
 @cache
