@@ -246,3 +246,12 @@ def test_points_of_a_plant_are_named_by_their_descriptions(tmp_path):
     log = read_log(saved(tmp_path, lines), None, THRUSTERS)
     assert log["heading"].values == pytest.approx(HEADING, abs=1e-3)
     assert log["yaw_rate"].values == pytest.approx(1.0)
+
+
+def test_a_number_that_can_be_in_two_units_of_time_is_asked(tmp_path):
+    assert ranks(table(tmp_path, {"timestamp": 60000.0 * T, "heading": HEADING}))["time"]
+
+
+def test_the_true_course_of_other_languages_is_no_course_over_ground(tmp_path):
+    columns = {"Czas [s]": T, "Kurs rzeczywisty": HEADING, "Prędkość nad dnem [w]": T}
+    assert ranks(table(tmp_path, columns))["heading"]

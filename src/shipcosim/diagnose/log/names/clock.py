@@ -15,10 +15,7 @@ from shipcosim.diagnose.numerics import finite, usual_rise
 from shipcosim.errors import ShipcosimError
 
 _STEPS = (0.002, 30.0)  # s between rows of a log that a unit is chosen by. Assumed.
-_POSSIBLE = (
-    1e-4,
-    1e4,
-)  # s between rows beyond which a log is no log of a ship in seconds. Assumed.
+_SHORTEST = 4e-4  # s between rows of any log of a ship; 35 s are as many days. Assumed.
 _UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "d": 86400.0}
 
 
@@ -120,12 +117,11 @@ def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
     step = usual_rise(numbers, 0.0)
     if step == 0.0 or _STEPS[0] <= step <= _STEPS[1]:
         return guess
-    units = [u for u, size in _UNITS.items() if _STEPS[0] <= step * size <= _STEPS[1]]
-    if not units:
+    unit = next((u for u, size in _UNITS.items() if _STEPS[0] <= step * size <= _STEPS[1]), None)
+    if unit is None:
         return guess
-    unit = units[0]
-    # Days of a spreadsheet, of MATLAB or of a year can be nothing else, nor microseconds a second apart.
-    if len(units) == 1 and not _POSSIBLE[0] < step < _POSSIBLE[1]:
+    # Days of a spreadsheet, of MATLAB or of a year: in seconds no log of a ship has so many rows.
+    if unit == "d" and step < _SHORTEST:
         return guess.read_as({"unit": unit}, rank=SURE, why="", unit=unit)
     why = f"no unit is stated: rows are {step * _UNITS[unit]:g} s apart in {unit}, and {step:g} s in s"
     return guess.read_as({"unit": unit}, rank=GUESS, why=why, unit=unit)
