@@ -255,3 +255,15 @@ def test_a_number_that_can_be_in_two_units_of_time_is_asked(tmp_path):
 def test_the_true_course_of_other_languages_is_no_course_over_ground(tmp_path):
     columns = {"Czas [s]": T, "Kurs rzeczywisty": HEADING, "Prędkość nad dnem [w]": T}
     assert ranks(table(tmp_path, columns))["heading"]
+
+
+def test_a_wind_without_a_unit_beside_knots_is_asked(tmp_path):
+    columns = {
+        "time": T,
+        "heading": HEADING,
+        "COG": HEADING,
+        "RelWindSpd": T,
+        "RelWindDir": HEADING,
+    }
+    assert ranks(table(tmp_path, columns | {"SOG [kn]": T}))["wind_speed"]
+    assert not ranks(table(tmp_path, columns | {"SOG [m/s]": T}))["wind_speed"]
