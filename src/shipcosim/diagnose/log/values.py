@@ -57,6 +57,7 @@ _HOUR = 3600.0  # s
 _SUNDAY = 6
 _PUT_ON = r"(?<![\d+-])0?[23]:00(:\d\d([.,]\d+)?)?(\s*[aA][mM])?$"  # hours to which clocks are put on, no zone behind
 _PERIODS = {86400.0: "day", 604800.0: "week"}  # s; after which clocks start anew
+_LENGTHS = ("länge", "laenge", "lengte")
 _NEAR_END = 300.0  # s; within which of its end one was, and of its start it is. Assumed.
 
 
@@ -355,12 +356,15 @@ def _position(channel, column, stated, name, log):
     values = log.values[column]
     remarks = []
     if values.dtype.kind == "O":
+        # O is east in German and Dutch, and west in the languages of the south.
+        if column.lower().startswith(_LENGTHS):
+            values = np.array([cell and str(cell).replace("O", "E") for cell in values], object)
         degrees = degrees_of_texts(values, LARGEST[name])
         if degrees is None:
             return None
     elif stated.replace(" ", "").lower() == TEN_MILLIONTHS.replace(" ", ""):
         degrees = 1e-7 * values
-    elif stated.lower() == MINUTES or (not stated and _in_minutes(values, name, log)):
+    elif unit_for(stated, "deg") == MINUTES or (not stated and _in_minutes(values, name, log)):
         degrees = degrees_of_minutes(values)
         remarks = (
             []

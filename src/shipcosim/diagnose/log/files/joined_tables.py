@@ -11,6 +11,7 @@ from shipcosim.diagnose.log.channels import Channel
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.files.times import epoch_unit
 from shipcosim.diagnose.log.names.vocabulary import vocabulary, words_of
+from shipcosim.diagnose.numerics import finite, usual_rise
 from shipcosim.errors import error_at
 
 _TABLES = (".csv", ".txt", ".tsv", ".dat", ".csv.gz", ".xlsx", ".parquet")
@@ -63,10 +64,25 @@ def joined(
         message = f"the times of '{first}' and '{other}' are written in different ways."
         raise error_at(str(path), message, "Write the same kind of time in all tables.")
     values = tables[first].values[clocks[first][0]]
-    if len(tables) > 1 and values.dtype.kind == "f" and epoch_unit(values) is None:
+    counts = [table.values[clocks[name][0]] for name, table in tables.items()]
+    is_count = values.dtype.kind == "f" and epoch_unit(values) is None
+    if is_count and not _have_one_clock(list(map(finite, counts))):
         message = f"the times of '{first}' and the other tables may count from different starts."
         raise error_at(str(path), message, "Write times since 1970, or one table with one time.")
     return _below_each_other(path, tables, clocks)
+
+
+def _have_one_clock(counts):
+    """Whether tables of times that count from no date share a start, as those of a computer that was on before."""
+    starts = [float(times.min()) for times in counts]
+    ends = [float(times.max()) for times in counts]
+    is_later = min(starts) > _ROWS_BEFORE * usual_rise(counts[0], np.inf)
+    is_one = min(ends) - max(starts) > _TOGETHER * (max(ends) - min(starts))
+    return len(counts) < 2 or (is_later and is_one)
+
+
+_ROWS_BEFORE = 20  # steps by which a clock is ahead that did not start with its table. Assumed.
+_TOGETHER = 0.95  # share of the time that tables of one log have in common. Assumed.
 
 
 def _kind(table, channel):

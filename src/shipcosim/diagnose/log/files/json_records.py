@@ -62,4 +62,17 @@ def _rows_of_delta(record):
             parts = value if isinstance(value, dict) else {"": value}
             for name, number in parts.items():
                 path = f"{entry['path']}.{name}".strip(".")
-                yield {"time": update.get("timestamp"), "path": path, "value": number}
+                last = path.rpartition(".")[2].lower()
+                unit = next((_UNITS[part] for part in _UNITS if part in last), "")
+                yield {"time": update.get("timestamp"), "path": path, "value": number, "unit": unit}
+
+
+_UNITS = {
+    "rateofturn": "rad/s",
+    "heading": "rad",
+    "course": "rad",
+    "angle": "rad",
+    "direction": "rad",
+}
+_UNITS |= {"speed": "m/s", "revolutions": "Hz"}
+"""Units of Signal K by a part of the last word of a path."""

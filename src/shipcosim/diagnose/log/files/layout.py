@@ -86,6 +86,19 @@ def layout_of(
     return Layout(separator, tuple(header), tuple(units), first, _skipped(rest))
 
 
+def without_labview_header(lines: list[str]) -> list[str]:
+    """The names, units and values of LabVIEW's text (.lvm) on the lines where they stand; other texts unchanged."""
+    ends = [i for i, line in enumerate(lines[:200]) if line.startswith("***End_of_Header***")]
+    if not ends or ends[-1] + 2 > len(lines):
+        return lines
+    header = {line.partition("\t")[0]: line for line in lines[: ends[-1]]}
+    names = lines[ends[-1] + 1]
+    if header.get("X_Dimension", "").startswith("X_Dimension\tTime"):
+        names = names.replace("X_Value", "Time (s)", 1)
+    units = header.get("Y_Unit_Label", "").removeprefix("Y_Unit_Label")
+    return ["" for _ in lines[: ends[-1]]] + [names, units, *lines[ends[-1] + 2 :]]
+
+
 def _skipped(above: list[int]) -> tuple[str, ...]:
     return (f"{counted(len(above), 'line')} above the header left out.",) if above else ()
 
@@ -107,7 +120,7 @@ def _first_row(source: str, lines: list[str], separator: str) -> tuple[int, int]
             width > 1
             and len(cells) == width
             and figures
-            and (is_message or figures >= 0.5 * len(filled))
+            and (is_message or figures >= 0.4 * len(filled))
         ):
             return i, width
     if rows and width > 1:
@@ -120,8 +133,9 @@ def _header(lines, above, separator, width, is_unit):
     """Line of the names, the units of a row of units, and the names; None without names."""
     units = ()
     below = None
+    index = ""
     # Go upwards from the values: perhaps a row of units, then the row of names.
-    for i in reversed(above):
+    for k, i in reversed(list(enumerate(above))):
         text = lines[i].lstrip(" ")
         if is_comment(text):
             text = text.lstrip("#%/! \t")
@@ -134,12 +148,23 @@ def _header(lines, above, separator, width, is_unit):
                 break
             continue
         filled = [cell for cell in row if cell]
+        # Below names of several levels pandas writes the name of the index, alone.
+        if len(filled) == 1 < width and row[0] and not index:
+            index = row[0]
+            below = i
+            continue
         if not units and filled and _is_row_of_units(row, is_unit):
             units = [cell.strip("[]() ") for cell in row]
             below = i
             continue
+        # A row of units above this one belongs to the names above it; then this one describes the columns.
+        upper = [_header_cells(lines[j], separator, width) for j in above[max(k - 2, 0) : k]]
+        if not units and len(upper) == 2 and all(upper) and _is_row_of_units(upper[1], is_unit):
+            below = i
+            continue
         if sum(map(is_figure, filled)) < 0.5 * len(filled):
-            return i, units, _with_groups(row, lines[i - 1] if i else "", separator)
+            names = _with_groups(row, lines[i - 1] if i else "", separator)
+            return i, units, [names[0] or index, *names[1:]]
         break
     return 0, (), None
 

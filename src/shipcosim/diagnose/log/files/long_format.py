@@ -16,8 +16,9 @@ from shipcosim.diagnose.numerics import finite
 from shipcosim.errors import error_at, suggestion
 
 _NAMES = "name topic signal channel variable tag key parameter quantity item field varname sensor message msg".split()
-_NAMES += "label source id measurement type path".split()
-_VALUES = "value varvalue val reading data measurement number v y".split()
+_NAMES += "label source id measurement type path kanal kanalname navn kanavn variabel canal bezeichnung description".split()
+_VALUES = "value varvalue val reading data measurement number v y wert verdi valeur valor valore payload".split()
+_UNITS = "unit units einheit enhet unité unidad".split()
 _MOST_NAMES = 500
 _ALONE = 0.1  # share of rows with most channels, below which rows are messages of single sensors. Assumed.
 
@@ -50,7 +51,7 @@ def spread(log: LogColumns, form: FileLayout) -> LogColumns:
     is_wide = any(meaning_of(words_of(column)).role not in (None, "time") for column in rest)
     if is_wide and form.name is None:
         return log
-    unit = next((column for column in rest if column.strip().lower() in ("unit", "units")), None)
+    unit = next((column for column in rest if column.strip().lower() in _UNITS), None)
     clocks = [column for column in rest if column != unit and _is_clock(log.values[column])]
     if not clocks:
         return log
@@ -73,13 +74,14 @@ def _long(log, form):
     ]
     if form.name is not None:
         names = [form.name]
-    return [name for name in names if name != value], form.value or value
+    # The device comes before its quantity, as in other names.
+    return [name for name in reversed(names) if name != value], form.value or value
 
 
 def _plain(column):
     """Name of a column as the lists have it: databases write ``_field`` and ``parameter_id``."""
     name = column.strip().lower().strip("_")
-    return name.removesuffix("_id").removesuffix("_name")
+    return name.removesuffix("_id").removesuffix("name").rstrip("_ ") or name
 
 
 def _is_of_names(values):

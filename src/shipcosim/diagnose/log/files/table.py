@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ from shipcosim.diagnose.log.files.cells import numbers_of, with_unit
 from shipcosim.diagnose.log.files.excel import is_workbook, text_of_sheet
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.json_records import is_json, text_of_records
-from shipcosim.diagnose.log.files.layout import Layout, layout_of
+from shipcosim.diagnose.log.files.layout import Layout, layout_of, without_labview_header
 from shipcosim.diagnose.log.files.matlab import columns_of_matlab, is_matlab
 from shipcosim.diagnose.log.files.nmea import columns_of_sentences, holds_sentences
 from shipcosim.diagnose.log.files.refused_formats import refuse_foreign
@@ -49,6 +50,8 @@ class LogColumns:
         Names that several columns have.
     joined : bool
         Whether rows of several tables stand below each other, each with the columns of its own.
+    titles : mapping of str to str
+        What a file of NetCDF says of a column besides its name.
     """
 
     source: str
@@ -57,6 +60,7 @@ class LogColumns:
     remarks: tuple[str, ...] = ()
     doubled: tuple[str, ...] = field(default=())
     joined: bool = False
+    titles: Mapping[str, str] = field(default_factory=dict)
 
 
 def read_file(path: Path, form: FileLayout) -> LogColumns:
@@ -81,7 +85,8 @@ def read_file(path: Path, form: FileLayout) -> LogColumns:
     if ending_of(path) in (".nc", ".parquet"):
         columns = read_columns(path)
         values = {name: values for name, (values, _) in columns.items()}
-        return LogColumns(str(path), values, {name: unit for name, (_, unit) in columns.items()})
+        units = {name: unit for name, (_, unit) in columns.items()}
+        return LogColumns(str(path), values, units, titles=_titles(path, values))
     if is_matlab(path):
         return LogColumns(str(path), *columns_of_matlab(path))
     refuse_foreign(path)
@@ -102,9 +107,24 @@ def read_file(path: Path, form: FileLayout) -> LogColumns:
     return replace(read, remarks=(*remarks, *read.remarks))
 
 
+def _titles(path, names):
+    """Standard names of CF, else long names, of the columns of a NetCDF file; empty for others."""
+    import xarray
+
+    if ending_of(path) != ".nc":
+        return {}
+    with xarray.open_dataset(path, decode_times=False) as table:
+        attributes = {
+            name: table.variables[name].attrs for name in names if name in table.variables
+        }
+    return {
+        name: str(a.get("standard_name", a.get("long_name", ""))) for name, a in attributes.items()
+    }
+
+
 def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
     # Layout first, then the rows of the right length, then the decimal sign, then each column.
-    lines = text.splitlines()
+    lines = without_labview_header(text.splitlines())
     layout = layout_of(source, lines, form, is_unit)
     rows, remarks = _rows(source, lines, layout)
     width = len(layout.header)

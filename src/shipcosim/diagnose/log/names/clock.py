@@ -15,6 +15,7 @@ from shipcosim.diagnose.numerics import finite, usual_rise
 from shipcosim.errors import ShipcosimError
 
 _STEPS = (0.002, 30.0)  # s between rows of a log that a unit is chosen by. Assumed.
+_SHORTEST = 4e-4  # s between rows of any log of a ship; 35 s are as many days. Assumed.
 _UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "d": 86400.0}
 
 
@@ -119,6 +120,9 @@ def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
     unit = next((u for u, size in _UNITS.items() if _STEPS[0] <= step * size <= _STEPS[1]), None)
     if unit is None:
         return guess
+    # Days of a spreadsheet, of MATLAB or of a year: in seconds no log of a ship has so many rows.
+    if unit == "d" and step < _SHORTEST:
+        return guess.read_as({"unit": unit}, rank=SURE, why="", unit=unit)
     why = f"no unit is stated: rows are {step * _UNITS[unit]:g} s apart in {unit}, and {step:g} s in s"
     return guess.read_as({"unit": unit}, rank=GUESS, why=why, unit=unit)
 

@@ -13,7 +13,7 @@ from shipcosim.diagnose.log.channels import Channel
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.thrusters import OF_A_MAP, Drive, drive_of, thrusters_named
 from shipcosim.diagnose.log.names.units import converts, unit_after, unit_for
-from shipcosim.diagnose.log.names.vocabulary import meaning_of, words_of
+from shipcosim.diagnose.log.names.vocabulary import meaning_of, vocabulary, words_of
 from shipcosim.diagnose.log.roles import ROLES, role_of
 
 Thrusters = Mapping[str, tuple[str, ...]]
@@ -24,6 +24,7 @@ GUESS = 2
 UNUSED = Channel(column="-")
 _THRUSTER_UNITS = {"rpm": "rpm", "azimuth": "deg", "thrust": "N"}
 _OPPOSITE = {"sway": "port", "yaw_rate": "port", "surge": "astern"}  # words for the other sign
+_OF_WIND = {"speed", "velocity", "direction", "angle", "from"}
 _FACTOR = re.compile(r"[*/×xX]\s*10+\b")
 _SUFFIXES = ("m/s", "deg/s", "deg", "s", "m", "rpm", "N", "%")  # units that names end in
 
@@ -77,7 +78,9 @@ class Guess:
         return f"in {unit}: " if unit else ""
 
 
-def guesses_of(column: str, log: LogColumns, thrusters: Thrusters | None) -> list[Guess]:
+def guesses_of(
+    column: str, log: LogColumns, thrusters: Thrusters | None, site: frozenset[str] = frozenset()
+) -> list[Guess]:
     """Guesses for a column by itself; one guess without a role if nothing fits.
 
     Parameters
@@ -87,6 +90,8 @@ def guesses_of(column: str, log: LogColumns, thrusters: Thrusters | None) -> lis
         The file.
     thrusters : mapping, optional
         Of the system; without, any name of a thruster is one.
+    site : frozenset of str
+        Words that all names share and that say nothing of a channel.
     """
     values = log.values[column]
     stated = log.units[column]
@@ -98,7 +103,7 @@ def guesses_of(column: str, log: LogColumns, thrusters: Thrusters | None) -> lis
         return [Guess(column, column, Channel(column=column), EXACT, unit=stated)]
     if _is_empty(values):
         return [Guess(column, why="it has no value")]
-    words = words_of(column)
+    words = tuple(word for word in words_of(column) if word not in site)
     if not words or (words == ("column", words[-1]) and column.startswith("column ")):
         return [Guess(column, why="it has no name")]
     # Names of thrusters come before other meanings, unless they lead to no thruster.
@@ -115,6 +120,10 @@ def guesses_of(column: str, log: LogColumns, thrusters: Thrusters | None) -> lis
             if guesses[0].role:
                 of_name = {"unit": suffix}
                 return [replace(g, channel=g.channel.model_copy(update=of_name)) for g in guesses]
+    # What a file of NetCDF says of a column goes before a name that has no sure meaning.
+    title = words_of(log.titles.get(column, ""))
+    if meaning_of(words).role is None or meaning_of(words).doubt:
+        words = title if meaning_of(title).role else words
     # A number in a name counts sensors of a kind; with several of them each is a guess.
     guesses = _by_meaning(column, words, stated, values)
     bare = tuple(word for word in words if not word.isdigit())
@@ -133,9 +142,13 @@ def _is_empty(values):
 
 def _by_meaning(column, words, stated, values):
     """By the words of the name, with a unit at its end or without."""
+    # A wind without a quantity is a speed or a direction by its unit.
+    if "wind" in words and stated and not _OF_WIND & set(words):
+        words += ("direction",) if converts(stated, "deg") else ("speed",)
     meaning = meaning_of(words)
     unit = stated
-    # A name without a meaning may end in a unit; read it without this.
+    # A name without a meaning may end in a unit, also before .PV; read it without this.
+    words = tuple(word for word in words if word not in vocabulary()["words"]["feedback"])
     if (meaning.role is None or meaning.doubt) and not stated:
         for target in _SUFFIXES:
             rest, suffix = unit_after(words, target)
@@ -230,6 +243,8 @@ def _of_thruster(
             why = "a rudder's angle turns the ship the other way than an azimuth thruster's"
         channel = Channel(column=column)
         notes = ("a command; there is no feedback",) if drive.kind == "command" else ()
+        if "bow" in drive.place and "tunnel" in words_of(name):
+            notes = (*notes, "the tunnel thruster is assumed to be the one at the bow")
         guesses.append(
             Guess(column, role, channel, GUESS if why else SURE, why, drive.kind, stated, notes)
         )

@@ -20,7 +20,7 @@ from shipcosim.diagnose.log.names.guesses import (
 )
 from shipcosim.diagnose.log.names.units import unit_for
 from shipcosim.diagnose.log.names.unstated_units import are_axes_open, exchange_axes, settled
-from shipcosim.diagnose.log.names.vocabulary import words_of
+from shipcosim.diagnose.log.names.vocabulary import all_words, meaning_of, words_of
 from shipcosim.diagnose.log.values import LARGEST
 from shipcosim.diagnose.numerics import finite
 
@@ -84,7 +84,8 @@ def propose(
     """
     form = form or FileLayout()
     # Guesses for each column alone, then the best for each role.
-    every = [guess for column in log.values for guess in guesses_of(column, log, thrusters)]
+    site = _site(log)
+    every = [guess for column in log.values for guess in guesses_of(column, log, thrusters, site)]
     every = _known_together(every)
     chosen, left = _chosen([g for g in every if g.role and g.role != "time"])
     left += [g for g in every if not g.role]
@@ -95,6 +96,7 @@ def propose(
     left = _with_quaternion(chosen, log, left)
     left = _with_hemispheres(chosen, log, left)
     _with_directions(chosen, log)
+    _with_its_pair(chosen, left)
     # Conventions and values settle what names leave open.
     _by_convention_of_ros(chosen, log)
     settled(chosen, log, form)
@@ -107,32 +109,25 @@ def propose(
     return Proposal(tuple(used), tuple(unused[name] for name in order if name in unused), form)
 
 
+def _site(log):
+    """Words that all names of several words share and that no name in names.toml has: historians write the ship's."""
+    names = [set(words_of(column)) for column in log.values if len(words_of(column)) > 1]
+    return frozenset(set.intersection(*names) - all_words() if len(names) > 2 else ())
+
+
 def _known_together(every):
     """Letters with one meaning if all of a group occur: N and E; u, v and r."""
-    letters = {guess.column: words_of(guess.column) for guess in every}
-    single = {words[0] for words in letters.values() if len(words) == 1}
-    sure = set()
-    if {"n", "e"} <= single:
-        sure |= {"n", "e"}
-    if {"u", "v", "r"} <= single:
-        sure |= {"u", "v", "r"}
-    roles = {"n": "north", "e": "east"}
-    groups = []
+    single = {words[0] for guess in every if len(words := words_of(guess.column)) == 1}
+    sure = set().union(*(group for group in ({"n", "e"}, {"u", "v", "r"}) if group <= single))
+    together = []
     for guess in every:
-        words = letters[guess.column]
-        letter = words[0] if len(words) == 1 else ""
-        if letter in sure and (
-            guess.role not in ("", roles.get(letter, guess.role)) or not guess.role
-        ):
-            guess = Guess(
-                guess.column, roles.get(letter, ""), Channel(column=guess.column), unit=guess.unit
-            )
-        groups.append(
-            replace(guess, rank=min(guess.rank, SURE), why="")
-            if letter in sure and guess.role
-            else guess
-        )
-    return groups
+        letter = " ".join(words_of(guess.column))
+        role = {"n": "north", "e": "east"}.get(letter, guess.role)
+        if letter in sure and guess.role != role:
+            guess = Guess(guess.column, role, Channel(column=guess.column), unit=guess.unit)
+        is_sure = letter in sure and role
+        together.append(replace(guess, rank=min(guess.rank, SURE), why="") if is_sure else guess)
+    return together
 
 
 def _chosen(guesses):
@@ -275,6 +270,31 @@ def _with_directions(chosen, log):
             if are_codes(cells):
                 why = f"it has no sign, and '{name}' may hold it: which code is ahead is not stated"
                 chosen[role] = guess.read_as({"hemisphere": name}, rank=GUESS, why=why)
+
+
+def _with_its_pair(chosen, left):
+    """A wind speed is of the wind that its direction is of; speed and course beside a heading are over ground."""
+    speed = chosen.get("wind_speed")
+    wind_from = chosen.get("wind_from")
+    if speed and speed.rank != SURE and (wind_from is None or wind_from.rank == GUESS):
+        role = "wind_speed"
+        why = speed.why or "it may be over ground, as in CF"
+        if wind_from is None and "true_wind_from" in chosen and "true_wind_speed" not in chosen:
+            role = "true_wind_speed"
+            why = "it may be the apparent wind's"
+        del chosen["wind_speed"]
+        chosen[role] = replace(speed, role=role, rank=GUESS, why=why)
+    # AIS, GPX and trackers have both without more words.
+    bare = {words_of(g.column): g for g in left if "heading" in chosen}
+    if (course := bare.get(("course",))) and "course_over_ground" not in chosen:
+        why = "it may be another course"
+        chosen["course_over_ground"] = replace(
+            course, role="course_over_ground", rank=GUESS, why=why
+        )
+    surge = chosen.get("surge")
+    is_bare = surge and surge.why == meaning_of(("speed",)).doubt and "sway" not in chosen
+    if is_bare and "course_over_ground" in chosen and "speed_over_ground" not in chosen:
+        chosen["speed_over_ground"] = replace(chosen.pop("surge"), role="speed_over_ground")
 
 
 def _thruster_words(name):

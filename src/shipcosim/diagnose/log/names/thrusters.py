@@ -138,7 +138,7 @@ def thrusters_named(
     if place & {"bow"}:
         across = [name for name, words in placed.items() if "tunnel" in words]
         if len(across) == 1:
-            return across, "the tunnel thruster is assumed to be the one at the bow"
+            return across, ""
     return near, "it can be any of these" if near else ""
 
 

@@ -11,6 +11,7 @@ from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.evidence import frame_of_angle, unit_of_rate, unit_of_speed
 from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, Guess
+from shipcosim.diagnose.log.names.units import unit_for
 from shipcosim.diagnose.log.roles import ROLES
 from shipcosim.diagnose.log.values import LARGEST, TEN_MILLIONTHS, values_of
 from shipcosim.diagnose.numerics import finite
@@ -43,9 +44,12 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: FileLayout) -> None
             _settle_speed(chosen, role, log, motion)
     if "yaw_rate" in chosen and not chosen["yaw_rate"].unit:
         _settle_rate(chosen, log, form, motion)
+    over_ground = chosen.get("speed_over_ground")
+    stated = over_ground and (over_ground.channel.unit or over_ground.unit)
+    is_in_knots = bool(stated) and unit_for(stated, "m/s") == "kn"
     for role in ("wind_speed", "true_wind_speed"):
-        # The unit of a wind speed with a sailor's short name is mostly knots.
-        if _is_open(chosen, role) and len(chosen[role].column.strip()) <= 4:
+        # The unit of a wind speed beside knots, or with a sailor's short name, is mostly knots.
+        if _is_open(chosen, role) and (is_in_knots or len(chosen[role].column.strip()) <= 4):
             _guess(chosen, role, "kn", "no unit is stated: kn or m/s")
     # Small angles may be radians: directions within a turn, azimuths within half a turn, as many
     # azimuths stay within some degrees.

@@ -7,6 +7,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+_FILE = Path(__file__).parent / "names.toml"
 _WORDS = re.compile(r"[^\W\d_]+|\d+")
 _HUMP = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z]{2,})")
 _PERCENT = re.compile(r"%(?!\w)|(?<=.)%")  # ROS writes %time
@@ -35,7 +36,7 @@ class Meaning:
 @cache
 def vocabulary() -> dict[str, Any]:
     """Content of names.toml."""
-    return tomllib.loads((Path(__file__).parent / "names.toml").read_text(encoding="utf-8"))
+    return tomllib.loads(_FILE.read_text(encoding="utf-8"))
 
 
 @cache
@@ -57,7 +58,21 @@ def words_of(name: str) -> tuple[str, ...]:
         name = word_parts().sub(lambda match: f" {parts[match[0]]} ", name)
     name = _PERCENT.sub(" percent ", name)
     words = [word.lower() for part in _HUMP.split(name) for word in _WORDS.findall(part)]
-    return tuple(part for word in words for part in same.get(word, word).split())
+    return tuple(part for word in words for part in _written_out(word, same).split())
+
+
+def _written_out(word, same):
+    """A word in English, also one of two such words without a blank between, as northern languages have them."""
+    cuts = range(_SHORTEST, len(word) - _SHORTEST + 1) if word not in same else ()
+    parts = ((word[:cut], word[cut:]) for cut in cuts)
+    both = next((pair for pair in parts if pair[0] in same and pair[1] in same), (word,))
+    return " ".join(same.get(part, part) for part in both)
+
+
+@cache
+def all_words() -> set[str]:
+    """Every word of names.toml."""
+    return set(words_of(_FILE.read_text(encoding="utf-8")))
 
 
 @cache
@@ -74,6 +89,8 @@ def meaning_of(words: tuple[str, ...]) -> Meaning:
     --------
     >>> meaning_of(words_of("GPS Latitude")).role
     'latitude'
+    >>> meaning_of(words_of("Speed, apparent wind")) == meaning_of(words_of("apparent wind speed"))
+    True
     >>> meaning_of(words_of("yaw")).doubt
     'yaw may be counted the other way or from east'
     >>> meaning_of(words_of("surge_dot")).reason
@@ -81,10 +98,9 @@ def meaning_of(words: tuple[str, ...]) -> Meaning:
     """
     terms = vocabulary()["words"]
     fillers = set(terms["filler"])
-    whole = " ".join(words)
-    # The whole name first, with or without filler words.
-    for phrase in (whole, " ".join(w for w in words if w not in fillers)):
-        if meaning := _phrases().get(phrase):
+    # The whole name first, with or without filler words; a speed of GPS is over ground.
+    for left_out in (set(), fillers - {"gps", "gnss"}, fillers):
+        if meaning := _phrases().get(frozenset(words) - left_out):
             return meaning
     for word in words:
         if word in terms["other"]:
@@ -96,7 +112,7 @@ def meaning_of(words: tuple[str, ...]) -> Meaning:
             return Meaning(None, reason="a set point, not a measurement")
         return Meaning(None)
     plain = tuple(w for w in words if w not in fillers and w not in terms["feedback"])
-    if meaning := _phrases().get(" ".join(plain)):
+    if meaning := _phrases().get(frozenset(plain)):
         return meaning
     return _within(plain)
 
@@ -106,8 +122,9 @@ def _within(words):
     # Longest phrase first; short and ambiguous ones are left out.
     for length in range(len(words) - 1, 0, -1):
         for start in range(len(words) - length + 1):
-            phrase = " ".join(words[start : start + length])
-            meaning = _phrases().get(phrase)
+            part = words[start : start + length]
+            phrase = " ".join(part)
+            meaning = _phrases().get(frozenset(part))
             if meaning and len(phrase) >= _SHORTEST and (meaning.role or meaning.reason):
                 if meaning.role is None:
                     return Meaning(None, reason=meaning.reason)
@@ -118,16 +135,16 @@ def _within(words):
 
 
 @cache
-def _phrases() -> dict[str, Meaning]:
-    """Every name of names.toml, in the words that `words_of` gives."""
+def _phrases() -> dict[frozenset[str], Meaning]:
+    """Every name of names.toml, by the words that `words_of` gives, in any order."""
     meanings = {}
     for role, entry in vocabulary().items():
         if isinstance(entry, dict) and "names" in entry:
-            meanings |= {" ".join(words_of(name)): Meaning(role) for name in entry["names"]}
+            meanings |= {frozenset(words_of(name)): Meaning(role) for name in entry["names"]}
     for role, entry in vocabulary().items():
         if isinstance(entry, dict) and "names" in entry:
             for name, doubt in entry.get("maybe", {}).items():
-                meanings.setdefault(" ".join(words_of(name)), Meaning(role, doubt))
+                meanings.setdefault(frozenset(words_of(name)), Meaning(role, doubt))
     for name, reason in vocabulary()["none"].items():
-        meanings.setdefault(" ".join(words_of(name)), Meaning(None, reason=reason))
+        meanings.setdefault(frozenset(words_of(name)), Meaning(None, reason=reason))
     return meanings

@@ -35,7 +35,7 @@ LANGUAGES = {
     "Vento relativo direção [graus]>wind_from|Rotação bombordo [rpm]>port_rpm|Rotação boreste [rpm]>starboard_rpm",
     "Dutch": "Tijd|Voorliggende koers [°]>heading|Grondkoers [°]>course_over_ground|"
     "Snelheid over de grond [kn]>speed_over_ground|Toerental BB [omw/min]>port_rpm|Toerental SB [omw/min]>starboard_rpm|"
-    "Boegschroef toerental?tunnel_rpm",
+    "Boegschroef toerental>tunnel_rpm",
     "Italian": "Ora|Prua [°]?heading|Giri elica sinistra>port_rpm|Giri elica dritta>starboard_rpm",
     "Korean": "시간|선수방위 [도]>heading|대지속력 [노트]>speed_over_ground|대지침로 [도]>course_over_ground|"
     "좌현 추진기 회전수>port_rpm|우현 추진기 회전수>starboard_rpm|목표 선수방위",
