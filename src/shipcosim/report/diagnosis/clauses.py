@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from shipcosim.diagnose.finding import ParameterEstimate
-from shipcosim.report.diagnosis.estimates import plus_minus, vector
+from shipcosim.report.diagnosis.estimates import plus_minus, shown_unit, vector
 
 
 def filled(
@@ -79,7 +79,8 @@ class _Value:
         if form == "excess":
             return f"{_percent(abs(value - 1), std)} {above if value > 1 else below}"
         if form == "given" and self.estimate.given is not None:
-            return f"{plus_minus(self.estimate)} (the file says {self.estimate.given:.4g} {self.estimate.unit})"
+            unit, factor = shown_unit(self.estimate.unit, abs(value))
+            return f"{plus_minus(self.estimate)} (the file says {factor * self.estimate.given:.6g} {unit})"
         if form == "signed":
             return f"{plus_minus(self.estimate, absolute=True)} {above if value > 0 else below}"
         return plus_minus(self.estimate)

@@ -5,7 +5,7 @@ import math
 from shipcosim.diagnose.finding import ParameterEstimate
 
 SHOWN = {"1": "", "deg": "°"}
-LARGE = {"N": ("kN", 1e-3), "N.m": ("kN·m", 1e-3)}
+LARGE = {"N": ("kN", 1e-3), "N.m": ("kN·m", 1e-3), "kg.m2": ("t·m²", 1e-3)}
 
 
 def plus_minus(estimate: ParameterEstimate, absolute: bool = False) -> str:
@@ -43,9 +43,10 @@ def amount(
     # One digit of the uncertainty, two if it begins with 1.
     exponent = math.floor(math.log10(size))
     digits = -exponent + (size / 10.0**exponent < 2.0)
-    digits = min(max(digits, 0), 6)
+    digits = min(digits, 6)
     value = abs(value) if absolute else value
-    return f"{value:.{digits}f}".replace("-", "−"), f"{std:.{digits}f}", unit
+    texts = (f"{round(number, digits):.{max(digits, 0)}f}" for number in (value, std))
+    return next(texts).replace("-", "−"), next(texts), unit
 
 
 def shown_unit(unit: str, size: float) -> tuple[str, float]:
