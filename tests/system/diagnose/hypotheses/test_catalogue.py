@@ -30,6 +30,7 @@ CONTRACT = {  # parameters and units by cause, ../shared/contracts.md
     "reverse_loss": {"loss": "1"},
     "thruster_interaction": {"loss": "1"},
     "mass": {"scale": "1"},
+    "yaw_inertia": {"inertia": "kg.m2"},
     "drag": {"scale": "1"},
     "crossflow": {"scale": "1"},
     "heading_bias": {"offset": "deg"},
@@ -53,7 +54,6 @@ SEA_TRIALS = {  # sought only where a ship manoeuvres at speed
     "sway_momentum": {"coefficient": "1"},
     "turn_drag": {"coefficient": "1"},
     "yaw_damping": {"coefficient": "1"},
-    "yaw_inertia": {"inertia": "kg.m2"},
 }
 BY_COMPARISON = {name for name in CONTRACT if name.endswith("_to_inertia")}
 """Found by holding commanded against measured force, so no hypothesis of a fit."""
