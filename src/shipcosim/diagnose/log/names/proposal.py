@@ -119,9 +119,13 @@ def _known_together(every):
     """Letters with one meaning if all of a group occur: N and E; u, v and r."""
     single = {words[0] for guess in every if len(words := words_of(guess.column)) == 1}
     sure = set().union(*(group for group in ({"n", "e"}, {"u", "v", "r"}) if group <= single))
+    # With all three of vx, vy and vz autopilots write velocities over the earth.
+    over_earth = {"vx": "north_velocity", "vy": "east_velocity"} if "vz" in single else {}
     together = []
     for guess in every:
         letter = " ".join(words_of(guess.column))
+        if letter in over_earth:
+            guess = replace(guess, role=over_earth[letter], why="it may be along the ship")
         role = {"n": "north", "e": "east"}.get(letter, guess.role)
         if letter in sure and guess.role != role:
             guess = Guess(guess.column, role, Channel(column=guess.column), unit=guess.unit)
@@ -235,8 +239,7 @@ def _with_hemispheres(chosen, log, left):
         ]
         if minutes and guess.rank != EXACT and guess.column not in minutes:
             why = f"its minutes may stand in '{minutes[0]}'"
-            left = [*left, replace(chosen.pop(role), role="", channel=UNUSED, why=why)]
-            continue
+            guess = chosen[role] = replace(guess, rank=GUESS, why=why)
         after = order[order.index(guess.column) + 1 :][:1]
         named = [
             name
@@ -288,7 +291,7 @@ def _with_its_pair(chosen, left):
         del chosen["wind_speed"]
         chosen[role] = replace(speed, role=role, rank=GUESS, why=why)
     # AIS, GPX and trackers have both without more words.
-    bare = {frozenset(words_of(g.column)) - {"true"}: g for g in left if "heading" in chosen}
+    bare = {frozenset(words_of(g.column)) - {"true", "deg"}: g for g in left if "heading" in chosen}
     if (course := bare.get(frozenset({"course"}))) and "course_over_ground" not in chosen:
         why = "it may be another course"
         chosen["course_over_ground"] = replace(

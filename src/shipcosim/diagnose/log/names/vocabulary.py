@@ -14,9 +14,6 @@ _HUMP = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z]{2,})")
 _PERCENT = re.compile(r"%(?!\w)|(?<=.)%")  # ROS writes %time
 _SHORTEST = 3  # letters of a name that is sought within another
 _MARK = re.compile(r"[\u0300-\u036f]")
-_LETTERS = str.maketrans(
-    {"ø": "o", "Ø": "O", "ı": "i", "ł": "l", "Ł": "L", "ß": "ss", "æ": "ae", "œ": "oe", "đ": "d"}
-)
 
 
 @dataclass(frozen=True)
@@ -69,7 +66,8 @@ def words_of(name: str) -> tuple[str, ...]:
 
 def _plain(text):
     """A text without accents and with letters of full width as usual ones, as many logs write names."""
-    bare = _MARK.sub("", unicodedata.normalize("NFKD", text.translate(_LETTERS)))
+    letters = str.maketrans(vocabulary()["words"]["letters"])
+    bare = _MARK.sub("", unicodedata.normalize("NFKD", text.translate(letters)))
     return unicodedata.normalize("NFC", bare)
 
 
