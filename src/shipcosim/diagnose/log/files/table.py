@@ -150,6 +150,7 @@ def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
         values = {name: cells for name, cells in values.items() if name not in parts}
         remarks.append(f"Time is made of {', '.join(parts)}.")
     remarks += with_minutes(values, units)
+    doubled = tuple(name for name in doubled if f"{name} (2)" in values)
     return LogColumns(source, values, units, (*layout.remarks, *remarks), doubled)
 
 

@@ -74,7 +74,7 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
 def _encoding_of(content: bytes) -> str:
     if encoding := unicode_of(content):
         return encoding
-    # An encoding of East Asia or Russia is only believed by words of logs, as others decode too; latin-1 decodes anything.
+    # An encoding of East Asia or Russia is only believed by words of logs, as others decode too.
     counts = {}
     for name in ("cp932", "euc_jp", "gb18030", "cp949", "cp1251", "cp1252", "latin-1"):
         try:
