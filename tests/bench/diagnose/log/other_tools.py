@@ -101,6 +101,17 @@ def cells(table):
     # Days since 1900 of spreadsheets, and of the year from 1.
     columns["days"] = columns["epoch"] / 86400.0 + 25569.0
     columns |= {"year_days": columns["days"] - 44561.0, "heading_rad": np.radians(table["heading"])}
+    # What autopilots and receivers scale to whole numbers, and whole degrees with their minutes.
+    for side, degrees in (("lat", LATITUDE), ("lon", LONGITUDE)):
+        columns[f"{side}_whole"] = np.floor(columns[side])
+        columns |= {f"{side}_rest": 60.0 * (columns[side] % 1.0)}
+        columns[f"{side}_0"] = np.full(len(velocity), np.radians(degrees))
+        columns[f"{side}_e7"] = np.round(1e7 * columns[side])
+    columns |= {f"{name}_mm": 1e3 * columns[name] for name in ("vn", "ve", "sog")}
+    columns |= {f"{name}_cm": 1e2 * columns[name] for name in ("vn", "ve")}
+    columns |= {f"{name}_e5": 1e5 * columns[name] for name in ("heading", "cog")}
+    columns |= {"heading_cd": 1e2 * table["heading"], "us": 1e6 * columns["epoch"]}
+    columns |= {"boot": 1e3 * table["time"] + 52310.0, "tow": 1e3 * table["time"] + 424650000.0}
     for row, values in enumerate(zip(*columns.values(), strict=True)):
         numbers = dict(zip(columns, map(float, values), strict=True))
         yield numbers | {"row": row, "stamp": START + timedelta(seconds=numbers["time"])}

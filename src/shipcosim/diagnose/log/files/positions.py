@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 
 import numpy as np
 
-from shipcosim.diagnose.log.names.vocabulary import vocabulary
+from shipcosim.diagnose.log.names.vocabulary import vocabulary, words_of
 from shipcosim.diagnose.numerics import finite
 
 MINUTES = "ddmm.mmmm"
@@ -120,3 +121,21 @@ def degrees_of_texts(cells: np.ndarray, largest: float) -> np.ndarray | None:
             -1.0 if hemisphere in "SWV" else 1.0
         )
     return decimal_degrees
+
+
+def with_minutes(values: dict[str, np.ndarray], units: dict[str, str]) -> list[str]:
+    """Add minutes to the whole degrees in the column before them, in place; remarks."""
+    remarks = []
+    for name, after in pairwise(list(values)):
+        words = {*words_of(after), units[after]}
+        is_pair = words & {"min", "minutes"} and words & {"latitude", "longitude"} & {
+            *words_of(name)
+        }
+        if not is_pair or "O" in (values[name].dtype, values[after].dtype):
+            continue
+        # Whole minutes may have seconds in a third column, and a zero has no sign.
+        degrees = values[name]
+        if (degrees == np.trunc(degrees)).all() and degrees.all() and (values[after] % 1.0).any():
+            values[name] = degrees + np.copysign(values.pop(after) / 60.0, degrees)
+            remarks.append(f"Minutes in '{after}' are added to the degrees in '{name}'.")
+    return remarks

@@ -18,6 +18,7 @@ from shipcosim.diagnose.log.files.json_records import is_json, text_of_records
 from shipcosim.diagnose.log.files.layout import Layout, layout_of, without_labview_header
 from shipcosim.diagnose.log.files.matlab import columns_of_matlab, is_matlab
 from shipcosim.diagnose.log.files.nmea import columns_of_sentences, holds_sentences
+from shipcosim.diagnose.log.files.positions import with_minutes
 from shipcosim.diagnose.log.files.refused_formats import refuse_foreign
 from shipcosim.diagnose.log.files.text import text_of
 from shipcosim.diagnose.log.files.times import seconds_of_parts
@@ -148,6 +149,8 @@ def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
         units["time"] = "s"
         values = {name: cells for name, cells in values.items() if name not in parts}
         remarks.append(f"Time is made of {', '.join(parts)}.")
+    remarks += with_minutes(values, units)
+    doubled = tuple(name for name in doubled if f"{name} (2)" in values)
     return LogColumns(source, values, units, (*layout.remarks, *remarks), doubled)
 
 

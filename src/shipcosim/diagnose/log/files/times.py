@@ -40,6 +40,7 @@ _NAMED_ZONE = re.compile(rf"(?<=:\d\d)(?P<fraction>[.,]\d+)?\s*(?P<zone>{'|'.joi
 _OTHER_ZONE = re.compile(r"(?<=:\d\d)(?P<fraction>\.\d+)?\s*(?P<zone>[+-]\d\d:?\d\d)$")
 _ONE_COLON = re.compile(r"^(?P<minutes>\d{1,3}):(?P<seconds>[0-5]?\d)(?P<fraction>\.\d+)?$")
 _COLON_FRACTION = re.compile(r"^(?P<clock>.*\d\d:\d\d:\d\d):(?P<fraction>\d{1,9})$")
+_DOTS = re.compile(r"^([^:]*\d[ T])?([012]?\d)\.([0-5]\d)\.([0-5]\d)(?=$|[.,]\d+$)")
 _WORD = re.compile(r"[A-Za-z0-9]+")
 _NAMES = {"dmy": "day/month/year", "mdy": "month/day/year", "ymd": "year/month/day"}
 
@@ -221,6 +222,7 @@ def _uniform(cells) -> tuple[Any, np.ndarray | None]:
     texts = texts.str.replace(
         _NAMED_ZONE, lambda match: (match["fraction"] or "") + _ZONES[match["zone"]], regex=True
     )
+    texts = texts.str.replace(_DOTS, r"\1\2:\3:\4", regex=True)
     is_utc = texts.str.contains(_ZONE, na=False)
     texts = texts.str.replace(_ZONE, "", regex=True)
     ahead = None

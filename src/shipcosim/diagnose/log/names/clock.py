@@ -1,5 +1,6 @@
 """The time column among the possible ones, and its unit."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +17,7 @@ from shipcosim.errors import ShipcosimError
 
 _STEPS = (0.002, 30.0)  # s between rows of a log that a unit is chosen by. Assumed.
 _SHORTEST = 4e-4  # s between rows of any log of a ship; 35 s are as many days. Assumed.
+_CLOCK = re.compile(r"\s*\d?\d(:|\.\d\d\.\d\d(?!\d))")
 _UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "d": 86400.0}
 
 
@@ -138,7 +140,11 @@ def _stamps(
     # Try the first, middle and last text before reading all of them.
     values = log.values[name]
     filled = [value for value in values if value is not None] if values.dtype.kind == "O" else []
+    is_clock = bool(filled) and _CLOCK.match(str(filled[0])) is not None
     if not filled or not any(char.isdigit() for char in str(filled[0])):
+        return None
+    # Dots between three numbers are a date in a column named so.
+    if is_clock and _is_date(name) and ":" not in str(filled[0]):
         return None
     sample = np.array([filled[0], filled[len(filled) // 2], filled[-1]], object)
     try:
@@ -157,7 +163,6 @@ def _stamps(
         ):
             guess = guess.read_as({"milliseconds": other})
     # Clock times without a date take the date from a column beside it.
-    is_clock = ":" in str(filled[0]) and len(str(filled[0]).split(":")[0].strip()) <= 2
     dates = [other for other in log.values if _is_date(other) and other != name]
     if is_clock and dates:
         guess = guess.read_as({"date": dates[0]})

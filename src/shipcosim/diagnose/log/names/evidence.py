@@ -6,7 +6,7 @@ import numpy as np
 
 from shipcosim.diagnose.numerics import running_sums
 
-_SPEEDS = {"m/s": 1.0, "kn": 1852.0 / 3600.0, "km/h": 1.0 / 3.6}
+_SPEEDS = {"m/s": 1.0, "kn": 1852.0 / 3600.0, "km/h": 1.0 / 3.6, "cm/s": 0.01, "mm/s": 1e-3}
 _RATES = {"deg/s": 1.0, "rad/s": 180.0 / np.pi, "deg/min": 1.0 / 60.0}
 _FAR = 0.15  # by which a ratio may be off a unit's, as a logarithm: units of speed differ by 1.85
 _ALIKE = 0.9  # correlation of two ways to tell a motion, from which on they are compared. Assumed.

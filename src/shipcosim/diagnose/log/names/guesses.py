@@ -113,8 +113,10 @@ def guesses_of(
             return guesses
     # A name of a thruster may end in a unit, with the thruster's number behind it.
     number = words[-1:] if words[-1].isdigit() else ()
+    kinds = [w for w in words if w in vocabulary()["words"]["feedback"]]
+    ending = tuple(w for w in words[: len(words) - len(number)] if w not in kinds)
     for target in () if stated else _THRUSTER_UNITS.values():
-        rest, suffix = unit_after((*number, *words[: len(words) - len(number)]), target)
+        rest, suffix = unit_after((*kinds, *number, *ending), target)
         if suffix and (drive := drive_of(rest, suffix, values)):
             guesses = _of_thruster(column, drive, suffix, thrusters)
             if guesses[0].role:
@@ -143,8 +145,10 @@ def _is_empty(values):
 def _by_meaning(column, words, stated, values):
     """By the words of the name, with a unit at its end or without."""
     # A wind without a quantity is a speed or a direction by its unit.
-    if "wind" in words and stated and not _OF_WIND & set(words):
-        words += ("direction",) if converts(stated, "deg") else ("speed",)
+    if "wind" in words and not _OF_WIND & set(words):
+        of_turns = converts(stated, "deg") if stated else unit_after(words, "deg")[1]
+        if stated or of_turns or unit_after(words, "m/s")[1]:
+            words = ("direction" if of_turns else "speed", *words)
     meaning = meaning_of(words)
     unit = stated
     # A name without a meaning may end in a unit, also before .PV; read it without this.

@@ -119,9 +119,13 @@ def _known_together(every):
     """Letters with one meaning if all of a group occur: N and E; u, v and r."""
     single = {words[0] for guess in every if len(words := words_of(guess.column)) == 1}
     sure = set().union(*(group for group in ({"n", "e"}, {"u", "v", "r"}) if group <= single))
+    # With all three of vx, vy and vz autopilots write velocities over the earth.
+    over_earth = {"vx": "north_velocity", "vy": "east_velocity"} if "vz" in single else {}
     together = []
     for guess in every:
         letter = " ".join(words_of(guess.column))
+        if letter in over_earth:
+            guess = replace(guess, role=over_earth[letter], why="it may be along the ship")
         role = {"n": "north", "e": "east"}.get(letter, guess.role)
         if letter in sure and guess.role != role:
             guess = Guess(guess.column, role, Channel(column=guess.column), unit=guess.unit)
@@ -229,7 +233,9 @@ def _with_hemispheres(chosen, log, left):
         guess = chosen[role]
         # Whole degrees beside a column of minutes are only a part of a position.
         minutes = [
-            n for n in order if role in words_of(n) and set(words_of(n)) & {"min", "minutes"}
+            n
+            for n in order
+            if role in words_of(n) and {"min", "minutes"} & {*words_of(n), log.units[n]}
         ]
         if minutes and guess.rank != EXACT and guess.column not in minutes:
             why = f"its minutes may stand in '{minutes[0]}'"
@@ -285,8 +291,8 @@ def _with_its_pair(chosen, left):
         del chosen["wind_speed"]
         chosen[role] = replace(speed, role=role, rank=GUESS, why=why)
     # AIS, GPX and trackers have both without more words.
-    bare = {words_of(g.column): g for g in left if "heading" in chosen}
-    if (course := bare.get(("course",))) and "course_over_ground" not in chosen:
+    bare = {frozenset(words_of(g.column)) - {"true", "deg"}: g for g in left if "heading" in chosen}
+    if (course := bare.get(frozenset({"course"}))) and "course_over_ground" not in chosen:
         why = "it may be another course"
         chosen["course_over_ground"] = replace(
             course, role="course_over_ground", rank=GUESS, why=why
@@ -317,24 +323,26 @@ def _of_one_kind(chosen, log):
                 why = why.replace("_", " ")
                 left.append(replace(chosen.pop(role), role="", channel=UNUSED, why=why))
 
+    def how_poor(pair):
+        is_dead = all(_never_changes(chosen[role], log) for role in pair)
+        return is_dead, max(chosen[role].rank for role in pair) == GUESS
+
     # Pairs need both of their roles.
     for pair in _PAIRS:
         there = [role for role in pair if role in chosen]
         if len(there) == 1:
             other = next(role for role in pair if role not in there)
             drop(there, f"it is {there[0]}, and no column is {other}")
-    # Of two positions keep the surer one.
-    whole = [pair for pair in _POSITIONS if pair[0] in chosen]
+    # Of two positions keep one that changes, then the surer one: x and y may count from a fixed latitude.
+    whole = sorted((pair for pair in _POSITIONS if pair[0] in chosen), key=how_poor)
     if len(whole) == 2:
-        ranks = [max(chosen[role].rank for role in pair) for pair in whole]
-        best, worse = whole if ranks[0] <= ranks[1] or ranks[0] < GUESS else reversed(whole)
+        best, worse = whole
         drop(worse, f"{' and '.join(best)} are used instead")
     # Of several velocities keep one that changes, then the surer one.
     ways = [
         pair for pair in (("surge", "sway"), *_PAIRS[:1:-1]) if all(role in chosen for role in pair)
     ]
-    dead = {pair: all(_never_changes(chosen[role], log) for role in pair) for pair in ways}
-    ways.sort(key=lambda pair: (dead[pair], max(chosen[role].rank for role in pair) == GUESS))
+    ways.sort(key=how_poor)
     for pair in [*ways[1:], ("surge", "sway")] if ways else ():
         if pair != ways[0]:
             drop(pair, f"{' and '.join(ways[0])} are used instead")

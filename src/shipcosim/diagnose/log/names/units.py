@@ -7,9 +7,9 @@ from shipcosim.diagnose.log.names.vocabulary import vocabulary
 from shipcosim.dialects import name_in
 from shipcosim.units import Unit, relation, spelled_unit
 
-_BRACKETS = re.compile(r"^(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]\s*$")
+_BRACKETS = re.compile(r"^(?P<name>.*?)\s*[\[［](?P<unit>[^\[\]［］]*)[\]］]\s*$")
 _OTHERS = re.compile(
-    r"^(?P<name>.*?)\s*(?:\((?P<a>[^()]*)\)|\{(?P<b>[^{}]*)\}|<(?P<c>[^<>]*)>|[,/:;]\s+(?P<d>[^,/\s]\S*)|(?P<e>%|°T?))\s*$"
+    r"^(?P<name>.*?)\s*(?:[(（](?P<a>[^()（）]*)[)）]|\{(?P<b>[^{}]*)\}|<(?P<c>[^<>]*)>|[,/:;]\s+(?P<d>[^,/\s]\S*)|(?P<e>%|°T?))\s*$"
 )
 _COUNTED = r"\((?:\+[NE]|clockwise (?:from (?:bow|true north)|towards true north))\)"
 _MULTIPLE = re.compile(r"[*/.x]10+$")  # deg*10: whether it multiplies or divides is not said

@@ -19,6 +19,7 @@ from shipcosim.errors import ShipcosimError
 
 _DEGREES = 1.02 * 2.0 * np.pi  # no angle in radians is larger
 _RAD_OR_DEG = "no unit is stated, and no value is beyond 2 pi: rad or deg"
+_TURNS = 1080.0  # deg; where turns are counted on, a log hardly goes beyond. Assumed.
 _IN_KNOTS = ("speed_over_ground", "wind_speed", "true_wind_speed")
 
 
@@ -56,7 +57,13 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: FileLayout) -> None
     for role, guess in list(chosen.items()):
         is_direction = role in ("wind_from", "true_wind_from", "course_over_ground")
         numbers = _finite(log.values.get(guess.column, np.empty(0)))
-        if (is_direction or role.endswith("_azimuth")) and _is_open(chosen, role):
+        is_whole = _TURNS < numbers.max(initial=0.0) <= 36000.0 and (numbers % 1.0 == 0.0).all()
+        if is_whole and (is_direction or role == "heading") and _is_open(chosen, role):
+            # Autopilots write hundredths of a degree, also as whole numbers.
+            settings = {"map": ((0.0, 0.0), (36000.0, 360.0))}
+            why = "whole numbers to 36000: hundredths of a degree, as autopilots write"
+            chosen[role] = guess.read_as(settings, rank=GUESS, why=why)
+        elif (is_direction or role.endswith("_azimuth")) and _is_open(chosen, role):
             most = _DEGREES if is_direction else np.pi + 0.01
             if 0.0 < np.abs(numbers).max(initial=0.0) <= most:
                 _guess(chosen, role, "rad", "no unit is stated: rad or deg")

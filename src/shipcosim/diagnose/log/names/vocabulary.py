@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+import unicodedata
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -12,6 +13,7 @@ _WORDS = re.compile(r"[^\W\d_]+|\d+")
 _HUMP = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z]{2,})")
 _PERCENT = re.compile(r"%(?!\w)|(?<=.)%")  # ROS writes %time
 _SHORTEST = 3  # letters of a name that is sought within another
+_MARK = re.compile(r"[\u0300-\u036f]")
 
 
 @dataclass(frozen=True)
@@ -51,14 +53,28 @@ def words_of(name: str) -> tuple[str, ...]:
     ('thruster', '1', 'starboard')
     """
     # Scripts without blanks first, then words by their separators and capitals.
-    same = vocabulary()["words"]["same"]
+    same = _short_forms()
     name = name.replace("StB", "Stb")  # German for starboard; the capital begins no word
     if not name.isascii():
         parts = vocabulary()["words"]["parts"]
-        name = word_parts().sub(lambda match: f" {parts[match[0]]} ", name)
+        name = word_parts().sub(lambda match: f" {parts[match[0].lower()]} ", name)
+        name = _plain(name)
     name = _PERCENT.sub(" percent ", name)
     words = [word.lower() for part in _HUMP.split(name) for word in _WORDS.findall(part)]
     return tuple(part for word in words for part in _written_out(word, same).split())
+
+
+def _plain(text):
+    """A text without accents and with letters of full width as usual ones, as many logs write names."""
+    letters = str.maketrans(vocabulary()["words"]["letters"])
+    bare = _MARK.sub("", unicodedata.normalize("NFKD", text.translate(letters)))
+    return unicodedata.normalize("NFC", bare)
+
+
+@cache
+def _short_forms() -> dict[str, str]:
+    """What words are written out to, by the word without accents."""
+    return {_plain(word): full for word, full in vocabulary()["words"]["same"].items()}
 
 
 def _written_out(word, same):
@@ -79,7 +95,7 @@ def all_words() -> set[str]:
 def word_parts() -> re.Pattern[str]:
     """Parts of words in scripts without blanks, the longest first."""
     parts = sorted(vocabulary()["words"]["parts"], key=len, reverse=True)
-    return re.compile("|".join(parts))
+    return re.compile("|".join(parts), re.IGNORECASE)
 
 
 def meaning_of(words: tuple[str, ...]) -> Meaning:
@@ -128,7 +144,7 @@ def _within(words):
             if meaning and len(phrase) >= _SHORTEST and (meaning.role or meaning.reason):
                 if meaning.role is None:
                     return Meaning(None, reason=meaning.reason)
-                if meaning.role == "time" or phrase in ("course", "position", "speed"):
+                if meaning.role == "time" or phrase in ("bow", "course", "position", "speed"):
                     continue
                 return Meaning(meaning.role, doubt=f"it says more than '{phrase}'")
     return Meaning(None)

@@ -7,7 +7,9 @@ from diagnose.log.oddities import THRUSTERS, save
 from hypothesis import given
 from hypothesis import strategies as some
 
+from shipcosim.diagnose.log.channels import ChannelFile
 from shipcosim.diagnose.log.degree_size import metres_per_degree
+from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.names.proposal import propose
 from shipcosim.diagnose.log.reader import columns_of, read_log
 
@@ -138,3 +140,45 @@ def test_positions_in_radians_without_a_unit_are_asked(tmp_path, latitude, longi
     used = {g.role: g for g in propose(columns_of(save(tmp_path, rows)), THRUSTERS).used}
     assert used["latitude"].is_guess and used["longitude"].is_guess
     assert used["latitude"].channel.unit == used["longitude"].channel.unit == "rad"
+
+
+@pytest.mark.parametrize("names", [("Lat (deg)", "Lat (min)"), ("Lat deg", "Lat minutes")])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_minutes_in_a_column_of_their_own_are_added_to_whole_degrees(tmp_path, names, sign):
+    columns = {"time": T, "Hdg": MOTION["heading"]}
+    for name, role in zip(("Lat", "Lon"), ("north", "east"), strict=True):
+        degrees = 63.25 + MOTION[role] / 111e3
+        whole = (f"{sign * np.floor(d):.0f}" for d in degrees)
+        columns[names[0].replace("Lat", name)] = list(whole)
+        columns[names[1].replace("Lat", name)] = [f"{60.0 * (d % 1.0):.6f}" for d in degrees]
+    log = log_of(tmp_path, columns | {"Side": ["E"] * len(T)})
+    size = np.abs(log["north"].values[75] - log["north"].values[0])
+    assert size == pytest.approx(np.ptp(MOTION["north"][[0, 75]]), rel=0.01)
+    assert "are added to the degrees in" in remarks(log)
+
+
+@pytest.mark.parametrize("seconds", ["Lat sec", "Lat rest"])
+def test_whole_minutes_are_not_added_as_seconds_may_stand_behind(tmp_path, seconds):
+    columns = {"time": T, "heading": MOTION["heading"], "Lat deg": ["63"] * len(T)}
+    columns |= {"Lat min": [f"{24 + t // 100:.0f}" for t in T], seconds: T % 60.0}
+    assert "are added" not in remarks(log_of(tmp_path, columns))
+
+
+def test_a_latitude_that_never_changes_is_no_position_beside_x_and_y(tmp_path):
+    still = {"lat (rad)": np.full(len(T), 1.1), "lon (rad)": np.full(len(T), 0.2)}
+    motion = {"x (m)": MOTION["north"], "y (m)": MOTION["east"], "Hdg [deg]": MOTION["heading"]}
+    log = log_of(tmp_path, {"time": T} | still | motion)
+    assert "north" not in log or np.ptp(log["north"].values) > 1.0
+    assert "'lat', 'lon'" in remarks(log)
+
+
+@pytest.mark.parametrize("name", ["hdg", "Heading"])
+def test_hundredths_of_degrees_are_asked(tmp_path, name):
+    columns = {"time": T, "north": MOTION["north"], "east": MOTION["east"]}
+    columns[name] = [f"{100.0 * v:.0f}" for v in MOTION["heading"]]
+    log = log_of(tmp_path, columns)
+    assert "heading" not in log
+    assert "hundredths of a degree" in remarks(log)
+    channels = propose(columns_of(tmp_path / "log.csv")).channels(guessed=True)
+    read = read_log(tmp_path / "log.csv", ChannelFile(channels, FileLayout()))
+    assert read["heading"].values == pytest.approx(MOTION["heading"], abs=0.01)

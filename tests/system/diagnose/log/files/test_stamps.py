@@ -9,6 +9,8 @@ from diagnose.log.files.test_missing import EASY, MOTION, T, log_of, remarks
 from hypothesis import given
 from hypothesis import strategies as some
 
+from shipcosim.errors import ShipcosimError
+
 
 def passed(log):
     return log["time"].values - log["time"].values[0]
@@ -103,3 +105,18 @@ def test_any_other_hour_that_is_missing_is_one(tmp_path, day, hour, zone):
     start = datetime.fromisoformat(f"{day} {hour:02d}:58:20")
     stamps = [(start + timedelta(seconds=s)).isoformat() + zone for s in seconds]
     assert passed(log_of(tmp_path, {"time": stamps} | MOTION)) == pytest.approx(seconds)
+
+
+@pytest.mark.parametrize("has_date", [True, False])
+@pytest.mark.parametrize("start", [datetime(2024, 5, 31, 23, 57, 30), datetime(2024, 5, 3, 4, 5)])
+def test_clock_times_with_dots_are_read(tmp_path, start, has_date):
+    moments = [start + timedelta(seconds=t) for t in T]
+    columns = {"Dato": [m.strftime("%d.%m.%y") for m in moments]} if has_date else {}
+    columns |= {"Kl": [m.strftime("%H.%M.%S") for m in moments]}
+    assert passed(log_of(tmp_path, columns | MOTION)) == pytest.approx(T)
+
+
+def test_a_date_with_dots_is_no_clock_time(tmp_path):
+    days = [f"{10 + int(t // 100):02d}.11.12" for t in T]
+    with pytest.raises(ShipcosimError, match="time"):
+        log_of(tmp_path, {"Dato": days} | MOTION)

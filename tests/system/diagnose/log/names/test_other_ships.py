@@ -41,7 +41,34 @@ LANGUAGES = {
     "좌현 추진기 회전수>port_rpm|우현 추진기 회전수>starboard_rpm|목표 선수방위",
     "Chinese": "时间|艏向(°)>heading|左舷转速>port_rpm|右舷转速>starboard_rpm|"
     "相对风速(m/s)>wind_speed|相对风向(°)>wind_from|目标艏向",
-    "Russian": "Время|Курс [град]?heading",
+    "Russian": "Время|Курс [град]?heading|Путевая скорость [уз]>speed_over_ground|Путевой угол [град]>course_over_ground|"
+    "Скорость ветра относительная [м/с]>wind_speed|Направление ветра относительное [град]>wind_from",
+    "Turkish": "Zaman|Gerçek pruva [°]>heading|Yere göre hız [knot]>speed_over_ground|"
+    "Yere göre rota [°]>course_over_ground|"
+    "Bağıl rüzgar hızı [m/s]>wind_speed|Bağıl rüzgar yönü [°]>wind_from|İskele makine devri [d/d]?port_rpm",
+    "Turkish without accents": "Zaman|GERCEK PRUVA>heading|Yere gore hiz [knot]>speed_over_ground|Rota?course_over_ground",
+    "Finnish": "Aika|Keulasuunta [ast]>heading|Nopeus pohjan yli [solmua]>speed_over_ground|"
+    "Suunta pohjan yli [ast]>course_over_ground|Suhteellinen tuulen nopeus [m/s]>wind_speed|"
+    "Kääntymisnopeus [ast/min]>yaw_rate",
+    "Swedish without accents": "Klockslag|Sann kurs [grader]?heading|Fart over grund [knop]>speed_over_ground|"
+    "Kurs over grund [grader]>course_over_ground|BB propeller varv [rpm]>port_rpm|Relativ vind styrka [m/s]>wind_speed",
+    "Danish": "Tid|Bredde?latitude|Længde?longitude|Retvisende kurs [°]?heading|Fart over grunden [kn]>speed_over_ground|"
+    "Kurs over grunden [°]>course_over_ground",
+    "Norwegian short forms": "Kl|Rettvisende kurs [°]?heading|Fart o/grunn [kn]>speed_over_ground|"
+    "Kurs o/grunn [°]>course_over_ground",
+    "German short forms": "Zeit|Kurs rw [°]>heading|Fahrt ü.G. [kn]>speed_over_ground|Kurs ü.G. [°]>course_over_ground",
+    "French short forms": "Heure|Cap gyro [deg]>heading|V fond [nds]>speed_over_ground|R fond [deg]>course_over_ground",
+    "brackets of full width": "时间|对地速度（节）>speed_over_ground|对地航向（度）>course_over_ground|"
+    "转向率（度/分）>yaw_rate",
+    "vectors of Fossen": "t|eta_N>north|eta_E>east|eta_psi [rad]>heading|nu_u [m/s]>surge|nu_v [m/s]>sway|"
+    "nu_r [rad/s]>yaw_rate",
+    "numbered vectors": "t|eta_1?north|eta_2?east|eta_6 [rad]?heading|nu_1 [m/s]?surge|nu_2 [m/s]?sway|"
+    "nu_6 [rad/s]?yaw_rate",
+    "units without brackets": "Time|Wind Rel deg>wind_from|Wind Rel kts>wind_speed|azi_ps_ang_deg_fb>port_azimuth",
+    "velocities of an autopilot": "timestamp|x?north|y?east|heading [deg]>heading|vx [m/s]?north_velocity|"
+    "vy [m/s]?east_velocity|vz",
+    "a motion sensor": "Time|Motion sensor heading [deg]?heading|Heading of motion [deg]>course_over_ground|"
+    "SOG [kn]>speed_over_ground",
     "tags of a DP system": "Timestamp|HDG_ACT>heading|HDG_SET|AZP_PS_RPM_ACT>port_rpm|AZP_PS_RPM_SET|"
     "AZP_SB_RPM_ACT>starboard_rpm|TT_BOW_RPM_ACT>tunnel_rpm|ROT_ACT [°/min]>yaw_rate",
     "feedback and demand": "Time|Heading>heading|Heading dmd|Port rpm dmd|Port rpm fdbk>port_rpm|"
@@ -57,7 +84,7 @@ def test_names_of_other_recorders_are_known(tmp_path, kind):
     found = used(tmp_path, [mark.partition(">")[0].partition("?")[0] for mark in marked])
     for mark in marked[1:]:
         name, _, role = mark.replace("?", ">").partition(">")
-        guess = found.get(name.partition(" [")[0].partition("(")[0])
+        guess = found.get(name.partition(" [")[0].partition("(")[0].partition("（")[0])
         assert (guess.role if guess else "") == role, mark
         assert guess is None or guess.is_guess == ("?" in mark), mark
 
