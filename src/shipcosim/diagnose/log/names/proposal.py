@@ -127,7 +127,7 @@ def _known_together(every):
         if letter in over_earth:
             guess = replace(guess, role=over_earth[letter], why="it may be along the ship")
         role = {"n": "north", "e": "east"}.get(letter, guess.role)
-        if letter in sure and guess.role != role:
+        if letter in sure and role and guess.role != role:
             guess = Guess(guess.column, role, Channel(column=guess.column), unit=guess.unit)
         is_sure = letter in sure and role
         together.append(replace(guess, rank=min(guess.rank, SURE), why="") if is_sure else guess)
