@@ -102,9 +102,9 @@ def tracks_by_models(record: Record, models: Mapping[str, ShipModel], horizon: f
         [s]
     """
     rows, count, by_model = *_segments(record, horizon), {}
+    # Smoothed measurements give the start; inputs are those of the log without delay.
+    seen = _seen(record, horizon)
     for name, model in models.items():
-        # Smoothed measurements give the start; inputs are those of the log without delay.
-        seen = _seen(record, horizon)
         driven, neutral = replayable(record, model, seen)
         start = true_motion(at_rows(seen, rows), model)
         ahead = readings(predicted(start, rows, driven, neutral, range(1, count + 1)), model)
@@ -151,6 +151,7 @@ def tracks_by_systems(
         if most is None
         else rows[np.unique(np.linspace(0, rows.size - 1, most).round().astype(int))]
     )
+    seen = _seen(record, horizon)
     predicted = {}
     total = rows.size * len(systems)
     for number, (name, replayed) in enumerate(systems.items()):
@@ -159,13 +160,12 @@ def tracks_by_systems(
             if progress is None
             else lambda n, _, done=number: progress(done * rows.size + n, total)
         )
-        predicted[name] = _cosimulated(record, model, replayed, rows, horizon, each)
+        predicted[name] = _cosimulated(record, seen, model, replayed, rows, horizon, each)
     return Tracks(horizon, _measured(record), predicted)
 
 
-def _cosimulated(record, model, replayed, rows, horizon, progress):
-    """Predictions of one system from some rows."""
-    seen = _seen(record, horizon)
+def _cosimulated(record, seen, model, replayed, rows, horizon, progress):
+    """Predictions of one system from some rows of the motion that the log shows."""
     driven, neutral = replayable(record, model, seen)
     # The system's instruments have errors of their own: take them out of the start values.
     errors, lag = _instruments(replayed)

@@ -54,6 +54,13 @@ def test_tables_that_may_start_at_different_times_are_refused(tmp_path):
         read_log(folder_of(tmp_path / "run", "time"))
 
 
+def test_a_table_without_any_time_is_refused_in_a_sentence(tmp_path):
+    (tmp_path / "a.csv").write_text("time,heading\n100,1\n101,2\n102,3\n")
+    (tmp_path / "b.csv").write_text("time,north\n,1\n,2\n,3\n")
+    with pytest.raises(ShipcosimError, match="may count from different starts"):
+        read_log(tmp_path)
+
+
 def test_times_of_two_kinds_are_refused(tmp_path):
     folder = folder_of(tmp_path / "run", "iso")
     (folder / "dvl.csv").write_text(table([("%time", "ns"), ("surge", "surge"), ("sway", "sway")]))

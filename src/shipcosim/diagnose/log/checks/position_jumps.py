@@ -52,14 +52,14 @@ def position_jumps(log: dict) -> list[Finding]:
     at_once = np.hypot(*np.diff(level, axis=0, prepend=level[:1]).T)
     leaps = (size > JUMP_OVER_USUAL * quantile(size, 0.95)) & (at_once > JUMP_AT_ONCE * size)
     rows = [row for row in np.flatnonzero(leaps) if size[row] == size[_near(row)].max()]
-    # Where rows were lost that the clock does not show, she leaps along her way, or her heading leaps too. What leaps
-    # again and again is no other reference.
+    # What leaps again and again is no other reference.
+    if not 0 < len(rows) <= MOST_JUMPS:
+        return []
+    # Where rows were lost that the clock does not show, she leaps along her way, or her heading leaps too.
+    if any(_is_on_her_way(steps[row], velocity[_near(row)]) for row in rows):
+        return []
     heading = logged_heading(log)
-    turned = heading.time[jumps(heading.seen)] if len(heading.rows) else ()
-    is_lossy = np.isin(time[rows], turned).any() or any(
-        _is_on_her_way(steps[row], velocity[_near(row)]) for row in rows
-    )
-    if is_lossy or not 0 < len(rows) <= MOST_JUMPS:
+    if len(heading.rows) and np.isin(time[rows], heading.time[jumps(heading.seen)]).any():
         return []
     return [_finding(log, time[rows], steps[rows], normal_size(steps))]
 

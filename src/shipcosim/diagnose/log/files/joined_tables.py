@@ -15,6 +15,8 @@ from shipcosim.diagnose.numerics import finite, usual_rise
 from shipcosim.errors import error_at
 
 _TABLES = (".csv", ".txt", ".tsv", ".dat", ".csv.gz", ".xlsx", ".parquet")
+_ROWS_BEFORE = 20  # steps by which a clock is ahead that did not start with its table. Assumed.
+_TOGETHER = 0.95  # share of the time that tables of one log have in common. Assumed.
 
 
 def tables_in(path: Path) -> dict[str, Path]:
@@ -74,15 +76,15 @@ def joined(
 
 def _have_one_clock(counts):
     """Whether tables of times that count from no date share a start, as those of a computer that was on before."""
+    if len(counts) < 2:
+        return True
+    if not all(map(len, counts)):
+        return False
     starts = [float(times.min()) for times in counts]
     ends = [float(times.max()) for times in counts]
     is_later = min(starts) > _ROWS_BEFORE * usual_rise(counts[0], np.inf)
     is_one = min(ends) - max(starts) > _TOGETHER * (max(ends) - min(starts))
-    return len(counts) < 2 or (is_later and is_one)
-
-
-_ROWS_BEFORE = 20  # steps by which a clock is ahead that did not start with its table. Assumed.
-_TOGETHER = 0.95  # share of the time that tables of one log have in common. Assumed.
+    return is_later and is_one
 
 
 def _kind(table, channel):

@@ -12,6 +12,18 @@ _GPSD = {"track": "course over ground [deg]", "speed": "speed over ground [m/s]"
 """Reference: gpsd_json(5), gpsd 3.25: classes TPV and ATT."""
 
 
+_UNITS = {
+    "rateofturn": "rad/s",
+    "heading": "rad",
+    "course": "rad",
+    "angle": "rad",
+    "direction": "rad",
+    "speed": "m/s",
+    "revolutions": "Hz",
+}
+"""Units of Signal K by a part of the last word of a path."""
+
+
 def is_json(path: Path) -> bool:
     """Whether a file holds records of JSON by its first characters."""
     return re.match(rb'(?:\xef\xbb\xbf)?\s*(?:\[\s*)?\{\s*"', head_of(path, 512)) is not None
@@ -65,14 +77,3 @@ def _rows_of_delta(record):
                 last = path.rpartition(".")[2].lower()
                 unit = next((_UNITS[part] for part in _UNITS if part in last), "")
                 yield {"time": update.get("timestamp"), "path": path, "value": number, "unit": unit}
-
-
-_UNITS = {
-    "rateofturn": "rad/s",
-    "heading": "rad",
-    "course": "rad",
-    "angle": "rad",
-    "direction": "rad",
-}
-_UNITS |= {"speed": "m/s", "revolutions": "Hz"}
-"""Units of Signal K by a part of the last word of a path."""
