@@ -7,9 +7,12 @@ import pytest
 from diagnose import twin
 
 from shipcosim.diagnose.explanation.course import RAMP, SPELL, STEP, SWITCHING, Course
-from shipcosim.diagnose.explanation.course_search import _tries
+from shipcosim.diagnose.explanation.course_search import _tries, _Whitened
 from shipcosim.diagnose.explanation.summary import evidence_of
+from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import fitted
+from shipcosim.diagnose.inference.parts import beside
+from shipcosim.diagnose.inference.regressors import regressors_of
 from shipcosim.diagnose.pipeline import find_causes
 from shipcosim.report.diagnosis.cause_section import cause_section
 from shipcosim.report.diagnosis.words import finding_text
@@ -98,11 +101,25 @@ def test_a_compass_that_jumps_within_a_block_is_a_step_from_its_row_on():
     log["sway"][after] = (np.cos(jump) * sway - np.sin(jump) * surge)[after]
     problem = twin.ready(log)
     base = fitted(problem)
-    best = max(_tries(problem, base, base.linear), key=lambda attempt: attempt.score)
+    best = max(_tries(_Whitened(problem, base)), key=lambda attempt: attempt.score)
     assert best.hypothesis.cause == "heading_bias" and best.course.kind == STEP
     assert best.course.start == pytest.approx(JUMP, abs=1.0)
     (offset,) = best.values.values()
     assert offset == pytest.approx(jump, rel=0.1)
+
+
+def test_columns_filtered_beside_a_fit_weigh_as_filtered_with_it():
+    problem = twin.ready(twin.sailed({"healthy": {}}, 6.0, 0)["healthy"])
+    base = fitted(problem)
+    group = regressors_of(problem.hypotheses[:1])
+    throughout = [(place, np.ones(problem.record.time.size)) for place in problem.places(group)]
+    weighed = _Whitened(problem, base).weighed(problem.linear, [throughout, throughout])
+    products = problem.gram(beside(base.linear, problem.base_of(group))).products
+    priors = np.array([column.prior for column in base.columns] + [1.0] * len(group))
+    score, theta, _ = evidence(products, priors, np.append(base.centre, np.zeros(len(group))))
+    for found_score, found_theta, _ in weighed:
+        assert found_score == pytest.approx(score, abs=1e-6)
+        assert found_theta == pytest.approx(theta[-len(group) :], rel=1e-6, abs=1e-9)
 
 
 def test_each_edge_of_a_course_moves_but_for_the_end_of_the_log():

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import combinations, islice
+from itertools import chain, combinations, islice
 from typing import NamedTuple
 
 import numpy as np
@@ -43,7 +43,7 @@ from shipcosim.diagnose.inference.fitting import (
     prepared,
     theta_of,
 )
-from shipcosim.diagnose.inference.innovations import Noise
+from shipcosim.diagnose.inference.innovations import Noise, innovations
 from shipcosim.diagnose.inference.linearisation import Regressor, moved
 from shipcosim.diagnose.inference.parts import InParts, beside, linearised_by_parts
 from shipcosim.diagnose.inference.problem import identification_problem, tuned_noise
@@ -211,8 +211,8 @@ def _clear_tries(explained: ExplainedLog) -> list[_Fitted]:
     tried = []
     for base in _bases(explained):
         # All columns of the base once, for every cause beside it.
-        linear = base.linear
-        tried += [_fitted(problem, attempt, linear) for attempt in _tries(problem, base, linear)]
+        whitened = _Whitened(problem, base)
+        tried += [_fitted(problem, attempt, whitened.linear) for attempt in _tries(whitened)]
     return sorted(
         (fit for fit in tried if fit is not None and _is_clear(fit)), key=lambda fit: -fit.score
     )
@@ -259,8 +259,69 @@ def _bases(explained: ExplainedLog) -> list[Fit]:
     return [nothing, *islice(named, 1)]
 
 
-def _tries(problem: IdentificationProblem, base: Fit, linear: InParts) -> list[_Try]:
+class _Whitened:
+    """The columns of a fit, filtered once; those of causes with a course are filtered beside them.
+
+    Attributes
+    ----------
+    problem : IdentificationProblem
+    base : Fit
+    linear : InParts
+        Of the fit.
+    """
+
+    def __init__(self, problem: IdentificationProblem, base: Fit):
+        self.problem = problem
+        self.base = base
+        self.linear = base.linear
+        # The filter depends on the log's own column alone: further columns need no other.
+        self._alone = linearised_by_parts(base.about, base.record, base.model, [])
+        self._columns = self._filtered(self.linear)
+
+    def _filtered(self, linear: InParts) -> np.ndarray:
+        """Whitened columns of a problem, rows and channels in one axis."""
+        white = innovations(linear, self.problem.noise, self.problem.record).white
+        return white.reshape(-1, white.shape[-1])
+
+    def weighed(
+        self, plain: InParts, groups: Sequence[Sequence[tuple[int, np.ndarray]]]
+    ) -> Iterator[tuple[float, np.ndarray, np.ndarray]]:
+        """Evidence of each group of columns by itself, beside the fit.
+
+        Parameters
+        ----------
+        plain : InParts
+        groups : sequence of sequence of tuple of int and (n,) array
+            Number of each column in `plain`, from 1 on, and its share of its size in each row.
+
+        Yields
+        ------
+        tuple of float, (k,) array, (k, k) array
+            Score [nats], θ of the group and its covariance.
+        """
+        # All groups in one pass of the filter; of the products each takes the fit's columns and its own.
+        places, shares = zip(*chain.from_iterable(groups), strict=True)
+        shaped = _shaped(self._alone, plain, list(places), np.stack(shares, axis=-1))
+        columns = np.hstack([self._columns, self._filtered(shaped)[:, 1:]])
+        products = columns.T @ columns
+        of_fit = np.arange(self._columns.shape[1])
+        first = of_fit.size
+        # A course leaves the numbers' own tolerances in place: they are of all rows.
+        priors = [column.prior for column in self.base.columns]
+        for new in map(len, groups):
+            chosen = [*of_fit, *range(first, first + new)]
+            first += new
+            score, theta, covariance = evidence(
+                products[np.ix_(chosen, chosen)],
+                np.concatenate([priors, np.ones(new)]),
+                np.concatenate([self.base.centre, np.zeros(new)]),
+            )
+            yield score, theta[-new:], covariance[-new:, -new:]
+
+
+def _tries(whitened: _Whitened) -> list[_Try]:
     """The likeliest courses of the likeliest causes beside a fit, each by the evidence of its own columns."""
+    problem, base = whitened.problem, whitened.base
     in_base = {hypothesis.label for hypothesis in base.hypotheses}
     # A cause whose vector turns already varies over the log.
     wanted = [
@@ -271,14 +332,14 @@ def _tries(problem: IdentificationProblem, base: Fit, linear: InParts) -> list[_
     if not wanted:
         return []
     # Coarse search: all courses by sums over blocks of the log; the likeliest causes go on.
-    blocks = _blocks(problem, base, linear, wanted)
+    blocks = _blocks(whitened, wanted)
     first = _first_sight(blocks, wanted)
     leaders = _likeliest(first)[: 2 * LIKELIEST_COURSES]
     labels = {attempt.hypothesis.label for attempt in leaders}
     chosen = [attempt for attempt in first if attempt.hypothesis.label in labels]
     # Row by row the best course of each cause: each kind as it is, and the likeliest with its edges at their rows.
-    of_rows = _of_rows(problem, base, linear, chosen)
-    sharp = _to_the_row(problem, blocks, linear, leaders[:LIKELIEST_COURSES])
+    of_rows = _of_rows(whitened, chosen)
+    sharp = _to_the_row(whitened, blocks, leaders[:LIKELIEST_COURSES])
     likely = _likeliest([*of_rows, *sharp])[:LIKELIEST_COURSES]
     # Further spells are found at first sight, and fitted beside the course without them.
     further = (_with_further_spells(blocks, attempt) for attempt in likely)
@@ -287,7 +348,7 @@ def _tries(problem: IdentificationProblem, base: Fit, linear: InParts) -> list[_
         for longer, other in zip(further, likely, strict=True)
         if longer.course != other.course
     ]
-    return [*likely, *_to_the_row(problem, blocks, linear, changed)]
+    return [*likely, *_to_the_row(whitened, blocks, changed)]
 
 
 def _likeliest(tries: Sequence[_Try]) -> list[_Try]:
@@ -298,34 +359,27 @@ def _likeliest(tries: Sequence[_Try]) -> list[_Try]:
     return list(best.values())
 
 
-def _of_rows(
-    problem: IdentificationProblem, base: Fit, linear: InParts, tries: Sequence[_Try]
-) -> list[_Try]:
+def _of_rows(whitened: _Whitened, tries: Sequence[_Try]) -> list[_Try]:
     """Courses with their evidence row by row, less what the search over their times costs."""
-    # Filter the columns of all courses in one pass.
-    time = problem.record.time
+    problem = whitened.problem
+    groups = []
     for attempt in tries:
-        linear = beside(linear, _shaped(problem.base_of(attempt.group), attempt.course.at(time)))
-    products = problem.gram(linear).products
-    scored = []
-    place = len(base.columns)
-    for attempt in tries:
-        places = range(place, place + len(attempt.group))
-        place += len(attempt.group)
-        gain, theta, _ = _weighed(products, base, places)
-        values = _values(problem, attempt.group, theta)
-        scored.append(attempt._replace(score=gain + attempt.occam, values=values))
-    return scored
+        share = attempt.course.at(problem.record.time)
+        groups.append([(place, share) for place in problem.places(attempt.group)])
+    return [
+        attempt._replace(score=gain + attempt.occam, values=_values(problem, attempt.group, theta))
+        for attempt, (gain, theta, _) in zip(
+            tries, whitened.weighed(problem.linear, groups), strict=True
+        )
+    ]
 
 
-def _to_the_row(
-    problem: IdentificationProblem, blocks: _Blocks, linear: InParts, tries: Sequence[_Try]
-) -> list[_Try]:
+def _to_the_row(whitened: _Whitened, blocks: _Blocks, tries: Sequence[_Try]) -> list[_Try]:
     """Steps and spells, one of a cause, with their edges at the likeliest rows instead of between two blocks.
 
     A compass that jumps by 4 deg is wrong by it in each row between the two: such a step at a wrong second is unlikely.
     """
-    step = problem.record.step
+    step = whitened.problem.record.step
     end = float(blocks.edges[-1])
     move = 0.5 * float(blocks.edges[1] - blocks.edges[0])
     # Each edge is one among the rows of a block, which costs as the search among blocks does.
@@ -335,7 +389,7 @@ def _to_the_row(
         for attempt in tries
         if attempt.course.kind != RAMP
     ]
-    sharp = _of_rows(problem, blocks.base, linear, edged) if edged else []
+    sharp = _of_rows(whitened, edged) if edged else []
     # Edges are moved to and fro while that gains clearly, then by half as much, down to a row.
     while sharp and move > 0.5 * step:
         near = [
@@ -347,7 +401,7 @@ def _to_the_row(
         least = {attempt.hypothesis.label: attempt.score + APART for attempt in sharp}
         better = [
             attempt
-            for attempt in _of_rows(problem, blocks.base, linear, near)
+            for attempt in _of_rows(whitened, near)
             if attempt.score > least[attempt.hypothesis.label]
         ]
         sharp = _likeliest([*better, *sharp])
@@ -429,29 +483,21 @@ def _mixed(plain: InParts, there: InParts, shares: np.ndarray, count: int) -> In
     return InParts(plain.rows, plain.columns, part)
 
 
-def _shaped(plain: InParts, shares: np.ndarray) -> InParts:
-    """Columns of a cause times its share of its size in each row."""
+def _shaped(alone: InParts, plain: InParts, places: Sequence[int], shares: np.ndarray) -> InParts:
+    """The log's own column, then columns of another problem, each times its share of its size in each row."""
 
     def part(rows):
-        of_part = plain.part(rows)
-        share = shares[rows]
-        return of_part._replace(
-            driven=of_part.driven * share[: len(of_part.driven), None, None],
-            seen=of_part.seen * share[:, None, None],
-        )
+        first, of_part = alone.part(rows), plain.part(rows)
+        share = shares[rows, None]
+        columns = {
+            name: np.concatenate(
+                [getattr(first, name), values[..., places] * share[: len(values)]], axis=-1
+            )
+            for name, values in (("driven", of_part.driven), ("seen", of_part.seen))
+        }
+        return first._replace(**columns)
 
-    return InParts(plain.rows, plain.columns, part)
-
-
-def _weighed(products, base, cause_places) -> tuple[float, np.ndarray, np.ndarray]:
-    """Score of own columns beside those of a fit [nats], their θ and its covariance."""
-    count = len(base.columns)
-    chosen = [0, *range(1, count + 1), *(1 + place for place in cause_places)]
-    # A course leaves the numbers' own tolerances in place: they are of all rows.
-    prior = np.concatenate([[column.prior for column in base.columns], np.ones(len(cause_places))])
-    centre = np.concatenate([base.centre, np.zeros(len(cause_places))])
-    score, theta, covariance = evidence(products[np.ix_(chosen, chosen)], prior, centre)
-    return score, theta[count:], covariance[count:, count:]
+    return InParts(plain.rows, len(places), part)
 
 
 @dataclass(frozen=True, eq=False)
@@ -505,11 +551,12 @@ class _Blocks:
         return 0.5 * (pull * mean).sum(1) - 0.5 * np.linalg.slogdet(inner)[1]
 
 
-def _blocks(problem, base, linear, wanted) -> _Blocks:
+def _blocks(whitened: _Whitened, wanted) -> _Blocks:
+    problem, base = whitened.problem, whitened.base
     time = problem.record.time
     # Blocks of COURSE_BLOCK each, within limits, so that the number of courses stays small.
     count = int(np.clip((time[-1] - time[0]) / COURSE_BLOCK, 8, MOST_COURSE_BLOCKS))
-    linear = beside(linear, problem.base_of(regressors_of(wanted)))
+    linear = beside(whitened.linear, problem.base_of(regressors_of(wanted)))
     parts = problem.gram(linear, count).blocks
     edges = np.linspace(time[0], time[-1] + problem.record.step, count + 1)
     places: dict[str, list[slice]] = {}
@@ -664,14 +711,10 @@ def _sizes_over_time(problem, fit: _Fitted) -> tuple[SizeOverTime, ...]:
     spells = list(zip(map(float, edges[:-1]), map(float, edges[1:]), strict=True))
     group = fit.columns[fit.own]
     plain = linearised_by_parts(base.about, base.record, base.model, group)
-    linear = base.linear
-    for spell in spells:
-        linear = beside(linear, _shaped(plain, Course(SPELL, (spell,)).at(time)))
     # One joint fit of all parts beside the base, so that their sizes are estimated together.
-    products = problem.gram(linear).products
-    count = len(base.columns)
-    cause_places = range(count, count + len(group) * len(spells))
-    _, theta, covariance = _weighed(products, base, cause_places)
+    shares = [Course(SPELL, (spell,)).at(time) for spell in spells]
+    columns = [(1 + place, share) for share in shares for place in range(len(group))]
+    ((_, theta, covariance),) = _Whitened(problem, base).weighed(plain, [columns])
     # Collect the estimates of each parameter over the parts.
     each: dict[str, list[ParameterEstimate]] = {}
     for k in range(len(spells)):

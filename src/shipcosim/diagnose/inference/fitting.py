@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -57,7 +58,7 @@ class IdentificationProblem:
         default_factory=dict, init=False, repr=False, compare=False
     )
 
-    @property
+    @cached_property
     def basis(self) -> list[Regressor]:
         """Regressors of all known numbers, and of every hypothesis for the first search."""
         return self.ship_columns(()) + regressors_of(self.hypotheses)
@@ -71,8 +72,12 @@ class IdentificationProblem:
 
     def base_of(self, columns: Iterable[Regressor]) -> InParts:
         """The problem about the ship without a cause, with these columns of the basis."""
+        return self.linear.chosen(self.places(columns))
+
+    def places(self, columns: Iterable[Regressor]) -> list[int]:
+        """Numbers of some columns of the basis, from 1 on."""
         places = {column.key: i for i, column in enumerate(self.basis, start=1)}
-        return self.linear.chosen([places[column.key] for column in columns])
+        return [places[column.key] for column in columns]
 
     def gram(self, linear: InParts, parts: int = 8) -> Gram:
         """Inner products of a linear problem of this log, filtered by its noise, as `inner_products`."""
