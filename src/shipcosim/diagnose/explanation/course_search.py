@@ -65,6 +65,7 @@ from shipcosim.diagnose.inference.thresholds import (
     SIZES_OVER_TIME,
     WALK_IN_YAW,
 )
+from shipcosim.diagnose.inference.workers import each
 from shipcosim.errors import ShipcosimError
 
 
@@ -121,7 +122,8 @@ def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
     # Log-evidence of steady causes, less the cost of another form: the score to beat.
     steady = given.fits[0].score - _cost(given)
     # The same search with other noise or form, as the result must not hang on these.
-    sought = [(log, _clear_tries(log)) for log in (given, *_otherwise(given, plain))]
+    logs = [given, *_otherwise(given, plain)]
+    sought = list(zip(logs, each(_clear_tries, logs), strict=True))
     enough = [pair for pair in sought if _is_better(*pair, given)]
     chosen, tries = max(sought, key=_worth)
     if tries and not enough and max(identification.problem.noise.walk[:2]) > EXPLAINED_WALK:
@@ -139,7 +141,7 @@ def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
     # Fewer causes are preferred where they explain the log nearly as well.
     best = next(
         attempt
-        for attempt in sorted(tries, key=lambda each: len(each.of.base.hypotheses))
+        for attempt in sorted(tries, key=lambda rival: len(rival.of.base.hypotheses))
         if attempt.score > tries[0].score - ENOUGH * len(tries[0].of.base.hypotheses) - APART
     )
     chance, rivals = _rivals(best, tries, [others[0] for _, others in enough])
@@ -615,7 +617,7 @@ def _with_further_spells(blocks: _Blocks, attempt: _Try) -> _Try:
     # Sums by block let further spells be tried without filtering again.
     place = blocks.places[attempt.hypothesis.label][groups.index(attempt.group)]
     spells = [course for course in _courses(blocks.edges) if course.kind != RAMP]
-    each = np.stack([course.at(blocks.middle) for course in spells])
+    added = np.stack([course.at(blocks.middle) for course in spells])
     course = attempt.course
     if course.kind == RAMP:
         return attempt
@@ -625,9 +627,9 @@ def _with_further_spells(blocks: _Blocks, attempt: _Try) -> _Try:
     # Greedy search: the best further spell or hole is kept while it gains enough.
     while True:
         # Spells that neither overlap with those that are there nor touch them, or holes in one of them.
-        apart = each @ np.convolve(share, np.ones(3), "same") == 0.0
-        inside = np.all(each <= share, axis=1) & (each @ share < share.sum())
-        tried = np.where(inside[:, None], share - each, share + each)
+        apart = added @ np.convolve(share, np.ones(3), "same") == 0.0
+        inside = np.all(added <= share, axis=1) & (added @ share < share.sum())
+        tried = np.where(inside[:, None], share - added, share + added)
         tried = tried[apart | inside]
         if not len(tried):
             break
@@ -716,12 +718,12 @@ def _sizes_over_time(problem, fit: _Fitted) -> tuple[SizeOverTime, ...]:
     columns = [(1 + place, share) for share in shares for place in range(len(group))]
     ((_, theta, covariance),) = _Whitened(problem, base).weighed(plain, [columns])
     # Collect the estimates of each parameter over the parts.
-    each: dict[str, list[ParameterEstimate]] = {}
+    by_name: dict[str, list[ParameterEstimate]] = {}
     for k in range(len(spells)):
         part = slice(k * len(group), (k + 1) * len(group))
         sizes = _estimates(hypothesis, group, theta[part], covariance[part, part])
         for name, size in sizes.items():
-            each.setdefault(name, []).append(size)
+            by_name.setdefault(name, []).append(size)
     return tuple(
         SizeOverTime(
             name,
@@ -730,7 +732,7 @@ def _sizes_over_time(problem, fit: _Fitted) -> tuple[SizeOverTime, ...]:
             np.array([size.estimate for size in sizes]),
             np.array([size.std for size in sizes]),
         )
-        for name, sizes in each.items()
+        for name, sizes in by_name.items()
     )
 
 

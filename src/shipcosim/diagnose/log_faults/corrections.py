@@ -16,6 +16,7 @@ from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.inference.fitting import fitted_beside
 from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.inference.thresholds import EXPLAINED_WALK, MOST_CAUSES, UNMODELLED
+from shipcosim.diagnose.inference.workers import each
 from shipcosim.diagnose.log.checks.samples import LIFELESS
 from shipcosim.diagnose.log.checks.wind import leaps
 from shipcosim.diagnose.log.mislabels import (
@@ -241,10 +242,13 @@ def _with_right_input(explained, plain):
     """
     best = explained.fits[0]
     # Candidates by their likelihood about the present motion, each then identified anew.
-    candidates = []
-    for fault in suspected_inputs(plain.repaired, plain.problem)[:MOST_TRIED]:
+    suspects = suspected_inputs(plain.repaired, plain.problem)[:MOST_TRIED]
+
+    def candidate(fault):
         problem = _relabelled(plain, fault).problem
-        candidates.append((at_first_sight(problem), fault, problem))
+        return at_first_sight(problem), fault, problem
+
+    candidates = each(candidate, suspects)
     # The likeliest is settled in any case: a rough segment may hide it. Further ones must beat the best fit with causes
     # in their rough segments.
     least = -np.inf
