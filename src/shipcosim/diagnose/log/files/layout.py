@@ -67,6 +67,9 @@ def layout_of(
     if form.names is not None:
         return Layout(separator, form.names, (), first, _skipped(above))
     at, units, header = _header(lines, above, separator, width, is_unit)
+    # A log of MOOS names its variables in its rows.
+    if header is None and any(lines[i].startswith("%% LOG FILE") for i in above):
+        header = ["time", "name", "process", "value"]
     if header is None:
         names = ", ".join(f'"column {i + 1}"' for i in range(min(width, 3)))
         message = f"no names of columns stand above the first row of numbers, line {first + 1}, which has {width}."
@@ -170,18 +173,16 @@ def _header(lines, above, separator, width, is_unit):
 
 
 def _with_groups(row, above, separator):
-    """Names that stand there twice or not at all, with the groups in the row above them where all groups differ."""
+    """Names with the groups in the row above them, where names stand there twice or not at all and groups differ."""
     groups = cells_in(above, separator)
     groups += [""] * (len(row) - len(groups))
-    if len(groups) != len(row) or separator == " " or (len(set(row)) == len(row) and "" not in row):
+    is_clear = len(set(row)) == len(row) and "" not in row
+    if len(groups) != len(row) or separator == " " or is_clear or is_comment(above):
         return row
     # A group stands over its first column, and over those after it that have none.
     for i in range(1, len(groups)):
         groups[i] = groups[i] or groups[i - 1]
-    names = [
-        f"{group} {name}".strip() if row.count(name) > 1 or not name else name
-        for group, name in zip(groups, row, strict=True)
-    ]
+    names = [f"{group} {name}".strip() for group, name in zip(groups, row, strict=True)]
     return names if len(set(names)) == len(names) else row
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from shipcosim.diagnose.log.files.cells import numbers_of, with_unit
 from shipcosim.diagnose.log.files.excel import is_workbook, text_of_sheet
 from shipcosim.diagnose.log.files.file_layout import FileLayout
-from shipcosim.diagnose.log.files.json_records import is_json, text_of_records
+from shipcosim.diagnose.log.files.json_records import holds_records, text_of_records
 from shipcosim.diagnose.log.files.layout import Layout, layout_of, without_labview_header
 from shipcosim.diagnose.log.files.matlab import columns_of_matlab, is_matlab
 from shipcosim.diagnose.log.files.nmea import columns_of_sentences, holds_sentences
@@ -94,13 +94,13 @@ def read_file(path: Path, form: FileLayout) -> LogColumns:
     if is_workbook(path):
         text, remarks = text_of_sheet(path, form.sheet)
         form = form.model_copy(update={"separator": "\t"})
-    elif is_json(path):
+    elif holds_records(path):
         text, remarks = text_of_records(path)
         form = form.model_copy(update={"separator": "\t"})
     else:
         text, remarks = text_of(path, form.encoding)
     # Records and sheets may hold raw sentences too, behind the times at which they were received.
-    lines = text.splitlines()[1 if is_json(path) else 0 :]
+    lines = text.splitlines()[1 if holds_records(path) else 0 :]
     if holds_sentences(lines):
         values, units, more = columns_of_sentences(str(path), lines)
         return LogColumns(str(path), values, units, (*remarks, *more))
