@@ -84,10 +84,9 @@ def read_file(path: Path, form: FileLayout) -> LogColumns:
     if not path.is_file():
         raise error_at(str(path), "there is no such file.")
     if ending_of(path) in (".nc", ".parquet"):
-        columns = read_columns(path)
-        values = {name: values for name, (values, _) in columns.items()}
-        units = {name: unit for name, (_, unit) in columns.items()}
-        return LogColumns(str(path), values, units, titles=_titles(path, values))
+        columns = read_columns(path).items()
+        values, units, titles = ({name: c[part] for name, c in columns} for part in range(3))
+        return LogColumns(str(path), values, units, titles=titles)
     if is_matlab(path):
         return LogColumns(str(path), *columns_of_matlab(path))
     refuse_foreign(path)
@@ -108,21 +107,6 @@ def read_file(path: Path, form: FileLayout) -> LogColumns:
     return replace(read, remarks=(*remarks, *read.remarks))
 
 
-def _titles(path, names):
-    """Standard names of CF, else long names, of the columns of a NetCDF file; empty for others."""
-    import xarray
-
-    if ending_of(path) != ".nc":
-        return {}
-    with xarray.open_dataset(path, decode_times=False) as table:
-        attributes = {
-            name: table.variables[name].attrs for name in names if name in table.variables
-        }
-    return {
-        name: str(a.get("standard_name", a.get("long_name", ""))) for name, a in attributes.items()
-    }
-
-
 def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
     # Layout first, then the rows of the right length, then the decimal sign, then each column.
     lines = without_labview_header(text.splitlines())
@@ -134,7 +118,10 @@ def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
     names, units, doubled = _names(layout)
     values = {}
     for i, name in enumerate(names):
-        values[name], more = _column(name, frame[i], decimal)
+        if frame[i].dtype.kind in "fiub":
+            values[name] = frame[i].to_numpy(float)
+            continue
+        values[name], more = numbers_of(name, frame[i], decimal)
         remarks += more
         if (
             values[name].dtype.kind == "O"
@@ -319,10 +306,3 @@ def _with_comma(columns):
         if len(numbers) > 0.9 * len(text):
             cells += numbers[numbers.str.contains(",", regex=False)].unique().tolist()
     return cells
-
-
-def _column(name, cells, decimal):
-    """Values of a column, and remarks on them."""
-    if cells.dtype.kind in "fiub":
-        return cells.to_numpy(float), []
-    return numbers_of(name, cells, decimal)
