@@ -65,7 +65,7 @@ def _numbers(message: Any, before: str, depth: int) -> Iterator[tuple[str, float
 
 
 def table_of(path: Path, rows: list[dict[str, float]]) -> LogColumns:
-    """Messages with a time [s] as a table: its columns are the numbers of the first of them."""
-    names = list(rows[0])
+    """Messages with a time [s] as a table with a column for each name, NaN where a message has none."""
+    names = dict.fromkeys(name for row in rows for name in row)
     values = {name: np.array([row.get(name, np.nan) for row in rows]) for name in names}
     return LogColumns(str(path), values, {name: "s" if name == "time" else "" for name in names})
