@@ -52,7 +52,7 @@ class LogColumns:
     joined : bool
         Whether rows of several tables stand below each other, each with the columns of its own.
     titles : mapping of str to str
-        What a file of NetCDF says of a column besides its name.
+        What a file of NetCDF says of a column besides its name, or its name behind that of its group.
     """
 
     source: str
@@ -138,7 +138,8 @@ def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
         remarks.append(f"Time is made of {', '.join(parts)}.")
     remarks += with_minutes(values, units)
     doubled = tuple(name for name in doubled if f"{name} (2)" in values)
-    return LogColumns(source, values, units, (*layout.remarks, *remarks), doubled)
+    titles = dict(zip(names, layout.titles, strict=False))
+    return LogColumns(source, values, units, (*layout.remarks, *remarks), doubled, titles=titles)
 
 
 def _names(layout: Layout) -> tuple[list[str], dict[str, str], tuple[str, ...]]:

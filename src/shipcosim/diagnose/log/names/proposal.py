@@ -20,7 +20,12 @@ from shipcosim.diagnose.log.names.guesses import (
 )
 from shipcosim.diagnose.log.names.units import unit_for
 from shipcosim.diagnose.log.names.unstated_units import are_axes_open, exchange_axes, settled
-from shipcosim.diagnose.log.names.vocabulary import all_words, meaning_of, vocabulary, words_of
+from shipcosim.diagnose.log.names.vocabulary import (
+    meaning_of,
+    simple_words,
+    vocabulary,
+    words_of,
+)
 from shipcosim.diagnose.log.values import LARGEST
 from shipcosim.diagnose.numerics import finite
 
@@ -112,7 +117,8 @@ def propose(
 def _site(log):
     """Words that all names of several words share and that no name in names.toml has: historians write the ship's."""
     names = [set(words_of(column)) for column in log.values if len(words_of(column)) > 1]
-    return frozenset(set.intersection(*names) - all_words() if len(names) > 2 else ())
+    shared = set.intersection(*names) - simple_words() if len(names) > 2 else ()
+    return frozenset(word for word in shared if len(word) > 2)
 
 
 def _known_together(every):

@@ -79,19 +79,19 @@ def _short_forms() -> dict[str, str]:
 
 def _written_out(word, same):
     """A word in English, also one of several words without blanks between, as northern languages and loggers write."""
-    if word in same or word in _simple_words():
+    if word in same or word in simple_words():
         return same.get(word, word)
     for cut in range(_SHORTEST, len(word) - 1):
         first, rest = word[:cut], word[cut:]
-        if first in _simple_words():
+        if first in simple_words():
             more = _written_out(rest, same)
-            if rest in _simple_words() or rest in _units() or " " in more:
+            if rest in simple_words() or rest in _units() or " " in more:
                 return f"{same.get(first, first)} {more}"
     return word
 
 
 @cache
-def _simple_words() -> frozenset[str]:
+def simple_words() -> frozenset[str]:
     """Words of some letters that names are made of, which others may be written together from."""
     terms = vocabulary()
     texts = [*_short_forms(), *terms["none"]]
@@ -109,12 +109,6 @@ def _units() -> frozenset[str]:
     """Spellings of units of two letters or more that names may end in without a blank."""
     spellings = (text for unit in vocabulary()["units"].values() for text in unit)
     return frozenset(text for text in spellings if text.isalpha() and len(text) > 1)
-
-
-@cache
-def all_words() -> set[str]:
-    """Every word of names.toml."""
-    return set(words_of(_FILE.read_text(encoding="utf-8")))
 
 
 @cache
