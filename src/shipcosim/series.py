@@ -19,7 +19,7 @@ from functools import cache
 from importlib.util import find_spec
 from mmap import ACCESS_READ, mmap
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import quote
 
 import numpy as np
@@ -168,7 +168,15 @@ def read_table(path: str | os.PathLike) -> xarray.Dataset:
     return table
 
 
-def read_columns(path: str | os.PathLike) -> dict[str, tuple[np.ndarray, str]]:
+class TableColumn(NamedTuple):
+    """Values and unit of a column as they stand in a file, and what NetCDF says of it besides its name."""
+
+    values: np.ndarray
+    unit: str
+    title: str = ""
+
+
+def read_columns(path: str | os.PathLike) -> dict[str, TableColumn]:
     """Columns of any table of measurements, as they stand in the file.
 
     Numbers become float64, missing ones NaN, stamps of date and time seconds after the first; a column of texts stays
@@ -181,8 +189,8 @@ def read_columns(path: str | os.PathLike) -> dict[str, tuple[np.ndarray, str]]:
 
     Returns
     -------
-    dict of str to (array, str)
-        Values and unit by the column's name.
+    dict of str to TableColumn
+        By the column's name.
 
     Raises
     ------
@@ -194,11 +202,11 @@ def read_columns(path: str | os.PathLike) -> dict[str, tuple[np.ndarray, str]]:
         suffix = _suffix(path, (".nc", ".csv", ".csv.gz", ".parquet"))
         if suffix == ".nc":
             columns = _netcdf_columns(_open_netcdf(path))
-            return {name: column for name, column in columns.items() if len(column[0])}
+            return {name: column for name, column in columns.items() if len(column.values)}
         columns = _read_columns(path)
     problems = _repeated(path, [name for name, _, _ in columns])
     raise_errors(problems)
-    return {name: (values, unit) for name, unit, values in columns}
+    return {name: TableColumn(values, unit) for name, unit, values in columns}
 
 
 def ending_of(path: Path) -> str:
@@ -466,7 +474,7 @@ def _read_netcdf(path: Path) -> xarray.Dataset:
     return table
 
 
-def _netcdf_columns(table: xarray.Dataset) -> dict[str, tuple[np.ndarray, str]]:
+def _netcdf_columns(table: xarray.Dataset) -> dict[str, TableColumn]:
     """The variables with one dimension. Units like "seconds since 2022-10-27" count seconds."""
     columns = {}
     for name, variable in table.variables.items():
@@ -479,7 +487,10 @@ def _netcdf_columns(table: xarray.Dataset) -> dict[str, tuple[np.ndarray, str]]:
             # What is no number becomes a text, as in a CSV file.
             plain = [v.decode(errors="replace") if isinstance(v, bytes) else v for v in values]
             values = np.array(list(map(str, plain)), dtype=object)
-        columns[str(name)] = values, str(variable.attrs.get("units", "")).partition(" since ")[0]
+        unit = str(variable.attrs.get("units", "")).partition(" since ")[0]
+        # The standard name of CF goes before a long name.
+        title = variable.attrs.get("standard_name", variable.attrs.get("long_name", ""))
+        columns[str(name)] = TableColumn(values, unit, str(title))
     return columns
 
 

@@ -277,7 +277,7 @@ def test_columns_stand_as_in_the_file_whatever_they_are_called(tmp_path):
         "when,x [kn],,note,on\n2022-10-27 08:00:00,1,7,a,true\n2022-10-27 08:00:01.5,,8,,false\n"
     )
     columns = read_columns(path)
-    assert {name: unit for name, (_, unit) in columns.items()} == {
+    assert {name: column.unit for name, column in columns.items()} == {
         "when": "s",
         "x": "kn",
         "": "",

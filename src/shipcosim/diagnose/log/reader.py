@@ -12,6 +12,7 @@ import numpy as np
 from shipcosim.diagnose.log.channels import Channel, ChannelFile, read_channels
 from shipcosim.diagnose.log.degree_size import local_plane
 from shipcosim.diagnose.log.files.bags import is_bag, tables_of_bag
+from shipcosim.diagnose.log.files.dataflash import is_dataflash, tables_of_dataflash
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.joined_tables import joined, tables_in
 from shipcosim.diagnose.log.files.long_format import brought_together, spread
@@ -120,6 +121,14 @@ def read_log(
     return table
 
 
+_SEVERAL_TABLES = (
+    (is_bag, tables_of_bag),
+    (is_messages, tables_of_messages),
+    (is_dataflash, tables_of_dataflash),
+)
+"""Forms of files that hold several tables: how each is recognised and read."""
+
+
 def columns_of(log: str | os.PathLike, form: FileLayout | None = None) -> LogColumns:
     """Columns of a file, one for each channel also where a file has one value a row.
 
@@ -134,9 +143,10 @@ def columns_of(log: str | os.PathLike, form: FileLayout | None = None) -> LogCol
     form = form or FileLayout()
     with reading(path):
         # A bag or a folder holds several tables, with a clock in each.
-        if is_bag(path) or is_messages(path):
-            tables = tables_of_bag(path) if is_bag(path) else tables_of_messages(path)
-            return joined(path, tables, dict.fromkeys(tables, Channel(column="time")))
+        for is_such, tables_of in _SEVERAL_TABLES:
+            if is_such(path):
+                tables = tables_of(path)
+                return joined(path, tables, dict.fromkeys(tables, Channel(column="time")))
         files = tables_in(path)
         if not files:
             return without_missing(spread(read_file(path, form), form))

@@ -17,6 +17,7 @@ from shipcosim.diagnose.log.files.positions import (
 )
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.files.times import (
+    DAY,
     EPOCHS,
     epoch_unit,
     is_clock_number,
@@ -42,14 +43,10 @@ _STEPS = (
     SHORTEST_STEP,
     90.0,
 )  # s between rows, beyond which numbers without a unit are hardly seconds. Assumed.
-_SIZES = {"d": 86400.0, "s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}  # s
-_NAMES = {
-    "d": "days",
-    "s": "seconds",
-    "ms": "milliseconds",
-    "us": "microseconds",
-    "ns": "nanoseconds",
-}
+_SIZES = {"d": DAY} | {unit: 1.0 / count for unit, count in EPOCHS.items()}  # s
+_NAMES = dict(
+    zip(_SIZES, "days seconds milliseconds microseconds nanoseconds".split(), strict=True)
+)
 _MOST_TURNED = 1080.0  # deg; where turns are counted on a log begins within it. Assumed.
 _FEW_IMPOSSIBLE = 0.1  # share of impossible directions, above which the unit is wrong. Assumed.
 _USUALLY_TURNED = 4.0  # times the median of a direction; a number above is none. Assumed.

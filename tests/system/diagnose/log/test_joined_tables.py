@@ -161,9 +161,14 @@ def test_the_text_of_an_analyzer_is_read(unit, tmp_path):
     assert max(off(log, role) for role in ("heading", "yaw_rate", "north", "east")) < 0.02
 
 
-def test_angles_of_messages_without_units_are_asked_where_they_may_be_radians(tmp_path):
+def test_the_course_says_the_unit_of_angles_of_messages_and_without_positions_they_are_asked(
+    tmp_path,
+):
     path = tmp_path / "boat.json"
-    path.write_text("\n".join(list(messages("si"))[1:]) + "\n")
+    lines = list(messages("si"))[1:]
+    path.write_text("\n".join(lines) + "\n")
+    assert off(read_log(path), "heading") < 0.01
+    path.write_text("\n".join(line for line in lines if "127250" in line) + "\n")
     assert "heading" not in propose(columns_of(path)).channels()
 
 

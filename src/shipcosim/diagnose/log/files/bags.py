@@ -45,7 +45,7 @@ def tables_of_bag(path: Path) -> dict[str, LogColumns]:
                 row = {"time": 1e-9 * stamp} | dict(_numbers(message, "", 0))
                 rows.setdefault(connection.topic.strip("/").replace("/", "."), []).append(row)
     tables = {
-        topic: _table(path, messages) for topic, messages in rows.items() if len(messages[0]) > 1
+        topic: table_of(path, messages) for topic, messages in rows.items() if len(messages[0]) > 1
     }
     if not tables:
         raise error_at(str(path), "is a bag without numbers.", "Record the topics of the ship.")
@@ -64,7 +64,8 @@ def _numbers(message: Any, before: str, depth: int) -> Iterator[tuple[str, float
             yield from _numbers(value, label, depth + 1)
 
 
-def _table(path, rows):
-    names = list(rows[0])
+def table_of(path: Path, rows: list[dict[str, float]]) -> LogColumns:
+    """Messages with a time [s] as a table with a column for each name, NaN where a message has none."""
+    names = dict.fromkeys(name for row in rows for name in row)
     values = {name: np.array([row.get(name, np.nan) for row in rows]) for name in names}
     return LogColumns(str(path), values, {name: "s" if name == "time" else "" for name in names})

@@ -1,10 +1,12 @@
-"""Records of JSON as text: a list of them, one a line, or a list for each column; tabs between cells."""
+"""Records of JSON, of XML such as GPX, or of lines with ``key=value``, as text with tabs between cells."""
 
 from __future__ import annotations
 
 import json
 import re
+from collections import Counter
 from pathlib import Path
+from xml.etree import ElementTree
 
 from shipcosim.diagnose.log.files.text import head_of, text_of
 
@@ -24,9 +26,15 @@ _UNITS = {
 """Units of Signal K by a part of the last word of a path."""
 
 
-def is_json(path: Path) -> bool:
-    """Whether a file holds records of JSON by its first characters."""
-    return re.match(rb'(?:\xef\xbb\xbf)?\s*(?:\[\s*)?\{\s*"', head_of(path, 512)) is not None
+_PAIR = re.compile(r'([^\s=]+)=("[^"]*"|\S*)')
+_MARKS = re.compile(
+    rb'(?:\xef\xbb\xbf)?\s*(?:(?:\[\s*)?\{\s*"|<\?xml|<gpx|(?:[\w.]+=\S+[ \t]+){2})'
+)
+
+
+def holds_records(path: Path) -> bool:
+    """Whether a file holds records by its first characters."""
+    return _MARKS.match(head_of(path, 512)) is not None
 
 
 def text_of_records(path: Path) -> tuple[str, list[str]]:
@@ -40,11 +48,17 @@ def text_of_records(path: Path) -> tuple[str, list[str]]:
     import pandas
 
     text, remarks = text_of(path)
+    lines = [line for line in text.splitlines() if line.strip()]
     try:
         content = json.loads(text)
     except ValueError:
-        # One record a line.
-        content = [json.loads(line) for line in text.splitlines() if line.strip()]
+        # Not one document of JSON: elements of XML, or one record a line.
+        if lines[0].lstrip().startswith("<"):
+            content = list(_elements(text))
+        elif lines[0].lstrip().startswith("{"):
+            content = list(map(json.loads, lines))
+        else:
+            content = [{k: v.strip('"') for k, v in _PAIR.findall(line)} for line in lines]
     # Deltas of Signal K: each has values by their paths.
     if isinstance(content, list) and any("updates" in record for record in content):
         content = [row for record in content for row in _rows_of_delta(record)]
@@ -61,6 +75,18 @@ def text_of_records(path: Path) -> tuple[str, list[str]]:
     )
     frame = pandas.DataFrame(content) if is_by_column else pandas.json_normalize(content)
     return frame.to_csv(sep="\t", index=False), remarks
+
+
+def _elements(text):
+    """Attributes and texts of the elements with several of them that occur most often, such as points of a track."""
+    every = [e for e in ElementTree.fromstring(text).iter() if len(e) + len(e.attrib) > 1]
+    most = Counter(element.tag for element in every).most_common(1)
+    for element in every:
+        if element.tag == most[0][0]:
+            texts = {
+                part.tag.rpartition("}")[2]: (part.text or "").strip() for part in element.iter()
+            }
+            yield element.attrib | {name: content for name, content in texts.items() if content}
 
 
 def _rows_of_delta(record):

@@ -28,6 +28,8 @@ class Layout:
         Index of the first line of values.
     remarks : tuple of str
         Remarks on the layout.
+    titles : tuple of str
+        Names behind those of their groups; empty where there are none.
     """
 
     separator: str
@@ -35,6 +37,7 @@ class Layout:
     units: tuple[str, ...]
     first: int
     remarks: tuple[str, ...]
+    titles: tuple[str, ...] = ()
 
 
 def layout_of(
@@ -66,7 +69,10 @@ def layout_of(
     ]
     if form.names is not None:
         return Layout(separator, form.names, (), first, _skipped(above))
-    at, units, header = _header(lines, above, separator, width, is_unit)
+    at, units, header, titles = _header(lines, above, separator, width, is_unit)
+    # A log of MOOS names its variables in its rows.
+    if header is None and any(lines[i].startswith("%% LOG FILE") for i in above):
+        header = ["time", "name", "process", "value"]
     if header is None:
         names = ", ".join(f'"column {i + 1}"' for i in range(min(width, 3)))
         message = f"no names of columns stand above the first row of numbers, line {first + 1}, which has {width}."
@@ -83,7 +89,7 @@ def layout_of(
     rest = [i for i in above if i < at]
     between = [i for i in above if i > at and not is_comment(lines[i])]
     first = next((i for i in between if is_figure(cells_in(lines[i], separator)[0])), first)
-    return Layout(separator, tuple(header), tuple(units), first, _skipped(rest))
+    return Layout(separator, tuple(header), tuple(units), first, _skipped(rest), tuple(titles))
 
 
 def without_labview_header(lines: list[str]) -> list[str]:
@@ -163,26 +169,28 @@ def _header(lines, above, separator, width, is_unit):
             below = i
             continue
         if sum(map(is_figure, filled)) < 0.5 * len(filled):
-            names = _with_groups(row, lines[i - 1] if i else "", separator)
-            return i, units, [names[0] or index, *names[1:]]
+            names, titles = _with_groups(row, lines[i - 1] if i else "", separator)
+            return i, units, [names[0] or index, *names[1:]], titles
         break
-    return 0, (), None
+    return 0, (), None, ()
 
 
 def _with_groups(row, above, separator):
-    """Names that stand there twice or not at all, with the groups in the row above them where all groups differ."""
+    """Names, with their group in the row above where they stand there twice or not at all; and all with their groups."""
     groups = cells_in(above, separator)
     groups += [""] * (len(row) - len(groups))
-    if len(groups) != len(row) or separator == " " or (len(set(row)) == len(row) and "" not in row):
-        return row
+    is_clear = len(set(row)) == len(row) and "" not in row
+    if len(groups) != len(row) or separator == " " or is_clear or is_comment(above):
+        return row, ()
     # A group stands over its first column, and over those after it that have none.
     for i in range(1, len(groups)):
         groups[i] = groups[i] or groups[i - 1]
+    titles = [f"{group} {name}".strip() for group, name in zip(groups, row, strict=True)]
     names = [
-        f"{group} {name}".strip() if row.count(name) > 1 or not name else name
-        for group, name in zip(groups, row, strict=True)
+        title if row.count(name) > 1 or not name else name
+        for title, name in zip(titles, row, strict=True)
     ]
-    return names if len(set(names)) == len(names) else row
+    return (names, titles) if len(set(names)) == len(names) else (row, ())
 
 
 def _is_row_of_units(row, is_unit):

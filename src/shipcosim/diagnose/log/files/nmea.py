@@ -6,10 +6,13 @@ Reference: NMEA 0183 as described by E. S. Raymond, "NMEA Revealed", 2.23, 2019.
 from __future__ import annotations
 
 import re
+import tomllib
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from datetime import date
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 
@@ -36,84 +39,49 @@ _MOST_DAMAGED = (
     0.2  # share of sentences with a wrong checksum above which the file is not trusted. Assumed.
 )
 _ENOUGH = 0.9  # of the values of the fullest source that a preferred one needs. Assumed.
+_TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+_SENTENCES = _TABLE["sentences"]
+_SIDES = {"latitude": "NS", "longitude": "EW"}
 _SPEEDS = {"N": 1852.0 / 3600.0, "K": 1.0 / 3.6, "M": 1.0, "S": 1609.344 / 3600.0}  # of MWV, in m/s
 
 Values = dict[str, float]
 
 
-def _of(text: str) -> float:
-    return float(text) if text else float("nan")
+def _values_of(kind: str, fields: list[str]) -> Values:
+    """Values of a sentence by its layout; a receiver that knows no time yet knows nothing."""
+    layout = _SENTENCES[kind]
+    values = {}
+    if "clock" in layout:
+        clock = fields[layout["clock"]]
+        if not clock:
+            return {}
+        values["clock"] = 3600.0 * int(clock[:2]) + 60.0 * int(clock[2:4]) + float(clock[4:])
+    # Day, month and year, in one field or in three.
+    day = [fields[place] for place in layout.get("date", ())]
+    if day and all(day):
+        text = "".join(day)
+        year = int(text[4:]) + (2000 if len(text) == 6 else 0)
+        values["date"] = float(date(year, int(text[2:4]), int(text[:2])).toordinal())
+    # What says that a value is none: a field with another letter, or, where it may be missing, with this one.
+    is_valid = all(fields[int(k)] in text.split() for k, text in layout.get("only", {}).items())
+    invalid = layout.get("never", {}).items()
+    if is_valid and not any(fields[int(k) : int(k) + 1] == [text] for k, text in invalid):
+        values |= {name: _value(name, fields[k:]) for name, k in layout["values"].items()}
+    return values
 
 
-def _clock(text: str) -> float:
-    """hhmmss.ss as seconds after midnight."""
-    return 3600.0 * int(text[:2]) + 60.0 * int(text[2:4]) + float(text[4:])
-
-
-def _position(fields: list[str]) -> Values:
-    """Latitude, its hemisphere, longitude and its hemisphere, as degrees."""
-    degrees = {}
+def _value(name: str, fields: list[str]) -> float:
+    """A value from its field, with its hemisphere or unit in the next one."""
+    number = float(fields[0] or "nan")
+    if name == "wind_speed":
+        return number * _SPEEDS[fields[1]]
+    if name not in _SIDES:
+        return number
     # NMEA writes degrees times 100 plus minutes, and the hemisphere apart.
-    for name, text, side, sides in (
-        ("latitude", *fields[:2], "NS"),
-        ("longitude", *fields[2:4], "EW"),
-    ):
-        if text and side not in sides:
-            raise ValueError(side)
-        whole, minutes = divmod(_of(text), 100.0)
-        degrees[name] = (whole + minutes / 60.0) * (-1.0 if side and side == sides[1] else 1.0)
-    return degrees
-
-
-def _timed(clock: str, values: Values) -> Values:
-    """Values with their time; a receiver that knows no time yet knows nothing."""
-    return {"clock": _clock(clock)} | values if clock else {}
-
-
-def _gga(f: list[str]) -> Values:
-    return _timed(f[1], _position(f[2:6]) if f[6] not in ("", "0") else {})
-
-
-def _gll(f: list[str]) -> Values:
-    return _timed(f[5], _position(f[1:5]) if f[6:7] != ["V"] else {})
-
-
-def _rmc(f: list[str]) -> Values:
-    day = {"date": _day(f[9][4:6], f[9][2:4], f[9][:2])} if f[9] else {}
-    motion = {"speed_over_ground": _of(f[7]), "course_over_ground": _of(f[8])}
-    return _timed(f[1], day | (_position(f[3:7]) | motion if f[2] == "A" else {}))
-
-
-def _zda(f: list[str]) -> Values:
-    return _timed(f[1], {"date": _day(f[4], f[3], f[2])} if f[4] else {})
-
-
-def _day(year: str, month: str, day: str) -> float:
-    return float(
-        date(int(year) + (2000 if len(year) == 2 else 0), int(month), int(day)).toordinal()
-    )
-
-
-def _vtg(f: list[str]) -> Values:
-    return (
-        {}
-        if f[9:10] == ["N"]
-        else {"course_over_ground": _of(f[1]), "speed_over_ground": _of(f[5])}
-    )
-
-
-def _mwv(f: list[str]) -> Values:
-    if f[5] != "A" or f[2] != "R":
-        return {}
-    return {"wind_from": _of(f[1]), "wind_speed": _of(f[3]) * _SPEEDS[f[4]]}
-
-
-def _rot(f: list[str]) -> Values:
-    return {"yaw_rate": _of(f[1])} if f[2] == "A" else {}
-
-
-def _heading(f: list[str]) -> Values:
-    return {"heading": _of(f[1])}
+    if fields[0] and fields[1] not in _SIDES[name]:
+        raise ValueError(fields[1])
+    whole, minutes = divmod(number, 100.0)
+    return (whole + minutes / 60.0) * (-1.0 if fields[1] and fields[1] == _SIDES[name][1] else 1.0)
 
 
 def _rpm(f: list[str]) -> Values:
@@ -123,43 +91,22 @@ def _rpm(f: list[str]) -> Values:
     sides = {"0": "centre", "1": "starboard", "2": "port"}
     what = f"{sides.get(f[2], '')} shaft" if f[1] == "S" else "engine"
     number = "" if f[1] == "S" and f[2] in sides else f" {int(f[2])}"
-    return {f"{what}{number} rpm".strip(): _of(f[3])}
+    return {f"{what}{number} rpm".strip(): float(f[3] or "nan")}
 
 
 def _rsa(f: list[str]) -> Values:
     """Angles of the rudders, positive to starboard; the first is the starboard one, or the only one."""
     first = "starboard rudder angle" if f[3] else "rudder angle"
-    angles = {first: _of(f[1])} if f[2] == "A" else {}
-    return angles | ({"port rudder angle": _of(f[3])} if f[3] and f[4] == "A" else {})
+    angles = {first: float(f[1] or "nan")} if f[2] == "A" else {}
+    return angles | ({"port rudder angle": float(f[3] or "nan")} if f[3] and f[4] == "A" else {})
 
 
-_KINDS: Mapping[str, Callable[[list[str]], Values]] = {
-    "GGA": _gga,
-    "RMC": _rmc,
-    "GLL": _gll,
-    "ZDA": _zda,
-    "VTG": _vtg,
-    "HDT": _heading,
-    "THS": lambda f: _heading(f) if f[2:3] != ["V"] else {},
-    "ROT": _rot,
-    "MWV": _mwv,
-    "RPM": _rpm,
-    "RSA": _rsa,
-}
+_NAMED_BY_FIELDS: Mapping[str, Callable[[list[str]], Values]] = {"RPM": _rpm, "RSA": _rsa}
+_KINDS = (*_SENTENCES, *_NAMED_BY_FIELDS)
 """What is read, preferred sources first."""
 _UNITS = {
-    "time": "s",
-    "latitude": "deg",
-    "longitude": "deg",
-    "heading": "deg",
-    "speed_over_ground": "kn",
-    "course_over_ground": "deg",
-    "yaw_rate": "deg/min",
-    "wind_speed": "m/s",
-    "wind_from": "deg",
-    **{f"{side} shaft rpm": "rpm" for side in ("centre", "starboard", "port")},
+    **_TABLE["units"],
     **{f"{what} {n} rpm": "rpm" for what in ("shaft", "engine") for n in range(9)},
-    **{f"{side}rudder angle": "deg" for side in ("", "starboard ", "port ")},
 }
 
 
@@ -251,7 +198,8 @@ def _read(lines: list[str]) -> _Read:
             read.unread[fields[0]] += 1
         else:
             try:
-                read.sentences.append((number, fields[0], _KINDS[kind](fields)))
+                of_kind = _NAMED_BY_FIELDS.get(kind, partial(_values_of, kind))
+                read.sentences.append((number, fields[0], of_kind(fields)))
                 stamp = _STAMP.search(f"{match['before']} {match['after']}")
                 text = stamp[0] if stamp else match["before"].strip(" ,;|\t\"'")
                 read.stamps[number] = text

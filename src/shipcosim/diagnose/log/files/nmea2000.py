@@ -10,10 +10,12 @@ import json
 import re
 import struct
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from shipcosim.diagnose.log.files.bags import table_of
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.files.text import head_of, text_of
 from shipcosim.errors import error_at
@@ -37,7 +39,6 @@ _RAW_FIELDS = {
 }
 """Layout of the bytes, and of each field its place and its resolution in SI units (positions in degrees)."""
 _NOTHING = {"H": 0xFFFF, "i": 0x7FFFFFFF}
-_ANGLES = ("Heading", "COG", "Wind Angle")
 
 
 def is_messages(path: Path) -> bool:
@@ -153,33 +154,26 @@ def _columns(fields, in_si):
     reference = fields.get("COG Reference", fields.get("Reference", "unknown"))
     reference = reference.get("name", "unknown") if isinstance(reference, dict) else reference
     angle = {True: "rad", False: "deg", None: ""}[in_si]
-    values = {}
-    for name in (
-        "Heading",
-        "COG",
-        "SOG",
-        "Rate",
-        "Latitude",
-        "Longitude",
-        "Wind Speed",
-        "Wind Angle",
-    ):
-        if not isinstance(fields.get(name), (int, float)):
-            continue
-        label = {"Rate": "rate of turn"}.get(name, name)
-        unit = "m/s" if name in ("SOG", "Wind Speed") else "deg"
-        if name in _ANGLES or name == "Rate":
-            unit = f"{angle}/s" * bool(angle) if name == "Rate" else angle
-        if name.startswith("Wind"):
-            # Winds over ground count from north; any other reference stays in the name.
-            is_true = reference == _WINDS[0]
-            quantity = "direction" if is_true and name == "Wind Angle" else name.split()[1].lower()
-            label = f"{'true' if is_true else reference.lower()} wind {quantity}"
-            label = label if is_true or reference == "Apparent" else f"other {label}"
-        elif name in ("Heading", "COG"):
-            label = f"{name} {reference}"
-        values[label, unit] = float(fields[name])
-    return values
+    # Winds over ground count from north; any other reference stays in the name.
+    wind = {_WINDS[0]: "true", "Apparent": "apparent"}.get(
+        reference, f"other {str(reference).lower()}"
+    )
+    kind = "direction" if wind == "true" else "angle"
+    labels = {
+        "Heading": (f"Heading {reference}", angle),
+        "COG": (f"COG {reference}", angle),
+        "SOG": ("SOG", "m/s"),
+        "Rate": ("rate of turn", angle and f"{angle}/s"),
+        "Latitude": ("Latitude", "deg"),
+        "Longitude": ("Longitude", "deg"),
+        "Wind Speed": (f"{wind} wind speed", "m/s"),
+        "Wind Angle": (f"{wind} wind {kind}", angle),
+    }
+    return {
+        labels[name]: float(value)
+        for name, value in fields.items()
+        if name in labels and isinstance(value, (int, float))
+    }
 
 
 def _table(path, rows, remarks):
@@ -191,7 +185,5 @@ def _table(path, rows, remarks):
         remarks = [*remarks, f"from device {used} (not {', '.join(others)})."]
     rows = [(time, values) for time, source, values in rows if source == used]
     names = dict(key for _, values in rows for key in values)
-    columns = {"time": np.array([time for time, _ in rows])}
-    for key in names.items():
-        columns[key[0]] = np.array([values.get(key, np.nan) for _, values in rows])
-    return LogColumns(str(path), columns, {"time": "s"} | names, tuple(remarks))
+    messages = [{"time": time} | {n: v for (n, _), v in values.items()} for time, values in rows]
+    return replace(table_of(path, messages), units={"time": "s"} | names, remarks=tuple(remarks))

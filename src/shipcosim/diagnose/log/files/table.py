@@ -14,7 +14,7 @@ import numpy as np
 from shipcosim.diagnose.log.files.cells import numbers_of, with_unit
 from shipcosim.diagnose.log.files.excel import is_workbook, text_of_sheet
 from shipcosim.diagnose.log.files.file_layout import FileLayout
-from shipcosim.diagnose.log.files.json_records import is_json, text_of_records
+from shipcosim.diagnose.log.files.json_records import holds_records, text_of_records
 from shipcosim.diagnose.log.files.layout import Layout, layout_of, without_labview_header
 from shipcosim.diagnose.log.files.matlab import columns_of_matlab, is_matlab
 from shipcosim.diagnose.log.files.nmea import columns_of_sentences, holds_sentences
@@ -52,7 +52,7 @@ class LogColumns:
     joined : bool
         Whether rows of several tables stand below each other, each with the columns of its own.
     titles : mapping of str to str
-        What a file of NetCDF says of a column besides its name.
+        What a file of NetCDF says of a column besides its name, or its name behind that of its group.
     """
 
     source: str
@@ -84,43 +84,27 @@ def read_file(path: Path, form: FileLayout) -> LogColumns:
     if not path.is_file():
         raise error_at(str(path), "there is no such file.")
     if ending_of(path) in (".nc", ".parquet"):
-        columns = read_columns(path)
-        values = {name: values for name, (values, _) in columns.items()}
-        units = {name: unit for name, (_, unit) in columns.items()}
-        return LogColumns(str(path), values, units, titles=_titles(path, values))
+        columns = read_columns(path).items()
+        values, units, titles = ({name: c[part] for name, c in columns} for part in range(3))
+        return LogColumns(str(path), values, units, titles=titles)
     if is_matlab(path):
         return LogColumns(str(path), *columns_of_matlab(path))
     refuse_foreign(path)
     if is_workbook(path):
         text, remarks = text_of_sheet(path, form.sheet)
         form = form.model_copy(update={"separator": "\t"})
-    elif is_json(path):
+    elif holds_records(path):
         text, remarks = text_of_records(path)
         form = form.model_copy(update={"separator": "\t"})
     else:
         text, remarks = text_of(path, form.encoding)
     # Records and sheets may hold raw sentences too, behind the times at which they were received.
-    lines = text.splitlines()[1 if is_json(path) else 0 :]
+    lines = text.splitlines()[1 if holds_records(path) else 0 :]
     if holds_sentences(lines):
         values, units, more = columns_of_sentences(str(path), lines)
         return LogColumns(str(path), values, units, (*remarks, *more))
     read = _of_text(str(path), text, form)
     return replace(read, remarks=(*remarks, *read.remarks))
-
-
-def _titles(path, names):
-    """Standard names of CF, else long names, of the columns of a NetCDF file; empty for others."""
-    import xarray
-
-    if ending_of(path) != ".nc":
-        return {}
-    with xarray.open_dataset(path, decode_times=False) as table:
-        attributes = {
-            name: table.variables[name].attrs for name in names if name in table.variables
-        }
-    return {
-        name: str(a.get("standard_name", a.get("long_name", ""))) for name, a in attributes.items()
-    }
 
 
 def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
@@ -134,7 +118,10 @@ def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
     names, units, doubled = _names(layout)
     values = {}
     for i, name in enumerate(names):
-        values[name], more = _column(name, frame[i], decimal)
+        if frame[i].dtype.kind in "fiub":
+            values[name] = frame[i].to_numpy(float)
+            continue
+        values[name], more = numbers_of(name, frame[i], decimal)
         remarks += more
         if (
             values[name].dtype.kind == "O"
@@ -151,7 +138,8 @@ def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
         remarks.append(f"Time is made of {', '.join(parts)}.")
     remarks += with_minutes(values, units)
     doubled = tuple(name for name in doubled if f"{name} (2)" in values)
-    return LogColumns(source, values, units, (*layout.remarks, *remarks), doubled)
+    titles = dict(zip(names, layout.titles, strict=False))
+    return LogColumns(source, values, units, (*layout.remarks, *remarks), doubled, titles=titles)
 
 
 def _names(layout: Layout) -> tuple[list[str], dict[str, str], tuple[str, ...]]:
@@ -319,10 +307,3 @@ def _with_comma(columns):
         if len(numbers) > 0.9 * len(text):
             cells += numbers[numbers.str.contains(",", regex=False)].unique().tolist()
     return cells
-
-
-def _column(name, cells, decimal):
-    """Values of a column, and remarks on them."""
-    if cells.dtype.kind in "fiub":
-        return cells.to_numpy(float), []
-    return numbers_of(name, cells, decimal)

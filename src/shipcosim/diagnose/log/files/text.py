@@ -32,7 +32,7 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
         Text, or such compressed by gzip, whatever its name ends in.
     encoding : str, optional
         Of the text; else by its byte order mark, UTF-8, UTF-16 where every other byte is zero, Shift-JIS, EUC-JP,
-        GB 18030, CP 949 or Windows-1251 by the words of logs that they give, Windows-1252.
+        GB 18030, CP 949, Windows-1251 or 1250 by the words of logs that they give, Windows-1252.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def _encoding_of(content: bytes) -> str:
         return encoding
     # An encoding of East Asia or Russia is only believed by words of logs, as others decode too.
     counts = {}
-    for name in ("cp932", "euc_jp", "gb18030", "cp949", "cp1251", "cp1252", "latin-1"):
+    for name in ("cp932", "euc_jp", "gb18030", "cp949", "cp1251", "cp1250", "cp1252", "latin-1"):
         try:
             counts[name] = len("".join(word_parts().findall(content.decode(name))))
         except UnicodeDecodeError:

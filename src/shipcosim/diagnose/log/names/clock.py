@@ -8,7 +8,7 @@ import numpy as np
 from shipcosim.diagnose.log.channels import Channel
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.table import LogColumns
-from shipcosim.diagnose.log.files.times import epoch_unit, is_clock_number, seconds_of
+from shipcosim.diagnose.log.files.times import DAY, EPOCHS, epoch_unit, is_clock_number, seconds_of
 from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, Guess
 from shipcosim.diagnose.log.names.vocabulary import words_of
 from shipcosim.diagnose.log.values import CLOCK_NUMBER
@@ -18,7 +18,7 @@ from shipcosim.errors import ShipcosimError
 _STEPS = (0.002, 30.0)  # s between rows of a log that a unit is chosen by. Assumed.
 _SHORTEST = 4e-4  # s between rows of any log of a ship; 35 s are as many days. Assumed.
 _CLOCK = re.compile(r"\s*\d?\d(:|\.\d\d\.\d\d(?!\d))")
-_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "d": 86400.0}
+_UNITS = {unit: 1.0 / count for unit, count in EPOCHS.items()} | {"min": 60.0, "d": DAY}
 
 
 def time_of(

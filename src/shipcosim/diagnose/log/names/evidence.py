@@ -16,6 +16,8 @@ _CLEAR = (
     0.85  # length of the mean direction between course and bow that holds, that does not. Assumed.
 )
 _UNCLEAR = 0.6
+_LEFT = 0.02  # share of the way that a velocity in its frame may leave unexplained. Assumed.
+_CLEARER = 4.0  # times that of the best, which another frame leaves. Assumed.
 _BESIDE = 60.0  # deg, by which a course may be off the bow throughout
 
 
@@ -150,3 +152,42 @@ def frame_of_angle(
         length < _UNCLEAR or other_length > _BESIDE for _, length, other_length in unclear
     )
     return clear[0][0] if len(clear) == 1 and others_out else None
+
+
+def frame_of_velocity(time: np.ndarray, way: np.ndarray, readings: dict[Any, np.ndarray]) -> Any:
+    """The only reading of a velocity that moves as the positions do; None if there are none or several.
+
+    Parameters
+    ----------
+    time : (n,) array
+        [s]
+    way : (n,) complex array
+        Position, north + i east. [m]
+    readings : dict of (n,) complex array
+        Velocities over the earth in one unit, by what they are called.
+
+    Examples
+    --------
+    >>> t = np.arange(300.0)
+    >>> velocity = np.exp(1j * np.sin(t / 40))
+    >>> readings = {"NED": velocity, "ENU": velocity.imag + 1j * velocity.real}
+    >>> frame_of_velocity(t, np.cumsum(velocity), readings)
+    'NED'
+    """
+    rows = _all_known(time, way, *readings.values())
+    k = _SPANS[1]
+    if rows.sum() < 4 * k or not (np.diff(time[rows]) > 0.0).all():
+        return None
+    moved = way[rows][k:] - way[rows][:-k]
+    # What a reading does not explain of the way made in some rows, whatever its unit.
+    rest = {}
+    for name, velocity in readings.items():
+        path = velocity[rows]
+        steps = 0.5 * (path[1:] + path[:-1]) * np.diff(time[rows])
+        path = np.concatenate(([0.0], np.cumsum(steps)))
+        made = path[k:] - path[:-k]
+        size = np.linalg.norm(moved) * np.linalg.norm(made)
+        rest[name] = 1.0 - np.vdot(made, moved).real / size if size > 0.0 else 1.0
+    best, second = sorted(rest, key=rest.__getitem__)[:2]
+    is_clear = rest[best] < _LEFT and rest[second] > _CLEARER * rest[best]
+    return best if is_clear else None

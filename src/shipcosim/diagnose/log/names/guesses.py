@@ -152,7 +152,9 @@ def _by_meaning(column, words, stated, values):
     meaning = meaning_of(words)
     unit = stated
     # A name without a meaning may end in a unit, also before .PV; read it without this.
-    words = tuple(word for word in words if word not in vocabulary()["words"]["feedback"])
+    terms = vocabulary()["words"]
+    plain = {*terms["feedback"], *terms["filler"]} - {"gps", "gnss"}
+    words = tuple(word for word in words if word not in plain)
     if (meaning.role is None or meaning.doubt) and not stated:
         for target in _SUFFIXES:
             rest, suffix = unit_after(words, target)

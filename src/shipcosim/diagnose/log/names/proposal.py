@@ -20,7 +20,12 @@ from shipcosim.diagnose.log.names.guesses import (
 )
 from shipcosim.diagnose.log.names.units import unit_for
 from shipcosim.diagnose.log.names.unstated_units import are_axes_open, exchange_axes, settled
-from shipcosim.diagnose.log.names.vocabulary import all_words, meaning_of, words_of
+from shipcosim.diagnose.log.names.vocabulary import (
+    meaning_of,
+    simple_words,
+    vocabulary,
+    words_of,
+)
 from shipcosim.diagnose.log.values import LARGEST
 from shipcosim.diagnose.numerics import finite
 
@@ -112,18 +117,20 @@ def propose(
 def _site(log):
     """Words that all names of several words share and that no name in names.toml has: historians write the ship's."""
     names = [set(words_of(column)) for column in log.values if len(words_of(column)) > 1]
-    return frozenset(set.intersection(*names) - all_words() if len(names) > 2 else ())
+    shared = set.intersection(*names) - simple_words() if len(names) > 2 else ()
+    return frozenset(word for word in shared if len(word) > 2)
 
 
 def _known_together(every):
     """Letters with one meaning if all of a group occur: N and E; u, v and r."""
-    single = {words[0] for guess in every if len(words := words_of(guess.column)) == 1}
+    fillers = set(vocabulary()["words"]["filler"])
+    letters = [" ".join(w for w in words_of(g.column) if w not in fillers) for g in every]
+    single = {letter for letter in letters if " " not in letter}
     sure = set().union(*(group for group in ({"n", "e"}, {"u", "v", "r"}) if group <= single))
     # With all three of vx, vy and vz autopilots write velocities over the earth.
     over_earth = {"vx": "north_velocity", "vy": "east_velocity"} if "vz" in single else {}
     together = []
-    for guess in every:
-        letter = " ".join(words_of(guess.column))
+    for guess, letter in zip(every, letters, strict=True):
         if letter in over_earth:
             guess = replace(guess, role=over_earth[letter], why="it may be along the ship")
         role = {"n": "north", "e": "east"}.get(letter, guess.role)

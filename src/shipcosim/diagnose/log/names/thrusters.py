@@ -82,12 +82,17 @@ def drive_of(words: tuple[str, ...], unit: str, values: np.ndarray) -> Drive | N
     places = set(_places().values())
     if not is_named or any(w not in places and not w.isdigit() and len(w) > 1 for w in place):
         return None
+    is_letter = bool({"p", "s"} & set(rest))
+    if is_letter and len(word) < 2:
+        return None
     if not quantity and not (place or generic & set(rest)):
         return None
     # Unit and values decide between pulses, per cent and others.
     quantity, doubt = _by_values(quantity, word, unit.strip().lower(), values)
     if quantity == "rpm" and _ENGINES & set(whole):
         doubt = "an engine turns as fast as its propeller only where there is no gear"
+    if is_letter:
+        doubt = doubt or "a single letter may stand for something else than the side"
     return Drive(quantity, place, kind, doubt)
 
 

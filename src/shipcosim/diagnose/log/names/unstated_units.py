@@ -8,10 +8,17 @@ import numpy as np
 
 from shipcosim.diagnose.log.degree_size import local_plane
 from shipcosim.diagnose.log.files.file_layout import FileLayout
+from shipcosim.diagnose.log.files.long_format import brought_together
 from shipcosim.diagnose.log.files.table import LogColumns
-from shipcosim.diagnose.log.names.evidence import frame_of_angle, unit_of_rate, unit_of_speed
+from shipcosim.diagnose.log.names.evidence import (
+    frame_of_angle,
+    frame_of_velocity,
+    unit_of_rate,
+    unit_of_speed,
+)
 from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, Guess
 from shipcosim.diagnose.log.names.units import unit_for
+from shipcosim.diagnose.log.names.vocabulary import words_of
 from shipcosim.diagnose.log.roles import ROLES
 from shipcosim.diagnose.log.values import LARGEST, TEN_MILLIONTHS, values_of
 from shipcosim.diagnose.numerics import finite
@@ -19,7 +26,11 @@ from shipcosim.errors import ShipcosimError
 
 _DEGREES = 1.02 * 2.0 * np.pi  # no angle in radians is larger
 _RAD_OR_DEG = "no unit is stated, and no value is beyond 2 pi: rad or deg"
+_TO_PORT = "psi and y may be counted to port: no compass and no north is named"
 _TURNS = 1080.0  # deg; where turns are counted on, a log hardly goes beyond. Assumed.
+_VELOCITIES = (("surge", "sway"), ("north_velocity", "east_velocity"))
+_SPEED_ROLES = ("surge", "sway", "speed_over_ground", "north_velocity", "east_velocity")
+_PLACES = ("north", "east", "latitude", "longitude")
 _IN_KNOTS = ("speed_over_ground", "wind_speed", "true_wind_speed")
 
 
@@ -37,10 +48,12 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: FileLayout) -> None
     """
     # Positions first, as heading, axes and speeds are judged by them.
     _settle_degrees(chosen, log)
-    motion = _motion(chosen, log, form)
+    time, log = _aligned(chosen, log, _values(chosen, "time", log, form))
+    motion = _motion(chosen, log, form, time)
     _settle_heading(chosen, log, form, motion)
-    _settle_axes(chosen, log, form, motion)
-    for role in ("surge", "sway", "speed_over_ground", "north_velocity", "east_velocity"):
+    _settle_velocity(chosen, log, form, motion)
+    _settle_time(chosen, log, motion)
+    for role in _SPEED_ROLES:
         if _is_open(chosen, role):
             _settle_speed(chosen, role, log, motion)
     if "yaw_rate" in chosen and not chosen["yaw_rate"].unit:
@@ -141,9 +154,23 @@ def _values(chosen, role, log, form) -> Any:
         return None  # reading it says what is wrong
 
 
-def _motion(chosen, log, form) -> Any:
+def _aligned(chosen, log, time):
+    """Times and a log for comparisons: where rows hold one sensor each, all columns at the times of one of them."""
+    roles = {name: role for role, guess in chosen.items() for name in guess.channel.columns}
+    roles = {name: role for name, role in roles.items() if role != "time"}
+    if time is None or any(log.values[name].dtype.kind != "f" for name in roles):
+        return time, log
+    columns = {n: (log.values[n], ROLES[r].unit if r in ROLES else "") for n, r in roles.items()}
+    clock, columns, remarks = brought_together(time, columns, log.joined)
+    if not remarks:
+        return time, log
+    return clock, replace(
+        log, values=log.values | {n: values for n, (values, _) in columns.items()}
+    )
+
+
+def _motion(chosen, log, form, time) -> Any:
     """Times and positions of the log [s, m, m], or None."""
-    time = _values(chosen, "time", log, form)
     if time is None:
         return None
     # North and east, or a local plane of latitude and longitude.
@@ -163,62 +190,63 @@ def _motion(chosen, log, form) -> Any:
 
 
 def _settle_heading(chosen, log, form, motion):
-    """Unit of a heading without one, and whether a yaw is clockwise from north."""
-    if "heading" not in chosen or chosen["heading"].rank == EXACT:
-        return
-    guess = chosen["heading"]
-    is_open = _is_open(chosen, "heading")
-    is_yaw = guess.why.startswith(("yaw", "of a quaternion"))
-    if not is_open and not is_yaw:
-        return
+    """Unit and frame of a heading, and which of x and y is north, by the course."""
     raw = _values(chosen, "heading", log, form)
     if raw is None or not len(_finite(raw)):
         return
-    # Candidates: degrees, radians unless values are too
-    # large, and angles anticlockwise from east for a yaw.
-    units = {"deg": 1.0, "rad": 180.0 / np.pi}
-    if not is_open or np.abs(_finite(raw)).max() > _DEGREES:
-        units = {"deg": 1.0}
-    readings = {(unit, "NED"): size * raw for unit, size in units.items()}
-    if is_yaw:
-        readings |= {(unit, "ENU"): 90.0 - size * raw for unit, size in units.items()}
+    guess = chosen["heading"]
+    is_exact = guess.rank == EXACT
+    has_open_axes = are_axes_open(chosen)
+    # Seen in a mirror x, y and psi fit as well: y and psi to port, as basins and simulators count them.
+    if has_open_axes and "psi" in words_of(guess.column):
+        chosen["heading"] = replace(guess, rank=GUESS, why=_TO_PORT)
+        return
+    if is_exact and not has_open_axes:
+        return
+    # Candidates: degrees, or radians unless values are too large; anticlockwise from east for a yaw; x or y north,
+    # where exchanged axes make a heading look counted from east.
+    is_small = _is_within_a_turn(raw) if is_exact else np.abs(_finite(raw)).max() <= _DEGREES
+    is_open = guess.channel.quaternion is None and not guess.unit and is_small
+    units = {"deg": 1.0, "rad": 180.0 / np.pi} if is_open else {"deg": 1.0}
+    readings = {(unit, "NED", False): size * raw for unit, size in units.items()}
+    if guess.why.startswith(("yaw", "of a quaternion")):
+        readings |= {(unit, "ENU", False): 90.0 - size * raw for unit, size in units.items()}
+    if has_open_axes:
+        readings |= {(*kind, True): 90.0 - angle for (*kind, _), angle in readings.items()}
     if len(readings) == 1:
         return
     # Compare with the course, given positions and, if known, the drift angle.
     result = None
-    is_placed = all(
-        chosen[role].rank < GUESS
-        for role in ("north", "east", "latitude", "longitude")
-        if role in chosen
-    )
-    if motion is not None and motion[1] is not None and is_placed:
+    is_placed = all(chosen[role].rank < GUESS for role in _PLACES if role in chosen)
+    if motion is not None and motion[1] is not None and (is_placed or has_open_axes):
         body: list[Any] = [_values(chosen, role, log, form) for role in ("surge", "sway")]
         is_known = (
             all(v is not None for v in body)
             and max(chosen[r].rank for r in ("surge", "sway")) < GUESS
         )
-        result = frame_of_angle(
-            motion[0],
-            motion[1],
-            motion[2],
-            readings,
-            np.arctan2(body[1], body[0]) if is_known else None,
-        )
+        drift = np.arctan2(body[1], body[0]) if is_known else None
+        result = frame_of_angle(*motion, readings, drift)
     if result is None:
-        if is_open and len(units) == 2:
+        if is_open and not is_exact:
             _guess(chosen, "heading", "rad", _RAD_OR_DEG)
         return
-    # Write the reading into the channel: unit, frame of the quaternion, or sign and offset.
-    unit, frame = result
+    # Write the reading into the channel: unit, frame of the quaternion, or sign and offset; and into the axes.
+    unit, frame, is_exchanged = result
     counted = "clockwise from north" if frame == "NED" else "anticlockwise from east"
     message = f"{f'in {unit} and ' if is_open else ''}{counted}, as the course says"
-    update = {} if not is_open else {"unit": unit}
+    update = {"unit": unit} if is_open else {}
     if guess.channel.quaternion is not None:
         update = {"frame": frame}
         message = f"the quaternion is of {frame}, as the course says"
     elif frame == "ENU":
         update |= {"sign": -1, "offset": 90.0 if unit == "deg" else np.pi / 2}
-    _with_doubt(chosen, "heading", message, **update)
+    if len({kind[:2] for kind in readings}) > 1:
+        _with_doubt(chosen, "heading", message, **update)
+    if is_exchanged:
+        exchange_axes(chosen)
+    axes = "x is east and y north" if is_exchanged else "x is north and y east"
+    for role in ("north", "east") if has_open_axes else ():
+        _with_doubt(chosen, role, f"{axes}, as the heading says")
 
 
 def are_axes_open(chosen: Mapping[str, Guess]) -> bool:
@@ -235,44 +263,64 @@ def exchange_axes(chosen: dict[str, Guess]) -> None:
     chosen["east"] = replace(east, column=north.column, channel=north.channel)
 
 
-def _settle_axes(chosen, log, form, motion):
-    """Whether x is north and y east, or the other way round, by the heading."""
-    if motion is None or motion[1] is None or "heading" not in chosen:
+def _settle_velocity(chosen, log, form, motion):
+    """Frame of two components of a velocity whose names do not state it, by the positions and the heading."""
+    pair = next((p for p in _VELOCITIES if all(role in chosen for role in p)), None)
+    is_sure = [chosen[r].rank < GUESS for r in ("heading", *_PLACES) if r in chosen]
+    if pair is None or len(is_sure) < 3 or not all(is_sure) or motion is None or motion[1] is None:
         return
-    if not are_axes_open(chosen) or chosen["heading"].rank == GUESS:
-        return
-    # The heading tells which axis is north: with exchanged axes it looks counted from east.
+    guesses = [chosen[role] for role in pair]
+    parts = [log.values[guess.column] for guess in guesses]
     heading = _values(chosen, "heading", log, form)
-    time, x, y = motion
-    readings = {"NED": heading, "ENU": 90.0 - heading}
-    frame = frame_of_angle(time, x, y, readings)
-    if frame == "NED":
-        for role in ("north", "east"):
-            _with_doubt(chosen, role, "x is north and y east, as the heading says")
-    elif frame == "ENU":
-        exchange_axes(chosen)
-        for role in ("north", "east"):
-            _with_doubt(chosen, role, "x is east and y north, as the heading says")
+    is_open = all(guess.rank == GUESS for guess in guesses)
+    if not is_open or heading is None or any(part.dtype.kind != "f" for part in parts):
+        return
+    # Along and across the ship, positive to starboard or to port, or over the earth.
+    bow = np.exp(1j * np.radians(heading))
+    time, north, east = motion
+    first, second = parts
+    readings = {
+        ("surge", "sway", 1): (first + 1j * second) * bow,
+        ("surge", "sway", -1): (first - 1j * second) * bow,
+        ("north_velocity", "east_velocity", 1): first + 1j * second,
+        ("east_velocity", "north_velocity", 1): second + 1j * first,
+    }
+    roles = frame_of_velocity(time, north + 1j * east, readings)
+    if roles is None:
+        return
+    for role in pair:
+        del chosen[role]
+    for guess, role, sign in zip(guesses, roles[:2], (1, roles[2]), strict=True):
+        chosen[role] = replace(guess, role=role)
+        _with_doubt(chosen, role, f"{role.replace('_', ' ')}, as positions say", sign=sign)
+
+
+def _settle_time(chosen, log, motion):
+    """Whether the unit chosen for the times is the one in which positions move as fast as a speed of the log."""
+    if "time" not in chosen or chosen["time"].rank < GUESS or not chosen["time"].channel.unit:
+        return
+    for role in _SPEED_ROLES:
+        # Units of time differ by a thousand, those of a ship's speed by less than four.
+        if role in chosen and _unit_of(chosen, role, log, motion) in ("m/s", "kn", "km/h"):
+            unit = chosen["time"].channel.unit
+            why = f"in {unit}, as positions and '{chosen[role].column}' say"
+            return _with_doubt(chosen, "time", why)
+
+
+def _unit_of(chosen, role, log, motion):
+    """Unit of a speed by the positions, from both components if these are open; None where they do not tell it."""
+    speed = log.values[chosen[role].column]
+    if motion is None or motion[1] is None or speed.dtype.kind != "f":
+        return None
+    other = next((b for pair in _VELOCITIES for a, b in (pair, pair[::-1]) if a == role), "")
+    if other and _is_open(chosen, other) and log.values[chosen[other].column].dtype.kind == "f":
+        speed = np.hypot(speed, log.values[chosen[other].column])
+    return unit_of_speed(*motion, np.abs(speed) if other else speed)
 
 
 def _settle_speed(chosen, role, log, motion):
     """Unit of a speed by the positions."""
-    raw = log.values[chosen[role].column]
-    unit = None
-    # Compare the speed, from both components if these
-    # are open, with the distance between positions.
-    if motion is not None and motion[1] is not None and raw.dtype.kind == "f":
-        speed = raw
-        if role in ("surge", "sway", "north_velocity", "east_velocity"):
-            other = {"surge": "sway", "sway": "surge", "north_velocity": "east_velocity"}.get(
-                role, "north_velocity"
-            )
-            other_speed = (
-                log.values[chosen[other].column] if _is_open(chosen, other) else np.zeros_like(raw)
-            )
-            speed = np.hypot(raw, other_speed) if other_speed.dtype.kind == "f" else np.abs(raw)
-        unit = unit_of_speed(motion[0], motion[1], motion[2], speed)
-    if unit is not None:
+    if unit := _unit_of(chosen, role, log, motion):
         guess = chosen[role]
         # The role's own unit needs no entry in the channel.
         settings = {} if unit == "m/s" else {"unit": unit}

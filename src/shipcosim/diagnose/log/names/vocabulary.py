@@ -78,17 +78,37 @@ def _short_forms() -> dict[str, str]:
 
 
 def _written_out(word, same):
-    """A word in English, also one of two such words without a blank between, as northern languages have them."""
-    cuts = range(_SHORTEST, len(word) - _SHORTEST + 1) if word not in same else ()
-    parts = ((word[:cut], word[cut:]) for cut in cuts)
-    both = next((pair for pair in parts if pair[0] in same and pair[1] in same), (word,))
-    return " ".join(same.get(part, part) for part in both)
+    """A word in English, also one of several words without blanks between, as northern languages and loggers write."""
+    if word in same or word in simple_words():
+        return same.get(word, word)
+    for cut in range(_SHORTEST, len(word) - 1):
+        first, rest = word[:cut], word[cut:]
+        if first in simple_words():
+            more = _written_out(rest, same)
+            if rest in simple_words() or rest in _units() or " " in more:
+                return f"{same.get(first, first)} {more}"
+    return word
 
 
 @cache
-def all_words() -> set[str]:
-    """Every word of names.toml."""
-    return set(words_of(_FILE.read_text(encoding="utf-8")))
+def simple_words() -> frozenset[str]:
+    """Words of some letters that names are made of, which others may be written together from."""
+    terms = vocabulary()
+    texts = [*_short_forms(), *terms["none"]]
+    thruster = terms["thruster"]
+    parts = terms, terms["words"], thruster, thruster["places"], thruster["generic"]
+    for entry in (entry for part in parts for entry in part.values()):
+        texts += entry if isinstance(entry, list) else entry.get("names", ())
+    texts += terms["words"]["other"]
+    words = {word for text in texts for word in _WORDS.findall(_plain(text).lower())}
+    return frozenset(word for word in words if len(word) >= _SHORTEST)
+
+
+@cache
+def _units() -> frozenset[str]:
+    """Spellings of units of two letters or more that names may end in without a blank."""
+    spellings = (text for unit in vocabulary()["units"].values() for text in unit)
+    return frozenset(text for text in spellings if text.isalpha() and len(text) > 1)
 
 
 @cache
@@ -146,7 +166,9 @@ def _within(words):
                     return Meaning(None, reason=meaning.reason)
                 if meaning.role == "time" or phrase in ("bow", "course", "position", "speed"):
                     continue
-                return Meaning(meaning.role, doubt=f"it says more than '{phrase}'")
+                is_true_wind = meaning.role.startswith("wind") and "true" in words
+                role = f"true_{meaning.role}" if is_true_wind else meaning.role
+                return Meaning(role, doubt=f"it says more than '{phrase}'")
     return Meaning(None)
 
 
