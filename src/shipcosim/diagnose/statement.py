@@ -16,8 +16,8 @@ from shipcosim.diagnose.experiment.testability import (
 from shipcosim.diagnose.explanation.search import without_causes
 from shipcosim.diagnose.explanation.summary import LoadForm, evidence_of, load_form
 from shipcosim.diagnose.explanation.verdict import JudgedLog
-from shipcosim.diagnose.extension.extended_system import ExtendedSystem
-from shipcosim.diagnose.extension.form_numbers import form_numbers, with_form_numbers
+from shipcosim.diagnose.extension.extended_system import ExtendedSystem, with_findings
+from shipcosim.diagnose.extension.form_numbers import craft_of_form
 from shipcosim.diagnose.finding import label_of
 from shipcosim.diagnose.inference.thresholds import BESIDE_UNKNOWN
 from shipcosim.diagnose.log.remarks import handled
@@ -190,15 +190,15 @@ def with_form(
     if diagnosis.verdict != "form" or diagnosis.form is None or comparison is None:
         return diagnosis, given
     # Judged by numbers that never saw the rows which they predict; written with those of the whole log.
-    trained = form_numbers(comparison.fit, given.given)
-    error = error_with(comparison, {path: of.estimate for path, of in trained.items()})
+    trained = craft_of_form(comparison.fit, given.given)
+    error = error_with(comparison, trained.after)
     diagnosis = replace(diagnosis, form=replace(diagnosis.form, system_m=error))
     if error >= rms(comparison.errors, "position", "plain"):
         remark = "No system was written: with the numbers of the form that it has, it predicts other rows no better."
         return replace(diagnosis, remarks=(*diagnosis.remarks, remark)), given
     log = predicted.judged
-    numbers = form_numbers(without_causes(log.fits), given.given)
-    return diagnosis, with_form_numbers(given, numbers, log.explained.identification, folder)
+    craft = craft_of_form(without_causes(log.fits), given.given)
+    return diagnosis, with_findings(given, (), log.explained.identification, folder, craft)
 
 
 def _with_errors(form: LoadForm | None, errors: xarray.Dataset) -> LoadForm | None:

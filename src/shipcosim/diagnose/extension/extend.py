@@ -15,7 +15,6 @@ from shipcosim.diagnose.hypotheses.cause import Cause, ExtensionRule, OnConnecti
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.errors import error_at
 from shipcosim.ssp import AnyPath, SystemStructure, read, write_ssv
-from shipcosim.ssp.read.parameters import ParameterValue
 
 _SHOWN = {"north": "x", "east": "y", "heading": "psi", "surge": "u", "sway": "v", "yaw_rate": "r"}
 
@@ -104,7 +103,11 @@ def extend(
             ]
         for finding in findings:
             _carry(draft, finding, catalogue)
-    ssp, ssv = written(structure, draft.values.values(), folder)
+    ssp = Path(folder) / "extended.ssp"
+    ssv = Path(folder) / "extended.ssv"
+    write_ssv(ssv, "extended", draft.values.values())
+    structure.bind(ssv)
+    structure.write(ssp)
     return Extension(
         ssp,
         ssv,
@@ -120,18 +123,6 @@ def extend(
 def structure_of(system: str | Path | SystemStructure) -> SystemStructure:
     """A structure to change: a copy of the given one, or that in a file."""
     return system.copy() if isinstance(system, SystemStructure) else read(system)
-
-
-def written(
-    structure: SystemStructure, values: Iterable[ParameterValue], folder: AnyPath
-) -> tuple[Path, Path]:
-    """Write a system with a set of values bound: paths of extended.ssp and extended.ssv in a folder."""
-    ssp = Path(folder) / "extended.ssp"
-    ssv = Path(folder) / "extended.ssv"
-    write_ssv(ssv, "extended", values)
-    structure.bind(ssv)
-    structure.write(ssp)
-    return ssp, ssv
 
 
 def signals_of(component: str, suffix: str = "") -> dict[str, str]:

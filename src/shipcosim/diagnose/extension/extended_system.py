@@ -1,6 +1,6 @@
 """The system extended by the findings of a diagnosis, with every number that differs from the given one."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -57,6 +57,7 @@ def with_findings(
     findings: Iterable[Finding],
     log: Identification,
     folder: AnyPath,
+    craft: LearnedCraft | None = None,
 ) -> ExtendedSystem:
     """The system extended by findings of the physics and by what is learned of the craft; the given one without these.
 
@@ -69,6 +70,8 @@ def with_findings(
         That they were found in; its name and times go into the descriptions.
     folder : path
         Gets extended.ssp and extended.ssv.
+    craft : LearnedCraft, optional
+        Instead of the one that the log's comparison of forces teaches.
 
     Returns
     -------
@@ -84,7 +87,7 @@ def with_findings(
         about | {"span": (float(time[0]), float(time[-1]))},
         log.causes,
         folder,
-        log.comparison.craft,
+        craft or log.comparison.craft,
     )
 
 
@@ -112,19 +115,11 @@ def extended_by(
     findings = [finding for finding in findings if finding.kind == "physics"]
     if not findings and craft is None:
         return given
-    return with_extension(
-        given,
-        lambda: extend(
-            given.source, findings, folder, craft, log_attributes=about, catalogue=causes
-        ),
-    )
-
-
-def with_extension(given: ExtendedSystem, extend_it: Callable[[], Extension]) -> ExtendedSystem:
-    """A system with an extension, once that is made; with a remark where it cannot be."""
     # The written system is read again, so that only one that can be simulated is reported.
     try:
-        extension = extend_it()
+        extension = extend(
+            given.source, findings, folder, craft, log_attributes=about, catalogue=causes
+        )
         system = read_system(str(extension.ssp))
     except ShipcosimError as error:
         texts = (f"{p.where}: {p.found} {p.remedy}".rstrip() for p in error.problems)

@@ -164,7 +164,7 @@ def compare(
         for channel, unit in CHANNELS.items()
     }
     coordinates = {"model": list(MODELS), "horizon": list(HORIZONS)}
-    coordinates |= conditions(record, seen, rows, train, problem.model)
+    coordinates |= conditions(record, seen, rows, train)
     return Comparison(xarray.Dataset(variables, coordinates), part, train, rows, seen, predictors)
 
 

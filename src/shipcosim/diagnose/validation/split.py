@@ -9,7 +9,6 @@ from shipcosim.diagnose.inference.parts import InParts
 from shipcosim.diagnose.numerics import running_sums
 from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.measured_motion import at_rows
-from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.validation.thresholds import (
     MEASURED_WITHIN,
     MOVING,
@@ -154,8 +153,8 @@ def trained(problem: IdentificationProblem, train: np.ndarray) -> Identification
 
 
 def conditions(
-    record: Record, seen: Motion, rows: np.ndarray, train: np.ndarray, model: ShipModel
-) -> dict[str, np.ndarray]:
+    record: Record, seen: Motion, rows: np.ndarray, train: np.ndarray
+) -> dict[str, tuple]:
     """What the ship did in each prediction, as coordinates of its segment.
 
     Parameters
@@ -166,15 +165,12 @@ def conditions(
     rows : (s,) array of int
         Starts.
     train : (n,) bool array
-    model : ShipModel
-        Says which wind the log has.
 
     Returns
     -------
     dict
-        ``start_time``, ``regime`` (drifting without thrust, turning, moving, holding), ``start_heading``,
-        ``heading_known``: whether training rows have a heading within 15 deg; ``wind_from``, of the logged wind from
-        the bow.
+        ``start_time``, ``regime`` (drifting without thrust, turning, moving, holding), and ``heading_known``: whether
+        training rows have a heading within 15 deg.
     """
     # Distance sailed and range of heading over each prediction.
     spans = rows[:, None] + np.arange(in_rows(record)[-1] + 1)
@@ -191,22 +187,12 @@ def conditions(
     # Degrees of heading with training rows, widened by 15 deg to both sides round the circle.
     used = np.bincount(np.degrees(seen.psi[train]).astype(int) % 360, minlength=360) > 0
     near = np.convolve(np.concatenate([used[-15:], used, used[:15]]), np.ones(31), "valid") > 0.0
-    coordinates = {
+    return {
         "start_time": (
             "segment",
             record.time[rows],
             {"units": "s", "long_name": "where the prediction starts"},
         ),
         "regime": ("segment", regime),
-        "start_heading": ("segment", heading, {"units": "deg"}),
         "heading_known": ("segment", near[heading.astype(int) % 360]),
     }
-    if record.wind is not None:
-        # The wind direction relative to the bow.
-        bow = seen.psi[rows] if model.wind_is_true else 0.0
-        coordinates["wind_from"] = (
-            "segment",
-            np.degrees(record.wind[1][rows] - bow) % 360.0,
-            {"units": "deg"},
-        )
-    return coordinates

@@ -108,5 +108,6 @@ def test_the_extended_system_has_the_learned_numbers(tmp_path):
     craft = learned(21).craft
     made = extend(usv.structure(), [], tmp_path, craft)
     assert made.values == pytest.approx(craft.after)
+    assert "craft, as learned beside the others of this set; from a log" in made.ssv.read_text()
     read = ship_model_of(read_system(str(made.ssp), fmus=[twin.build_stale(twin.ROOT)]))
     assert {path: read.get(path) for path in craft.after} == pytest.approx(craft.after)

@@ -383,5 +383,5 @@ def test_a_ship_without_thrust_drifts(diagnosed):
         for name, (n, a) in record.units.items()
     }
     seen, train = case.motion, first_rows(record)
-    found = conditions(replace(record, units=dead), seen, rows, train, case.model)["regime"][1]
+    found = conditions(replace(record, units=dead), seen, rows, train)["regime"][1]
     assert found[0] == "drifting" and found[1] != "drifting"
