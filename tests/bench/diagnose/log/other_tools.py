@@ -130,6 +130,7 @@ def written(log, rows, folder):
             }
             values["ms"] = round(1000 * row["epoch"])
             lines += [sentence(_filled(template, values)) for template in templates]
+    lines += log.get("foot", ())
     path = folder / log.get("file", "log.csv")
     path.write_bytes("\n".join([*lines, ""]).encode(log.get("encoding", "utf-8")))
     return path

@@ -117,8 +117,7 @@ def propose(
 def _site(log):
     """Words that all names of several words share and that no name in names.toml has: historians write the ship's."""
     names = [set(words_of(column)) for column in log.values if len(words_of(column)) > 1]
-    shared = set.intersection(*names) - simple_words() if len(names) > 2 else ()
-    return frozenset(word for word in shared if len(word) > 2)
+    return frozenset(set.intersection(*names) - simple_words() if len(names) > 2 else ())
 
 
 def _known_together(every):

@@ -244,15 +244,15 @@ def _settle_heading(chosen, log, form, motion):
         _with_doubt(chosen, "heading", message, **update)
     if is_exchanged:
         exchange_axes(chosen)
-    axes = "x is east and y north" if is_exchanged else "x is north and y east"
     for role in ("north", "east") if has_open_axes else ():
-        _with_doubt(chosen, role, f"{axes}, as the heading says")
+        axis = f"'{chosen[role].column}' is {role}, as the heading says"
+        _with_doubt(chosen, role, axis)
 
 
 def are_axes_open(chosen: Mapping[str, Guess]) -> bool:
-    """Whether x and y of a log are read as north and east, and may be the other way round."""
+    """Whether x and y of a log are read as north and east, or as east and north, and may be the other way round."""
     pair = [chosen[role] for role in ("north", "east") if role in chosen]
-    return len(pair) == 2 and all(guess.why.startswith("x north") for guess in pair)
+    return len(pair) == 2 and all(guess.why.startswith("x ") for guess in pair)
 
 
 def exchange_axes(chosen: dict[str, Guess]) -> None:

@@ -85,14 +85,15 @@ def _written_out(word, same):
         first, rest = word[:cut], word[cut:]
         if first in simple_words():
             more = _written_out(rest, same)
-            if rest in simple_words() or rest in _units() or " " in more:
+            is_word = rest in simple_words() and len(rest) >= _SHORTEST
+            if is_word or rest in _units() or " " in more:
                 return f"{same.get(first, first)} {more}"
     return word
 
 
 @cache
 def simple_words() -> frozenset[str]:
-    """Words of some letters that names are made of, which others may be written together from."""
+    """Words that the names of names.toml are made of; some are written together from others."""
     terms = vocabulary()
     texts = [*_short_forms(), *terms["none"]]
     thruster = terms["thruster"]
@@ -100,8 +101,7 @@ def simple_words() -> frozenset[str]:
     for entry in (entry for part in parts for entry in part.values()):
         texts += entry if isinstance(entry, list) else entry.get("names", ())
     texts += terms["words"]["other"]
-    words = {word for text in texts for word in _WORDS.findall(_plain(text).lower())}
-    return frozenset(word for word in words if len(word) >= _SHORTEST)
+    return frozenset(word for text in texts for word in _WORDS.findall(_plain(text).lower()))
 
 
 @cache
