@@ -127,3 +127,9 @@ def test_names_below_groups_have_the_group_where_some_need_it(tmp_path):
     columns = (TIME, HEADING, SURGE, HEADING, SWAY, SWAY)
     log = read_log(written(tmp_path / "log.csv", header, columns))
     assert {"heading", "wind_speed", "wind_from", "port_rpm"} <= set(log)
+
+
+def test_a_long_name_of_known_words_is_read_at_once():
+    # Every way to cut it would be tried, and each word is a call inside the last.
+    name = "port" * 4000
+    assert words_of(name) == (name,)

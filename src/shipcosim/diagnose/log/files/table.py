@@ -84,9 +84,13 @@ def read_file(path: Path, form: FileLayout) -> LogColumns:
     if not path.is_file():
         raise error_at(str(path), "there is no such file.")
     if ending_of(path) in (".nc", ".parquet"):
-        columns = read_columns(path).items()
-        values, units, titles = ({name: c[part] for name, c in columns} for part in range(3))
-        return LogColumns(str(path), values, units, titles=titles)
+        columns = read_columns(path)
+        return LogColumns(
+            str(path),
+            {name: values for name, (values, _, _) in columns.items()},
+            {name: unit for name, (_, unit, _) in columns.items()},
+            titles={name: title for name, (_, _, title) in columns.items()},
+        )
     if is_matlab(path):
         return LogColumns(str(path), *columns_of_matlab(path))
     refuse_foreign(path)

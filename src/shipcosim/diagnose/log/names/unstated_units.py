@@ -225,7 +225,8 @@ def _settle_heading(chosen, log, form, motion):
             and max(chosen[r].rank for r in ("surge", "sway")) < GUESS
         )
         drift = np.arctan2(body[1], body[0]) if is_known else None
-        result = frame_of_angle(*motion, readings, drift)
+        time, north, east = motion
+        result = frame_of_angle(time, north, east, readings, drift)
     if result is None:
         if is_open and not is_exact:
             _guess(chosen, "heading", "rad", _RAD_OR_DEG)
@@ -315,7 +316,8 @@ def _unit_of(chosen, role, log, motion):
     other = next((b for pair in _VELOCITIES for a, b in (pair, pair[::-1]) if a == role), "")
     if other and _is_open(chosen, other) and log.values[chosen[other].column].dtype.kind == "f":
         speed = np.hypot(speed, log.values[chosen[other].column])
-    return unit_of_speed(*motion, np.abs(speed) if other else speed)
+    time, north, east = motion
+    return unit_of_speed(time, north, east, np.abs(speed) if other else speed)
 
 
 def _settle_speed(chosen, role, log, motion):

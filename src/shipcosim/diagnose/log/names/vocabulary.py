@@ -12,6 +12,7 @@ _FILE = Path(__file__).parent / "names.toml"
 _WORDS = re.compile(r"[^\W\d_]+|\d+")
 _HUMP = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z]{2,})")
 _PERCENT = re.compile(r"%(?!\w)|(?<=.)%")  # ROS writes %time
+_LONGEST = 60  # letters of words written together. Assumed.
 _SHORTEST = 3  # letters of a name that is sought within another
 _MARK = re.compile(r"[\u0300-\u036f]")
 
@@ -77,9 +78,10 @@ def _short_forms() -> dict[str, str]:
     return {_plain(word): full for word, full in vocabulary()["words"]["same"].items()}
 
 
-def _written_out(word, same):
+def _written_out(word: str, same: dict[str, str]) -> str:
     """A word in English, also one of several words without blanks between, as northern languages and loggers write."""
-    if word in same or word in simple_words():
+    # Each cut may be tried beside any other: no name of a channel is that long.
+    if word in same or word in simple_words() or len(word) > _LONGEST:
         return same.get(word, word)
     for cut in range(_SHORTEST, len(word) - 1):
         first, rest = word[:cut], word[cut:]
