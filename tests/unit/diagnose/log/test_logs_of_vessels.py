@@ -133,3 +133,10 @@ def test_a_long_name_of_known_words_is_read_at_once():
     # Every way to cut it would be tried, and each word is a call inside the last.
     name = "port" * 4000
     assert words_of(name) == (name,)
+
+
+def test_a_line_of_pairs_above_a_table_is_its_title(tmp_path):
+    columns = TIME, WAY.real, WAY.imag, HEADING
+    path = written(tmp_path / "trial.csv", "time [s],north [m],east [m],heading [deg]", columns)
+    path.write_text("ship=Tern date=2026-01-01 rate=1Hz\n" + path.read_text())
+    assert list(columns_of(path).values) == ["time", "north", "east", "heading"]

@@ -27,14 +27,15 @@ _UNITS = {
 
 
 _PAIR = re.compile(r'([^\s=]+)=("[^"]*"|\S*)')
+# Two lines of pairs: one alone may stand above a table, as its title.
 _MARKS = re.compile(
-    rb'(?:\xef\xbb\xbf)?\s*(?:(?:\[\s*)?\{\s*"|<\?xml|<gpx|(?:[\w.]+=\S+[ \t]+){2})'
+    rb'(?:\xef\xbb\xbf)?\s*(?:(?:\[\s*)?\{\s*"|<\?xml|<gpx|(?:[\w.]+=\S+[ \t]+){2}[^\n]*\n\s*[\w.]+=)'
 )
 
 
 def holds_records(path: Path) -> bool:
     """Whether a file holds records by its first characters."""
-    return _MARKS.match(head_of(path, 512)) is not None
+    return _MARKS.match(head_of(path, 4096)) is not None
 
 
 def text_of_records(path: Path) -> tuple[str, list[str]]:
@@ -43,7 +44,7 @@ def text_of_records(path: Path) -> tuple[str, list[str]]:
     Raises
     ------
     ValueError
-        If it is no JSON, or holds no records.
+        If it is neither JSON nor XML, or holds no records.
     """
     import pandas
 
