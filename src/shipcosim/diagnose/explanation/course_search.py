@@ -279,6 +279,7 @@ class _Whitened:
         # The filter depends on the log's own column alone: further columns need no other.
         self._alone = linearised_by_parts(base.about, base.record, base.model, [])
         self._columns = self._filtered(self.linear)
+        self._products = self._columns.T @ self._columns
 
     def _filtered(self, linear: InParts) -> np.ndarray:
         """Whitened columns of a problem, rows and channels in one axis."""
@@ -304,10 +305,11 @@ class _Whitened:
         # All groups in one pass of the filter; of the products each takes the fit's columns and its own.
         places, shares = zip(*chain.from_iterable(groups), strict=True)
         shaped = _shaped(self._alone, plain, list(places), np.stack(shares, axis=-1))
-        columns = np.hstack([self._columns, self._filtered(shaped)[:, 1:]])
-        products = columns.T @ columns
-        of_fit = np.arange(self._columns.shape[1])
-        first = of_fit.size
+        further = self._filtered(shaped)[:, 1:]
+        across = self._columns.T @ further
+        products = np.block([[self._products, across], [across.T, further.T @ further]])
+        first = len(self._products)
+        of_fit = range(first)
         # A course leaves the numbers' own tolerances in place: they are of all rows.
         priors = [column.prior for column in self.base.columns]
         for new in map(len, groups):

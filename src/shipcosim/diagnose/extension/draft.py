@@ -104,8 +104,9 @@ class ExtensionDraft:
         )
         source = Path(str(log["source"])).name if log.get("source") else "a log"
         digest = f", SHA-256 {log['sha256']}" if log.get("sha256") else ""
-        how = f"named with probability {finding.probability:.2f}: {sizes}"
-        how = how if sizes else "as learned beside the others of this set"
+        how = "as learned beside the others of this set"
+        if sizes:
+            how = f"named with probability {finding.probability:.2f}: {sizes}"
         origin = f"{finding.label}, {how}; from {source}{digest}"
         text = "; ".join(filter(None, (note, origin)))
         unit = None if unit in (None, "", "1") else unit

@@ -44,9 +44,13 @@ _STEPS = (
     90.0,
 )  # s between rows, beyond which numbers without a unit are hardly seconds. Assumed.
 _SIZES = {"d": DAY} | {unit: 1.0 / count for unit, count in EPOCHS.items()}  # s
-_NAMES = dict(
-    zip(_SIZES, "days seconds milliseconds microseconds nanoseconds".split(), strict=True)
-)
+_NAMES = {
+    "d": "days",
+    "s": "seconds",
+    "ms": "milliseconds",
+    "us": "microseconds",
+    "ns": "nanoseconds",
+}
 _MOST_TURNED = 1080.0  # deg; where turns are counted on a log begins within it. Assumed.
 _FEW_IMPOSSIBLE = 0.1  # share of impossible directions, above which the unit is wrong. Assumed.
 _USUALLY_TURNED = 4.0  # times the median of a direction; a number above is none. Assumed.

@@ -14,11 +14,11 @@ import numpy as np
 from shipcosim.diagnose.log.files.cells import numbers_of, with_unit
 from shipcosim.diagnose.log.files.excel import is_workbook, text_of_sheet
 from shipcosim.diagnose.log.files.file_layout import FileLayout
-from shipcosim.diagnose.log.files.json_records import holds_records, text_of_records
 from shipcosim.diagnose.log.files.layout import Layout, layout_of, without_labview_header
 from shipcosim.diagnose.log.files.matlab import columns_of_matlab, is_matlab
 from shipcosim.diagnose.log.files.nmea import columns_of_sentences, holds_sentences
 from shipcosim.diagnose.log.files.positions import with_minutes
+from shipcosim.diagnose.log.files.records import holds_records, text_of_records
 from shipcosim.diagnose.log.files.refused_formats import refuse_foreign
 from shipcosim.diagnose.log.files.text import text_of
 from shipcosim.diagnose.log.files.times import seconds_of_parts
@@ -94,16 +94,17 @@ def read_file(path: Path, form: FileLayout) -> LogColumns:
     if is_matlab(path):
         return LogColumns(str(path), *columns_of_matlab(path))
     refuse_foreign(path)
+    has_records = holds_records(path)
     if is_workbook(path):
         text, remarks = text_of_sheet(path, form.sheet)
         form = form.model_copy(update={"separator": "\t"})
-    elif holds_records(path):
+    elif has_records:
         text, remarks = text_of_records(path)
         form = form.model_copy(update={"separator": "\t"})
     else:
         text, remarks = text_of(path, form.encoding)
     # Records and sheets may hold raw sentences too, behind the times at which they were received.
-    lines = text.splitlines()[1 if holds_records(path) else 0 :]
+    lines = text.splitlines()[1 if has_records else 0 :]
     if holds_sentences(lines):
         values, units, more = columns_of_sentences(str(path), lines)
         return LogColumns(str(path), values, units, (*remarks, *more))
