@@ -77,9 +77,7 @@ def _page(ship: CalibratedShip) -> CalibrationPage:
         moved=what,
         errors=errors,
         figures=(*what, *errors),
-        numbers=Table(
-            moved_rows(ship), ("Number", "System", "By the logs", "Tolerances"), (1, 2, 3)
-        ),
+        numbers=Table(moved_rows(ship), ("Number", "System", "By the logs", "Tolerances")),
         error_table=error_table(errors_by_log(ship), "calibrated"),
         logs=Table(
             log_rows(ship),

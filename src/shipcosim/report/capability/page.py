@@ -87,7 +87,7 @@ def page_of(capability: Capability) -> CapabilityPage:
         (file, p.description, f"{p.value} {p.unit if p.unit != '1' else ''}".strip(), p.origin)
         for file, p in stated
     ]
-    particulars = Table(rows, ("file", "what", "value", "from"), tight=(2,))
+    particulars = Table(rows, ("file", "what", "value", "from"))
     return CapabilityPage(
         title=f"Static DP capability of {vessel.name}",
         facts=facts_of(facts),
@@ -177,7 +177,7 @@ def _numbers(capability: Capability) -> Table:
         )
         for k, angle in enumerate(DIRECTIONS)
     ]
-    return Table(rows, ("weather from", "wind, intact", *names), tight=(0, 1))
+    return Table(rows, ("weather from", "wind, intact", *names))
 
 
 def _thrusters(capability: Capability) -> Table:
@@ -222,7 +222,7 @@ def _thrusters(capability: Capability) -> Table:
         "simulator's",
         "forbidden",
     )
-    return Table(rows, head, tight=(0, 2, 3, 4, 5, 6, 7))
+    return Table(rows, head)
 
 
 def _conditions() -> Table:
@@ -236,4 +236,4 @@ def _conditions() -> Table:
         )
         for c in CONDITIONS
     ]
-    return Table(rows, ("number", "wind", "Hs", "Tp", "current"), tight=(0, 1, 2, 3, 4))
+    return Table(rows, ("number", "wind", "Hs", "Tp", "current"))

@@ -46,7 +46,7 @@ def error_table(errors: Mapping[str, LogErrors], after: str = WITH_CAUSES) -> Ta
                 cells.append(f"{by_horizon} {unit}".replace(" °", "°") if by_horizon else "–")
         fitted_on = _fitted_on(error) if "after" in error.position else ""
         rows.append((log, f"{horizons} s", *cells, fitted_on))
-    return Table(rows, ("Log", "After", *head, "Numbers by"), tuple(range(2 + len(head))))
+    return Table(rows, ("Log", "After", *head, "Numbers by"))
 
 
 def _looks(errors: Mapping[str, LogErrors], after: str) -> dict[str, tuple[str, str]]:
@@ -85,7 +85,7 @@ def log_table(diagnosis: Diagnosis) -> Table:
         cells = ("; ".join(texts) or "none" for texts in (faults, causes))
         rows.append((name, log.verdict, *cells, first, error_after(log)))
     head = ("Log", "Verdict", "Faults of its own", "Causes", "Largest discrepancy", "Error")
-    return Table(rows, head, (0, 5))
+    return Table(rows, head)
 
 
 def error_after(diagnosis: Diagnosis) -> str:

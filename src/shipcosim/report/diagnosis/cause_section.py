@@ -136,7 +136,6 @@ def _estimates(diagnosis: Diagnosis) -> Table:
         return Table(
             rows,
             head=("Cause", "Parameter", "At the reference → now", "Probability"),
-            tight=(1, 2, 3),
         )
     rows = []
     for finding in physics:
@@ -146,7 +145,7 @@ def _estimates(diagnosis: Diagnosis) -> Table:
             for parameter, value, std, unit in estimate_rows(estimated):
                 rows.append((name, parameter, value, f"± {std}", unit, sure))
     head = ("Cause", "Parameter", "Estimate", "Std", "Unit", "Probability")
-    return Table(rows, head, tight=(1, 2, 3, 4, 5))
+    return Table(rows, head)
 
 
 def _gains(evidence: Evidence) -> Table:
@@ -162,7 +161,7 @@ def _gains(evidence: Evidence) -> Table:
         )
         rows.append((title_of(of), plain(of.gain), healthy))
     head = ("Cause", "Makes the log likelier by [nats]", "The same on healthy ships on this track")
-    return Table(rows, head, tight=(1,))
+    return Table(rows, head)
 
 
 def _chances(candidates: Iterable[Candidate]) -> Table:
@@ -182,5 +181,5 @@ def _sail(diagnosis: Diagnosis) -> Sail | None:
         separates=tuple(
             f"It tells {a} from {b}.".replace("_", " ") for a, b in prescription.separates
         ),
-        steps=Table(manoeuvre_steps(manoeuvre), head=("When", "What"), tight=(0,)),
+        steps=Table(manoeuvre_steps(manoeuvre), head=("When", "What")),
     )

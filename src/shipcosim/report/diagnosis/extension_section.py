@@ -57,7 +57,7 @@ def extension_section(diagnosis: Diagnosis) -> ExtensionSection:
         content=of_form if diagnosis.verdict == "form" else "The named causes",
         system=extension.ssp.name,
         parameters=extension.ssv.name,
-        values=Table(rows, head=("Number", "Was", "Is", "Unit"), tight=(1, 2, 3)),
+        values=Table(rows, head=("Number", "Was", "Is", "Unit")),
         inserted=", ".join(extension.components),
         remarks=tuple(extension.remarks),
     )

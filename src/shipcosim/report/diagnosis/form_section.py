@@ -22,7 +22,7 @@ class FormSection:
 def form_section(form: LoadForm) -> FormSection:
     """The part on the form of loads for the template."""
     head = ("Number", "In the model", "As logged", "Std", "Unit")
-    numbers = Table([_row(number) for number in form.numbers], head, tight=(1, 2, 3, 4))
+    numbers = Table([_row(number) for number in form.numbers], head)
     if not form.differs:
         return FormSection("Numbers of the ship lie beyond their tolerances.", Table(()), numbers)
     # How unusual the difference is, compared with other ships.
@@ -31,7 +31,7 @@ def form_section(form: LoadForm) -> FormSection:
     return FormSection(
         f"Over place, angle and speed the loads on this ship have another shape than the model's. They differ {scale} "
         "ships usually do from their models. Causes were sought beside that.",
-        Table(functions, head=("Load", "Differs from the model's by about"), tight=(1,)),
+        Table(functions, head=("Load", "Differs from the model's by about")),
         numbers,
     )
 

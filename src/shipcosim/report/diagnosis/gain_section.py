@@ -156,4 +156,4 @@ def craft_table(craft: LearnedCraft | None) -> Table:
         larger = learned_number.gain - 1.0
         without = f"+ {percent(larger)}" if craft.errors and larger >= 0.005 else ""
         rows.append((capitalised(number.name), given, learned, without))
-    return Table(tuple(rows), head=_LEARNED, tight=(1, 2, 3))
+    return Table(tuple(rows), head=_LEARNED)

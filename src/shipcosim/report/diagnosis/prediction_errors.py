@@ -120,7 +120,7 @@ def error_table(errors: PredictionErrors, models: Sequence[str] = ("plain", "flo
             for channel in CHANNELS
         ]
         rows.append((condition.condition, str(condition.predictions), *cells))
-    return Table(rows, head, tight=tuple(range(2, 9)))
+    return Table(rows, head)
 
 
 def condition_table(errors: PredictionErrors) -> Table:
@@ -136,7 +136,7 @@ def condition_table(errors: PredictionErrors) -> Table:
     for name, group in groups.items():
         cells = [plain(_last(group, "position", model), 2) for model in MODELS]
         rows.append((name, str(group.predictions), *cells, removed(group.gain)))
-    return Table(rows, head, tight=tuple(range(1, 8)))
+    return Table(rows, head)
 
 
 def removed(entry: Mapping[str, Any] | None) -> str:

@@ -84,4 +84,4 @@ def error_rows(errors: Dataset) -> Table:
         for after in errors["after"].values
         for name in errors["simulation"].values
     ]
-    return Table(rows, head, tight=(0, 1))
+    return Table(rows, head)

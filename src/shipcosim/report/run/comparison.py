@@ -393,7 +393,7 @@ def _table(differing: Sequence[Difference]) -> Table:
         (d.signal, f"{plain(d.rms)} {d.unit}", f"{plain(d.largest)} {d.unit}", f"{d.time:g} s")
         for d in differing[:MOST_DIFFERENCES]
     ]
-    return Table(rows, ("Signal", "rms", "Largest", "At"), (1, 2, 3)) if rows else Table(())
+    return Table(rows, ("Signal", "rms", "Largest", "At")) if rows else Table(())
 
 
 def _start_values(pair: Pair) -> Detail | None:

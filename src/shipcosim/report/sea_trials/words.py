@@ -64,7 +64,7 @@ def sets_table(study: SeaTrialStudy) -> Table:
         (causes_text(causes.label), estimates_text(causes), signed(causes.evidence - first))
         for causes in shown
     ]
-    return Table(rows, ("Causes", "Estimates", "Nats"), (2,))
+    return Table(rows, ("Causes", "Estimates", "Nats"))
 
 
 def estimates_text(causes: SetOfCauses) -> str:
@@ -175,5 +175,4 @@ def separation_table(study: SeaTrialStudy) -> Table:
     return Table(
         rows,
         ("Manoeuvre", "Min", *(f"{causes_text(a)} / {causes_text(b)}" for a, b in study.pairs)),
-        (1,),
     )

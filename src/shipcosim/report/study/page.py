@@ -267,7 +267,7 @@ def summary_table(columns: Columns) -> Table:
     shown = [column for name, column in columns.items() if name not in ends]
     count = min(len(shown[0].values), MOST_SUMMARY) if shown else 0
     rows = tuple([_with_interval(columns, column, k) for column in shown] for k in range(count))
-    return Table(rows, [column.titled for column in shown], tight=tuple(range(len(shown))))
+    return Table(rows, [column.titled for column in shown])
 
 
 def _with_interval(columns: Columns, column: Column, row: int) -> str:

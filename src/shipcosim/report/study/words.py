@@ -169,7 +169,7 @@ def quantities_table(runs: Columns) -> Table:
         "no value",
         "varies most with",
     )
-    return Table(rows, head, tight=(0, 2, 3, 4, 5, 6))
+    return Table(rows, head)
 
 
 def _varies_with(column: Column, causes: Sequence[Column]) -> str:
@@ -216,13 +216,13 @@ def varied_table(study: Mapping[str, Any]) -> Table:
     for part in ("sample", "tune"):
         for signal, how in ((study.get(part) or {}).get("of") or {}).items():
             rows.append(_row({"name": signal, "signal": signal} | _given(how)))
-    return Table(rows, ("name", "what is varied"), tight=(0,))
+    return Table(rows, ("name", "what is varied"))
 
 
 def measured_table(study: Mapping[str, Any]) -> Table:
     """Quantities of each run, and summaries over similar runs."""
     parts = [*(study.get("quantity") or ()), *(study.get("summary") or ())]
-    return Table(list(map(_row, parts)), ("name", "what it is"), tight=(0,))
+    return Table(list(map(_row, parts)), ("name", "what it is"))
 
 
 def _row(part: Mapping[str, Any]) -> tuple[str, str]:
@@ -280,7 +280,6 @@ def setup_table(tables: StudyTables) -> Table:
     }
     return Table(
         [(name, str(value)) for name, value in entries.items() if value not in (None, "")],
-        tight=(0,),
     )
 
 

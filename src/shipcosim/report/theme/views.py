@@ -63,11 +63,10 @@ def links_of(
 
 @dataclass(frozen=True)
 class Table:
-    """A table of texts; the columns numbered in `tight` do not wrap."""
+    """A table of texts."""
 
     rows: Sequence[Sequence[str]]
     head: Sequence[str] = ()
-    tight: Sequence[int] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "rows", tuple(self.rows))
