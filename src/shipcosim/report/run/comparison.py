@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from xarray import Dataset
 
 from shipcosim.angles import wrap_series
@@ -19,7 +18,8 @@ from shipcosim.report.run.panels import Panel, Section, constants_as_words, make
 from shipcosim.report.run.roles import Roles
 from shipcosim.report.run.scene import make_run
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.numbers import plain
+from shipcosim.report.theme.display import turned_to
+from shipcosim.report.theme.numbers import extent, finite, plain
 from shipcosim.report.theme.views import Fact, Outcome, Table
 
 COLOURS = (palette.BLUE, palette.PURPLE)
@@ -129,16 +129,18 @@ def lay_over(tables: tuple[Dataset, Dataset], names: tuple[str, str]) -> Pair:
     shift = float(times[0][0] - times[1][0]) if apart else 0.0
     # All times of both runs; rounding makes equal times equal.
     common = np.union1d(np.round(times[0], 9), np.round(times[1] + shift, 9))
-    # Both in the units of the first, interpolated to the common times.
+    # Both in the units of the first, interpolated to the common times; no value beyond a run's ends.
     roles, first = shown_table(tables[0], ())
     second = shown_table(tables[1], ())[1]
-    second = second.assign_coords(time=second["time"].values + shift)
-    shown = (_on(first, common), _on(_like(second, first), common))
-    return Pair(names, tables, shown, roles, shift)
+    first, second = (
+        shown.assign_coords(time=np.round(clock, 9)).interp(time=common)
+        for shown, clock in ((first, times[0]), (second, times[1] + shift))
+    )
+    return Pair(names, tables, (first, _like(second, first)), roles, shift)
 
 
 def differences(pair: Pair) -> list[Difference]:
-    """Differences of common signals where both runs have values; angles the short way round.
+    """Differences of common signals while both runs go; angles the short way round.
 
     Parameters
     ----------
@@ -147,68 +149,58 @@ def differences(pair: Pair) -> list[Difference]:
     Returns
     -------
     list of Difference
-        The largest over its signal's range first; signals that are the same are left out.
+        The largest over its signal's range first; signals that are the same are left out. Where one run alone has a
+        number, rms and largest are none and the share is infinite.
     """
     first, second = pair.shown
+    start, end, _ = _covered(pair)
     time = first["time"].values
+    rows = (time > start - CLOSE) & (time < end + CLOSE)
+    time = time[rows]
     differing = []
-    # Angles the short way round: a difference of 359 deg is one of 1 deg.
     for name in (str(n) for n in first.data_vars if n in second):
-        a = first[name].values
-        b = second[name].values
+        a = first[name].values[rows]
+        b = second[name].values[rows]
         unit = first[name].attrs["units"]
+        # Angles the short way round: a difference of 359 deg is one of 1 deg.
         gap = wrap_series(b - a) if unit == "deg" else b - a
-        # Only rows where both runs have a value.
-        both = np.isfinite(gap)
-        if not both.any():
+        size = np.abs(np.where((a == b) | (np.isnan(a) & np.isnan(b)), 0.0, gap))
+        if not np.isfinite(size).all():
+            when = float(time[np.argmin(np.isfinite(size))])
+            differing.append(Difference(name, unit, np.nan, np.nan, when, np.inf))
             continue
-        # Largest difference, and the range of the signal that scales it.
-        size = np.abs(gap[both])
+        # Over the range of the signal; a constant one has none: its size, else the difference.
         most = int(np.argmax(size))
         largest = float(size[most])
-        # A constant signal has no range: use its size, else the difference.
-        span = max(float(np.ptp(v[both])) for v in (a, b))
-        span = span or float(np.max(np.abs(a[both]))) or largest
+        span = max(extent(a), extent(b)) or float(np.max(np.abs(finite(a)), initial=0.0)) or largest
         # Smaller differences are rounding.
         if largest > SAME * max(span, np.finfo(float).tiny):
             rms = largest * float(np.sqrt(np.mean((size / largest) ** 2)))
-            when = float(time[both][most])
-            differing.append(Difference(name, unit, rms, largest, when, rms / span))
+            differing.append(Difference(name, unit, rms, largest, float(time[most]), rms / span))
     return sorted(differing, key=lambda difference: -difference.share)
 
 
-def _on(shown: Dataset, time: NDArray) -> Dataset:
-    """Interpolate a table linearly to other times; logical signals hold their last value."""
-    # Rows before the start and after the end of the run have no value.
-    clock = np.round(shown["time"].values, 9)
-    inside = (time >= clock[0]) & (time <= clock[-1])
-    # Last row at or before each time, for signals that step.
-    rows = np.clip(np.searchsorted(clock, time, side="right") - 1, 0, len(clock) - 1)
-    columns = {}
-    for name, v in shown.data_vars.items():
-        values = v.values.astype(float)
-        steps = v.attrs.get("logical") or len(clock) == 1
-        read = values[rows] if steps else np.interp(time, clock, values)
-        columns[name] = ("time", np.where(inside, read, np.nan), v.attrs)
-    return xr.Dataset(columns, {"time": time})
+def _covered(pair: Pair) -> tuple[float, float, bool]:
+    """First and last time that both runs cover, and whether that is all of both. [s]"""
+    ends = [table["time"].values[[0, -1]] for table in pair.tables]
+    ends[1] = ends[1] + pair.shift
+    start = max(ends[0][0], ends[1][0])
+    end = min(ends[0][1], ends[1][1])
+    return float(start), float(end), bool(np.allclose(ends[0], ends[1]))
 
 
 def _like(shown: Dataset, other: Dataset) -> Dataset:
     """The table in the other's units, angles moved by whole turns to the other's."""
     columns = {}
     for name, v in shown.data_vars.items():
-        values = v.values.astype(float)
-        # Convert units by the factors that the page applies to both.
-        attributes = dict(v.attrs)
-        if name in other and other[name].attrs["units"] != attributes["units"]:
-            values = values * other[name].attrs["factor"] / attributes["factor"]
-            attributes |= {key: other[name].attrs[key] for key in ("units", "factor")}
-        # Compare medians: single wraps must not decide how many turns to move.
-        if name in other and attributes["units"] == "deg" and np.isfinite(values).any():
-            gap = np.nanmedian(values) - np.nanmedian(other[name].values)
-            values = values - 360.0 * np.round(gap / 360.0) if np.isfinite(gap) else values
-        columns[name] = ("time", values, attributes)
-    return xr.Dataset(columns, {"time": shown["time"].values})
+        if name in other:
+            # Convert units by the factors that the page applies to both.
+            to = other[name]
+            has_unit = to.attrs["units"] == v.attrs["units"]
+            values = v.values * (1.0 if has_unit else to.attrs["factor"] / v.attrs["factor"])
+            values = turned_to(values, to.values) if to.attrs["units"] == "deg" else values
+            columns[name] = v.copy(data=values).assign_attrs(to.attrs)
+    return shown.assign(columns)
 
 
 # What the page shows.
@@ -221,7 +213,6 @@ def _page(pair: Pair, merged: Dataset, differing: Sequence[Difference]) -> RunPa
         for table, name, shift in zip(pair.tables, pair.names, (0.0, pair.shift), strict=True)
         if (run := make_run(table, (), name, shift)) is not None
     ]
-    unlike = without_difference(pair)
     sections = constants_as_words(_sections(pair), merged)
     choice = [str(name) for name in merged.data_vars]
     facts = []
@@ -243,10 +234,10 @@ def _page(pair: Pair, merged: Dataset, differing: Sequence[Difference]) -> RunPa
     return RunPage(
         title=f"{pair.names[0]} and {pair.names[1]}",
         facts=facts,
-        outcome=_outcome(pair, differing, unlike),
+        outcome=_outcome(pair, differing),
         links=links(runs, sections),
         data=data,
-        remarks=tuple(_remarks(pair, unlike)),
+        remarks=tuple(_remarks(pair)),
         weather=(),
         expectations=(),
         key_figures=_table(differing),
@@ -303,12 +294,9 @@ def _doubled(panel: Panel, pair: Pair) -> Panel | None:
     return replace(panel, lines=both, bands=())
 
 
-def _outcome(pair: Pair, differing: Sequence[Difference], unlike: Sequence[str]) -> Outcome:
+def _outcome(pair: Pair, differing: Sequence[Difference]) -> Outcome:
     """One sentence: largest distance of the ships, else the signal that differs most."""
     common = sum(1 for name in pair.shown[0].data_vars if name in pair.shown[1])
-    if not differing and unlike:
-        text = f"{len(unlike)} of {common} signals have a number in one run only"
-        return Outcome("plain", "DIFFER", f"{text}, at some times: {shortened(unlike)}.")
     if not differing:
         return Outcome("passed", "SAME", f"All {common} signals that both have are the same.")
     differ = f"{len(differing)} of {common} signals differ"
@@ -328,36 +316,11 @@ def _outcome(pair: Pair, differing: Sequence[Difference], unlike: Sequence[str])
     return Outcome("plain", "DIFFER", f"{differ}, most of all {worst.signal}.")
 
 
-def _covered(pair: Pair) -> tuple[float, float, bool]:
-    """First and last time that both runs cover, and whether that is all of both. [s]"""
-    ends = [table["time"].values[[0, -1]] for table in pair.tables]
-    ends[1] = ends[1] + pair.shift
-    start = max(ends[0][0], ends[1][0])
-    end = min(ends[0][1], ends[1][1])
-    return float(start), float(end), bool(np.allclose(ends[0], ends[1]))
-
-
-def without_difference(pair: Pair) -> list[str]:
-    """Signals that differ by no number at a time that both runs cover, as where one has none."""
-    first, second = pair.shown
-    time = first["time"].values
-    start, end, _ = _covered(pair)
-    is_covered = (time > start - CLOSE) & (time < end + CLOSE)
-    names = []
-    for name in (str(n) for n in first.data_vars if n in second):
-        a = first[name].values
-        b = second[name].values
-        is_same = (a == b) | (np.isnan(a) & np.isnan(b))
-        if (is_covered & ~is_same & ~np.isfinite(b - a)).any():
-            names.append(name)
-    return names
-
-
 CLOSE = 1e-8
 """Times are rounded to nanoseconds to be common. [s]"""
 
 
-def _remarks(pair: Pair, unlike: Sequence[str]) -> list[str]:
+def _remarks(pair: Pair) -> list[str]:
     remarks = []
     first, second = pair.names
     # Runs without common times were moved; the reader must know.
@@ -373,8 +336,6 @@ def _remarks(pair: Pair, unlike: Sequence[str]) -> list[str]:
     for name, shown, other in ((first, *pair.shown), (second, *pair.shown[::-1])):
         if alone := [str(signal) for signal in shown.data_vars if signal not in other]:
             remarks.append(f"Only in {name}: {shortened(alone)}.")
-    if unlike:
-        remarks.append(f"A number in one run only, at some times: {shortened(unlike)}.")
     return remarks
 
 

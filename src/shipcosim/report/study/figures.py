@@ -444,10 +444,9 @@ def distance_figure(time: NDArray, spread: Sequence[tuple[SeriesOfRows, NDArray]
     traces = []
     for group, (low, middle, high) in spread:
         # Band between the outer quantiles, then the median on top.
-        name = group.label or "all runs"
         look: PlotlyDict = {"width": 2, "hovertemplate": "%{y:.3~g} m"}
         traces += band(time, low, high, group.colour)
-        traces.append(line(name, time, middle, group.colour, **look))
+        traces.append(line(group.label, time, middle, group.colour, **look))
     layout = {
         "xaxis": {"title": {"text": "time [s]"}},
         "yaxis": {"rangemode": "tozero"},

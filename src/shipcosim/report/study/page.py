@@ -79,14 +79,14 @@ class StudyPage(Page):
         Charts of recorded tracks.
     plots, figures : sequence of Figure
         Views, and all figures in the order of `data["figures"]`.
-    quantities, summary, varied, measured, setup : Table
+    quantities, summary : Table
     thinned : tuple of int, optional
         How many runs the page holds of how many, where it does not hold all.
     errors : sequence of ErrorOfRuns
     choices : sequence of Choice
         Columns that are filtered by level.
     text : str
-        The study as it was read.
+        The study as it was read, its engine and versions.
     """
 
     remarks: Sequence[str]
@@ -99,9 +99,6 @@ class StudyPage(Page):
     thinned: tuple[int, int] | None
     errors: Sequence[ErrorOfRuns]
     choices: Sequence[Choice]
-    varied: Table
-    measured: Table
-    setup: Table
     text: str
 
 
@@ -145,10 +142,7 @@ def page_of(tables: StudyTables) -> StudyPage:
         thinned=(len(rows), len(tables.runs)) if len(rows) < len(tables.runs) else None,
         errors=errors[: words.MOST_ERRORS],
         choices=_choices(runs),
-        varied=words.varied_table(tables.study),
-        measured=words.measured_table(tables.study),
-        setup=words.setup_table(tables),
-        text=words.study_text(tables.study),
+        text=words.study_text(tables.about),
     )
 
 

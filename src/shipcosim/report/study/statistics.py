@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from pandas import DataFrame
 
 from shipcosim.report.theme.numbers import finite
 
@@ -67,31 +68,25 @@ def explained(values: ArrayLike, by: ArrayLike, are_levels: bool) -> float:
     0.999
     """
     # Rows where both are known.
-    quantity = np.asarray(values, float)
-    cause = np.asarray(by, float)
-    is_known = np.isfinite(quantity) & np.isfinite(cause)
-    quantity = quantity[is_known]
-    cause = cause[is_known]
-    # Groups: levels, or bins of equal size.
-    groups = np.unique(cause, return_inverse=True)[1] if are_levels else _bins(cause)
-    count = np.bincount(groups) if len(groups) else np.zeros(0)
-    left = len(quantity) - np.count_nonzero(count)
+    table = DataFrame({"value": np.asarray(values, float), "cause": np.asarray(by, float)})
+    table = table[np.isfinite(table).all(axis=1)]
+    value = table["value"]
+    # Groups: levels, or bins by rank, which have equal size whatever the distribution.
+    groups = table["cause"]
+    if not are_levels:
+        bins = min(BINS, max(len(table) // 3, 1))
+        groups = (groups.rank(method="first") - 1) * bins // len(table)
+    count = groups.nunique()
+    left = len(table) - count
     # Too few runs or groups: no statement.
-    if np.count_nonzero(count) < 2 or left < 2 or not np.ptp(quantity):
+    if count < 2 or left < 2 or not np.ptp(value):
         return float("nan")
     # Variance within groups over total variance, both with their degrees of freedom.
-    means = np.bincount(groups, quantity) / np.maximum(count, 1)
-    within = float(np.square(quantity - means[groups]).sum()) / left
-    share = 1.0 - within / float(quantity.var(ddof=1))
+    within = np.square(value - value.groupby(groups).transform("mean")).sum() / left
+    share = 1.0 - within / value.var()
     # Less than two standard deviations of chance counts as nothing.
-    by_chance = 2.0 * np.sqrt(2.0 * (np.count_nonzero(count) - 1)) / (len(quantity) - 1)
+    by_chance = 2.0 * np.sqrt(2.0 * (count - 1)) / (len(table) - 1)
     return float(share) if share > by_chance else 0.0
-
-
-def _bins(values: NDArray) -> NDArray:
-    # Bins by rank have equal size, whatever the distribution.
-    ranks = np.argsort(np.argsort(values, kind="stable"), kind="stable")
-    return (ranks * min(BINS, max(len(values) // 3, 1))) // max(len(values), 1)
 
 
 def pareto_front(quantities: Sequence[ArrayLike]) -> NDArray:

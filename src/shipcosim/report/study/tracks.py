@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from pandas import DataFrame
 
 from shipcosim.report.run.track import hull_outline, symbol_size
 from shipcosim.report.study.figures import distance_figure
-from shipcosim.report.study.frames import RUNS, Frame, Lacking, SeriesOfRows, left_out, series_of
+from shipcosim.report.study.frames import RUNS, Frame, Lacking, SeriesOfRows, series_of
 from shipcosim.report.study.tables import StudyTables
 from shipcosim.report.theme.figures import evenly
 from shipcosim.report.theme.numbers import finite
@@ -68,41 +69,31 @@ def tracks_view(tables: StudyTables, view: View) -> TracksView:
     # Series of the runs that have a track.
     frame = Frame(RUNS, tables.columns(tables.runs))
     tracks = _read(tables)
-    has_track = np.asarray(np.isfinite(tracks.north).any(axis=1))
-    series = [
-        SeriesOfRows(group.label, group.colour, group.rows[has_track[group.rows]])
-        for group in series_of(frame, view.series or [], [])
-    ]
+    has_track = np.isfinite(tracks.north).any(axis=1)
+    series = []
+    for group in series_of(frame, view.series or [], []):
+        rows = group.rows[has_track[group.rows]]
+        if len(rows):
+            series.append(SeriesOfRows(group.label or "all runs", group.colour, rows))
     # Circles and figure use the distance from the start.
     distance = np.hypot(tracks.north, tracks.east)
     circles = view.circles or _circles(distance)
     # Rows of the drawn tracks: equally many of each series.
-    most = MOST_TRACKS // max(len(series), 1)
-    drawn = [
-        group.rows[evenly(len(group.rows), most)] if len(group.rows) else group.rows
-        for group in series
-    ]
+    most = MOST_TRACKS // len(series)
+    drawn = [group.rows[evenly(len(group.rows), most)] for group in series]
     note = (
         f"North up, each from where it began. Drawn are {sum(map(len, drawn))} of {sum(len(s.rows) for s in series)} "
         "tracks, with her outline at the time shown; shaded: where all of them were, the darker the longer."
     )
-    # Rows without a track, which do not count as left out.
-    there = np.concatenate([group.rows for group in series]) if series else np.zeros(0, int)
-    without = [SeriesOfRows("", "", np.setdiff1d(np.arange(frame.rows), there))]
-    sentences = [view.note or note, left_out(frame, [*series, *without])]
     # Quantiles over all tracks, not only over the drawn ones; NaN where no run is left.
-    spread = []
-    for drawn_group in series:
-        if len(drawn_group.rows):
-            quantiles = np.full((3, len(tracks.time)), np.nan)
-            some = np.isfinite(distance[drawn_group.rows]).any(axis=0)
-            left = distance[np.ix_(drawn_group.rows, some)]
-            quantiles[:, some] = np.nanquantile(left, [0.05, 0.5, 0.95], axis=0)
-            spread.append((drawn_group, quantiles))
+    spread = [
+        (group, DataFrame(distance[group.rows]).quantile([0.05, 0.5, 0.95]).to_numpy())
+        for group in series
+    ]
     return TracksView(
         title=view.title or "Tracks",
-        note=" ".join(filter(None, sentences)),
-        series=[(group.label or "all runs", group.colour) for group in series],
+        note=view.note or note,
+        series=[(group.label, group.colour) for group in series],
         data=_data(tables, tracks, series, drawn, circles),
         distance=distance_figure(tracks.time, spread),
     )
@@ -112,24 +103,26 @@ def _read(tables: StudyTables) -> _Tracks:
     """Read the tracks on few common times."""
     # Signals north, east and heading as the study names them.
     names = [str(name) for name in (tables.study.get("tracks") or {}).get("signals", ())]
-    if tables.tracks is None or not len(tables.tracks) or len(names) < 2:
+    runs = tables.runs["run"]
+    of_runs = None if tables.tracks is None else tables.tracks[tables.tracks["run"].isin(runs)]
+    if of_runs is None or of_runs.empty or len(names) < 2:
         raise Lacking(
             "No tracks were kept: the study has no [tracks] with signals of north, east and heading."
         )
-    table = tables.tracks
-    # A row for each run, a column for each time.
-    place = {int(run): k for k, run in enumerate(tables.runs["run"])}
-    stamps, column = np.unique(table["time"].to_numpy(float), return_inverse=True)
-    row = np.array([place.get(int(run), -1) for run in table["run"]])
-    full = np.full((3, len(place), len(stamps)), np.nan)
-    for k, name in enumerate(names[:3]):
-        full[k, row[row >= 0], column[row >= 0]] = table[name].to_numpy(float)[row >= 0]
-    # Evenly fewer times, first and last included.
-    kept = evenly(len(stamps), MOST_TIMES)
-    north, east, psi = full[:, :, kept]
+    # A row for each run, a column for each time; evenly fewer times, first and last included.
+    table = of_runs.pivot(index="run", columns="time", values=names[:3]).reindex(runs)
+    time = table[names[0]].columns.to_numpy(float)
+    kept = evenly(len(time), MOST_TIMES)
+    north, east, *headings = (table[name].to_numpy(float) for name in names[:3])
+    heading = headings[0] if headings else np.full_like(north, np.nan)
     # Each track relative to its first known position.
-    first = [np.array([finite(row)[:1].sum() for row in table])[:, None] for table in full[:2]]
-    return _Tracks(stamps[kept], north - first[0], east - first[1], np.degrees(psi))
+    first = [table[name].bfill(axis=1).to_numpy(float)[:, :1] for name in names[:2]]
+    return _Tracks(
+        time[kept],
+        (north - first[0])[:, kept],
+        (east - first[1])[:, kept],
+        np.degrees(heading)[:, kept],
+    )
 
 
 def _circles(distance: NDArray) -> list[float]:
@@ -149,16 +142,12 @@ def _data(
     drawn: Sequence[NDArray],
     circles: Sequence[float],
 ) -> JsonObject:
-    every = np.concatenate([group.rows for group in series]) if series else np.zeros(0, int)
+    every = np.concatenate([group.rows for group in series])
     # West, east, south and north end of all tracks, the start included. [m]
     ends = []
     for values in (tracks.east[every], tracks.north[every]):
-        numbers = finite(values)
-        ends += (
-            [min(float(numbers.min()), 0.0), max(float(numbers.max()), 0.0)]
-            if numbers.size
-            else [-1.0, 1.0]
-        )
+        numbers = np.append(finite(values), 0.0)
+        ends += [numbers.min(), numbers.max()]
     box = [float(f"{end:.6g}") for end in ends]
     # Outline to scale where the ship's size is known.
     ship = tables.about.get("ship") or {}
@@ -175,7 +164,7 @@ def _data(
         "circles": list(circles),
         "series": [
             {
-                "label": group.label or "all runs",
+                "label": group.label,
                 "colour": group.colour,
                 "count": len(group.rows),
                 "cells": _density(tracks, group.rows, box),
@@ -216,8 +205,4 @@ def _beyond(tracks: _Tracks, rows: NDArray, circles: Sequence[float]) -> list[li
     # Largest distance so far: a run that returns has still left the circle.
     distance = np.hypot(tracks.north[rows], tracks.east[rows])
     largest = np.fmax.accumulate(np.where(np.isfinite(distance), distance, 0.0), axis=1)
-    shares = [
-        (largest > radius).mean(axis=0) if len(rows) else np.zeros(len(tracks.time))
-        for radius in circles
-    ]
-    return [[round(float(share), 4) for share in row] for row in shares]
+    return [(largest > radius).mean(axis=0).round(4).tolist() for radius in circles]

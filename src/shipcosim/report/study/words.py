@@ -1,4 +1,4 @@
-"""A study in words: result, key figures, what was varied, and how."""
+"""A study in words: result, key figures, how it was made."""
 
 from __future__ import annotations
 
@@ -27,7 +27,6 @@ from shipcosim.sweep.summary import wilson
 
 MOST_FIGURES = 4
 MOST_ERRORS = 50
-MOST_VALUES = 12
 MATTERS = 0.05
 """Share of a variance from which a factor is named."""
 
@@ -206,90 +205,7 @@ def errors(tables: StudyTables) -> Sequence[tuple[str, Sequence[int]]]:
     return tuple((text, numbers) for text, numbers in ordered)
 
 
-# ---- how it was made, in the keys of the study file
-
-
-def varied_table(study: Mapping[str, Any]) -> Table:
-    """Varied factors and sampled values, a row each."""
-    # Factors of the grid, then sampled signals, then tuned ones.
-    rows = [_row(part) for part in study.get("factor") or ()]
-    for part in ("sample", "tune"):
-        for signal, how in ((study.get(part) or {}).get("of") or {}).items():
-            rows.append(_row({"name": signal, "signal": signal} | _given(how)))
-    return Table(rows, ("name", "what is varied"))
-
-
-def measured_table(study: Mapping[str, Any]) -> Table:
-    """Quantities of each run, and summaries over similar runs."""
-    parts = [*(study.get("quantity") or ()), *(study.get("summary") or ())]
-    return Table(list(map(_row, parts)), ("name", "what it is"))
-
-
-def _row(part: Mapping[str, Any]) -> tuple[str, str]:
-    """Name and other entries of a part of the study file; its title and description are shown elsewhere."""
-    others = {key: value for key, value in part.items() if key not in ("name", "description")}
-    return str(part.get("name", "")), _entries(others)
-
-
-def _given(part: Mapping[str, Any]) -> dict[str, Any]:
-    """Entries of a part of a study file, without empty ones."""
-    empty = (None, "", [], {})
-    return {key: value for key, value in part.items() if value is not False and value not in empty}
-
-
-def _plain(value: Any) -> str:
-    """A value of a study file on one line: of cases their labels, of what is true its key."""
-    if isinstance(value, list | tuple):
-        shown = ", ".join(map(_plain, value[:MOST_VALUES]))
-        return shown if len(value) <= MOST_VALUES else f"{shown}, ... ({len(value)})"
-    if isinstance(value, Mapping) and "label" in value:
-        return str(value["label"])
-    return f"({_entries(value)})" if isinstance(value, Mapping) else str(value)
-
-
-def _entries(part: Mapping[str, Any]) -> str:
-    entries = _given(part).items()
-    return "; ".join(key if value is True else f"{key}: {_plain(value)}" for key, value in entries)
-
-
-def setup_table(tables: StudyTables) -> Table:
-    """Scenario, start values, sampling, seed, engine and versions of the study."""
-    # Only entries that the study has appear in the table.
-    about = tables.about
-    study = _given(tables.study)
-    sample, tune = (_given(study.get(name) or {}) for name in ("sample", "tune"))
-    sought = [
-        f"{objective['quantity']} {objective['direction']}d"
-        for objective in tune.get("objective", ())
-    ]
-    entries: dict[str, Any] = {
-        "scenario": study.get("scenario"),
-        "start values of all runs": _entries(study.get("set", {})),
-        "stop time": study.get("stop_time"),
-        "runs share the time before": study.get("fork_at"),
-        "sampling": f"{sample['method']}, {sample.get('runs')} points"
-        if sample.get("method")
-        else None,
-        "search": f"NSGA-II, {tune['trials']} trials, {tune['population']} a generation: {', '.join(sought)}"
-        if tune
-        else None,
-        "seed": study.get("seed", about.get("seed")),
-        "engine": about.get("engine"),
-        "plan": about.get("plan"),
-        "versions": _entries(about.get("versions") or {}),
-    }
-    return Table(
-        [(name, str(value)) for name, value in entries.items() if value not in (None, "")],
-    )
-
-
-def study_text(study: Mapping[str, Any]) -> str:
-    """The study as read, with everything it inherits."""
-    return json.dumps(_short(study), indent=2, ensure_ascii=False, default=str)
-
-
-def _short(value: Any) -> Any:
-    """A study without empty entries."""
-    if isinstance(value, Mapping):
-        return {key: _short(part) for key, part in _given(value).items()}
-    return [_short(part) for part in value] if isinstance(value, list | tuple) else value
+def study_text(about: Mapping[str, Any]) -> str:
+    """The study as read, with everything it inherits, and what ran it."""
+    content = {name: about.get(name) for name in ("engine", "plan", "versions", "study")}
+    return json.dumps(content, indent=2, ensure_ascii=False, default=str)

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 from xarray import Dataset
 
 from shipcosim.angles import unwrap_series
+from shipcosim.report.theme.numbers import finite
 
 READ_AS = {  # unit in the table: unit people read, factor, least size for which it pays
     "rad": ("deg", 180 / np.pi, 0.0),
@@ -47,7 +48,6 @@ def display_table(table: Dataset, ship_heading: str | None = None) -> Dataset:
         columns[name] = as_variable(
             factor * np.asarray(values, float), unit, variable.attrs.get("long_name", ""), factor
         )
-        columns[name].attrs["logical"] = variable.dtype.kind == "b"
     # As an index of pandas, for which xarray need not import pint.
     clock = pandas.Index(np.asarray(table["time"].values, float))
     shown = xr.Dataset(columns, coords={"time": ("time", clock)}, attrs=table.attrs)
@@ -148,14 +148,10 @@ def as_variable(
 
 def unturned(name: str, radians: ArrayLike) -> NDArray:
     """Angle without jumps at half turns; directions from north start in [0, 2 pi). [rad]"""
-    values = np.array(radians, float)
-    finite = np.isfinite(values)
-    if not finite.any():
-        return values
+    values = unwrap_series(np.array(radians, float))
     # A direction from north starts within [0, 2 pi).
-    values = unwrap_series(values)
     if name.rpartition(".")[2].split("_")[-1] in ("from", "to", "mean"):
-        values -= 2 * np.pi * np.floor(values[finite][0] / (2 * np.pi))
+        values = values - 2 * np.pi * np.floor(finite(values)[:1].sum() / (2 * np.pi))
     return values
 
 
@@ -167,7 +163,11 @@ def _align_headings(shown: Dataset, psi: str) -> None:
             and "psi" in str(name).rpartition(".")[2].split("_")
             and shown[name].attrs["units"] == "deg"
         ):
-            # The median decides, since single wraps must not.
-            gap = np.nanmedian(shown[name].values - shown[psi].values)
-            if np.isfinite(gap):
-                shown[name].values[:] -= 360.0 * np.round(gap / 360.0)
+            shown[name].values[:] = turned_to(shown[name].values, shown[psi].values)
+
+
+def turned_to(angles: NDArray, others: NDArray) -> NDArray:
+    """Angles moved by whole turns to others at the same times. [deg]"""
+    # The median decides, since single wraps must not.
+    gaps = finite(angles - others)
+    return angles - 360.0 * np.round(np.median(gaps) / 360.0) if len(gaps) else angles
