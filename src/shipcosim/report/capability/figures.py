@@ -21,7 +21,7 @@ SOURCES = {"wind": palette.SKY, "current": palette.ORANGE, "waves": palette.GREE
 
 
 def capability_figures(capability: Capability) -> Figures:
-    """Polar plots: Level 1, Level 1 with the simulator, and every failure."""
+    """Polar plots: Level 1, and Level 1 with the simulator."""
     # Intact, and the worst loss of one thruster, by both methods.
     numbers = {method: capability.numbers(method) for method in (LEVEL_1, SIMULATOR)}
     single = {method: capability.worst(method, most_lost=1) for method in (LEVEL_1, SIMULATOR)}
@@ -38,21 +38,11 @@ def capability_figures(capability: Capability) -> Figures:
         _curve("simulator, intact", numbers[SIMULATOR][0], palette.PURPLE),
         _curve("simulator, one thruster lost", single[SIMULATOR], palette.PURPLE, dash="dot"),
     )
-    # Every failure as a curve of its own.
-    each = [
-        _curve(case.name, row, palette.in_turn(k), dash="solid" if k == 0 else "dot")
-        for k, (case, row) in enumerate(zip(capability.cases, numbers[LEVEL_1], strict=True))
-    ]
     note = "DP capability number over the direction that the weather comes from; bow up, 90° from starboard."
     other = "The same conditions and dynamic factor; loads and thrust as the simulator has them."
     return (
         _polar("Level 1: intact, and after the worst single failure", level_1, note),
         _polar("Level 1 beside the simulator's own models", comparison, other),
-        _polar(
-            "Level 1 after each failure",
-            each,
-            "The worst failure above is the lowest of these, from each direction.",
-        ),
     )
 
 

@@ -1,4 +1,4 @@
-"""Figures of the causes: evidence, estimates, unmodelled errors, whiteness of innovations."""
+"""Figures of the causes: evidence, course, unmodelled errors, whiteness of innovations."""
 
 from collections.abc import Mapping
 
@@ -70,42 +70,6 @@ def _bars(names: list[str], gains: list[float], colours: list[str]) -> PlotlyDic
         "named": False,
         "showlegend": False,
     }
-
-
-def estimate_figure(evidence: Evidence) -> Figure:
-    """Estimates of a set's parameters in typical sizes, with two standard deviations."""
-    # In units of the size that matters, parameters of any unit share one axis.
-    parameters = evidence.sizes[::-1]
-    names = [f"{title_of(of)}:\n{of.parameter.replace('_', ' ')}" for of in parameters]
-    size = [of.size for of in parameters]
-    wide = [2.0 * of.std for of in parameters]
-    marks = {
-        "type": "scatter",
-        "mode": "markers",
-        "x": rounded(size, 4),
-        "y": names,
-        "showlegend": False,
-        "error_x": {
-            "type": "data",
-            "array": rounded(wide, 3),
-            "color": palette.BLUE,
-            "thickness": 2,
-        },
-        "marker": {"color": palette.BLUE, "size": 9},
-        "hovertemplate": "%{x:.2f} typical sizes",
-        "named": False,
-    }
-    # Zero is the model as it was.
-    axes = {
-        "xaxis": {"title": {"text": "typical sizes"}, "zeroline": True, "rangemode": "tozero"},
-        "yaxis": {"range": [-0.6, len(parameters) - 0.4]},
-    }
-    note = (
-        "From what the model has, at 0; 1 is a size that matters. Bars are two standard deviations."
-    )
-    return Figure(
-        "How large, and how sure", "", (marks,), axes, note, height=110 + 40 * len(parameters)
-    )
 
 
 def course_figures(course: CourseFound) -> tuple[Figure, ...]:

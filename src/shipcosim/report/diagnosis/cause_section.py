@@ -8,7 +8,6 @@ from shipcosim.diagnose.finding import Candidate
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.cause_figures import (
     course_figures,
-    estimate_figure,
     evidence_figure,
     unmodelled_figure,
     whiteness_figures,
@@ -110,7 +109,7 @@ def cause_section(diagnosis: Diagnosis, evidence: Evidence | None) -> CauseSecti
         course="" if evidence.course is None else course_of(evidence.course.finding),
         sizes=() if evidence.course is None else course_figures(evidence.course),
         gains=_gains(evidence),
-        figures=(*figures, *([estimate_figure(evidence)] if evidence.sizes else [])),
+        figures=tuple(figures),
         unmodelled=(unmodelled_figure(evidence.unmodelled),) if evidence.unmodelled else (),
         whiteness=whiteness_figures(evidence),
     )

@@ -10,7 +10,7 @@ from shipcosim.errors import capitalised
 from shipcosim.report.diagnosis.prediction_errors import (
     MODELS,
     condition_table,
-    gain_figures,
+    gain_figure,
     models_to_show,
     removed,
 )
@@ -93,7 +93,7 @@ def gain_section(diagnosis: Diagnosis) -> GainSection:
         errors.is_simulated,
         is_extended,
         errors=_errors(gain),
-        figures=tuple(gain_figures(errors, models)),
+        figures=(gain_figure(errors, models),),
         conditions=condition_table(errors) if gain else Table(()),
         missing=" and of ".join(text for name, text in LACKING.items() if name not in held_out),
         extended=metres(errors.extended) if gain else "",

@@ -1,4 +1,4 @@
-"""Figures of the log: channels as logged and as used, faulty stretches shaded; the track."""
+"""Figures of the log: channels as logged and as used, faulty stretches shaded."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -9,8 +9,7 @@ from xarray import DataArray, Dataset
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.hypotheses.catalogue import read_faults
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.display import as_variable, thinned
-from shipcosim.report.theme.figures import TIME, line, rounded, shade
+from shipcosim.report.theme.figures import TIME, line, shade
 from shipcosim.report.theme.views import Figure, PlotlyDict
 
 GROUPS = (  # title, channels, unit
@@ -21,8 +20,6 @@ GROUPS = (  # title, channels, unit
     ("Wind speed", ("wind_speed", "true_wind_speed"), "m/s"),
     ("Wind from", ("wind_from", "true_wind_from"), "deg"),
 )
-COLOURS = (palette.BLUE, palette.ORANGE, palette.GREEN, palette.PURPLE, palette.SKY, palette.OLIVE)
-MOST_ROWS = {"track": 4000, "channel": 2000}
 
 
 def log_figures(log: Dataset, clean: Dataset, findings: Sequence[Finding]) -> list[Figure]:
@@ -40,23 +37,23 @@ def log_figures(log: Dataset, clean: Dataset, findings: Sequence[Finding]) -> li
     list of Figure
     """
     # The rows in the order of their times; rows without a time are left out.
-    time = log["time"].values
-    rows = np.flatnonzero(np.isfinite(time))
-    raw = _shown(log.isel(time=rows[np.argsort(time[rows], kind="stable")]))
+    raw = log.isel(time=np.isfinite(log["time"].values)).sortby("time")
     # The repaired log over the logged times, so that both can be compared.
-    used = _on_log_time(clean)
+    used = clean
+    if "logged_time" in clean.coords:
+        used = clean.assign_coords(time=("time", clean["logged_time"].values))
     faults = [f for f in findings if f.kind == "data"]
     # Known channels in fixed groups, thrusters by quantity.
     named = {channel for _, channels, _ in GROUPS for channel in channels}
     groups = [*GROUPS, *_thrusters([str(n) for n in log.data_vars if n not in named], log)]
     figures = []
     for title, channels, unit in groups:
-        there = [c for c in channels if c in raw]
+        there = [c for c in channels if c in raw and raw[c].dtype.kind in "fiu"]
         if not there:
             continue
         # Logged curves first, so that the used ones lie on top.
         pairs = [
-            _traces(raw, used, channel, COLOURS[k % len(COLOURS)], unit)
+            _traces(raw[channel], used.get(channel), channel, palette.in_turn(k), unit)
             for k, channel in enumerate(there)
         ]
         traces = [trace for pair in pairs for trace in pair[:-1]] + [pair[-1] for pair in pairs]
@@ -68,62 +65,6 @@ def log_figures(log: Dataset, clean: Dataset, findings: Sequence[Finding]) -> li
                 shapes += _shades(fault, raw)
         figures.append(Figure(title, unit, tuple(traces), {"shapes": shapes, "xaxis": TIME}))
     return figures
-
-
-def track_figure(clean: Dataset) -> Figure | None:
-    """Track of the ship, north up; None without positions."""
-    if "north" not in clean or "east" not in clean:
-        return None
-    # Few enough points to draw, extremes kept.
-    thin, _ = thinned(_on_log_time(clean)[["north", "east"]], MOST_ROWS["track"])
-    north = thin["north"].values
-    east = thin["east"].values
-    fixes = np.flatnonzero(np.isfinite(north) & np.isfinite(east))
-    if not fixes.size:
-        return None
-    # Mark start and end: the direction of the track is not visible otherwise.
-    ends = [(fixes[0], "start", "circle-open"), (fixes[-1], "end", "circle")]
-    marks = [
-        {
-            "type": "scatter",
-            "mode": "markers",
-            "name": name,
-            "x": rounded(east[[row]]),
-            "y": rounded(north[[row]]),
-            "marker": {
-                "color": palette.INK,
-                "size": 9,
-                "symbol": symbol,
-                "line": {"color": palette.INK, "width": 2},
-            },
-        }
-        for row, name, symbol in ends
-    ]
-    axes = {
-        "xaxis": {"title": {"text": "East"}},
-        "yaxis": {"title": {"text": "North"}, "scaleanchor": "x"},
-    }
-    return Figure("Track", "m", (line("track", east, north, palette.BLUE), *marks), axes)
-
-
-def _on_log_time(clean: Dataset) -> Dataset:
-    """The repaired log over the logged times."""
-    if "logged_time" not in clean.coords:
-        return _shown(clean)
-    return _shown(
-        clean.assign_coords(time=("time", clean["logged_time"].values)).drop_vars("logged_time")
-    )
-
-
-def _shown(table: Dataset) -> Dataset:
-    """The table in the form that `thinned` needs."""
-    # Only numbers can be drawn.
-    numeric = table.drop_vars([n for n in table.data_vars if table[n].dtype.kind not in "fiu"])
-    for name in numeric.data_vars:
-        about = numeric[name].attrs
-        values = np.asarray(numeric[name].values, float)
-        numeric[name] = as_variable(values, about.get("units"), about.get("long_name", ""))
-    return numeric
 
 
 def _thrusters(names: Sequence[str], log: Dataset) -> list[tuple[str, tuple[str, ...], str]]:
@@ -144,26 +85,25 @@ def _thrusters(names: Sequence[str], log: Dataset) -> list[tuple[str, tuple[str,
     return groups
 
 
-def _traces(raw: Dataset, used: Dataset, channel: str, colour: str, unit: str) -> list[PlotlyDict]:
+def _traces(
+    logged: DataArray, used: DataArray | None, channel: str, colour: str, unit: str
+) -> list[PlotlyDict]:
     """A channel as used, and as logged if that differs."""
     label = channel.replace("_", " ")
     traces = []
-    # Thin both; extremes stay visible.
-    old, _ = thinned(raw[[channel]], MOST_ROWS["channel"])
-    new, _ = thinned(used[[channel]], MOST_ROWS["channel"]) if channel in used else (None, 1)
     # The logged curve is wide and pale under the used one.
-    if new is None or not np.array_equal(raw[channel], used[channel], equal_nan=True):
+    if used is None or not np.array_equal(logged, used, equal_nan=True):
         look = {"width": 3.0, "showlegend": False}
-        traces.append(_curve(f"{label}, logged", old[channel], palette.FAINT, unit, **look))
-    if new is not None:
-        traces.append(_curve(label, new[channel], colour, unit))
+        traces.append(_curve(f"{label}, logged", logged, palette.FAINT, unit, **look))
+    if used is not None:
+        traces.append(_curve(label, used, colour, unit))
     return traces
 
 
 def _curve(name: str, drawn: DataArray, colour: str, unit: str, **look: Any) -> PlotlyDict:
     """A channel over time; angles are interrupted where they wrap."""
     time = drawn["time"].values
-    values = drawn.values
+    values = drawn.values.astype(float)
     # A gap at each wrap, instead of a line across the figure.
     if unit == "deg":
         turns = np.flatnonzero(np.abs(np.diff(values)) > 180.0) + 1

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from shipcosim.diagnose.hypotheses.catalogue import read_faults
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.by_log import log_table
-from shipcosim.report.diagnosis.log_figures import log_figures, track_figure
+from shipcosim.report.diagnosis.log_figures import log_figures
 from shipcosim.report.diagnosis.words import finding_text, title, where
 from shipcosim.report.theme.views import Figure, Table
 
@@ -49,13 +49,12 @@ def log_section(diagnosis: Diagnosis) -> LogSection:
         channels = ", ".join(fault.channels) or "all"
         sentence = fault.sentence or finding_text(fault)
         rows.append((title(fault.cause), channels, where(fault), sentence, done))
-    track = track_figure(log.repaired) if log else None
     channels = log_figures(log.measured, log.repaired, findings) if log else ()
     return LogSection(
         found=f"{len(faults)} fault{'s' * (len(faults) != 1)}" if faults else "no fault found",
         faults=Table(rows, head=("Fault", "Channels", "Where", "What", "Done about it")),
         notes=diagnosis.notes,
-        figures=(*([track] if track else []), *channels),
+        figures=tuple(channels),
         handled=log.handled if log else (),
         logs=log_table(diagnosis),
     )

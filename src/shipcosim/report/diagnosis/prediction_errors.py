@@ -152,28 +152,14 @@ def removed(entry: Mapping[str, Any] | None) -> str:
     return percent(entry["share_of_explainable"]) + sure
 
 
-def gain_figures(errors: PredictionErrors, models: Sequence[str]) -> list[Figure]:
-    """Errors at the longest horizon with each model: by regime, and of each prediction."""
+def gain_figure(errors: PredictionErrors, models: Sequence[str]) -> Figure:
+    """Error of each prediction at the longest horizon with each model."""
     last = errors.each.isel(horizon=-1)
-    names = [condition.condition for condition in errors.by_regime]
-    by_regime = []
-    each = []
-    # Mean errors by regime, and every single prediction over time.
+    traces = []
     for model in models:
-        (name, colour) = MODELS[model]
+        name, colour = MODELS[model]
         position = last["position"].sel(model=model)
-        sizes = [_last(condition, "position", model) for condition in errors.by_regime]
-        by_regime.append(bars(name, names, sizes, colour, "m"))
         dots = {"mode": "markers", "marker": {"color": colour, "size": 5}}
-        each.append(line(name, last["start_time"].values, position.values, colour, **dots))
-    axis = {"rangemode": "tozero"}
-    title = "Position error after 60 s"
-    return [
-        Figure(
-            f"{title}, by what the ship did",
-            "m",
-            tuple(by_regime),
-            {"barmode": "group", "yaxis": axis},
-        ),
-        Figure(f"{title}, each prediction", "m", tuple(each), {"xaxis": TIME, "yaxis": axis}),
-    ]
+        traces.append(line(name, last["start_time"].values, position.values, colour, **dots))
+    layout = {"xaxis": TIME, "yaxis": {"rangemode": "tozero"}}
+    return Figure("Position error after 60 s, each prediction", "m", traces, layout)

@@ -1,21 +1,19 @@
-"""Figures of sea trials: tracks of turning circles, errors of features, what manoeuvres would tell."""
+"""Figures of sea trials: tracks of turning circles, errors of features."""
 
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shipcosim.diagnose.experiment.design import CLEAR
 from shipcosim.diagnose.sea_trials.features import FEATURES
 from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
 from shipcosim.diagnose.sea_trials.windows import SeaTrial
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.figures import limit, line, rounded
+from shipcosim.report.theme.figures import line, rounded
 from shipcosim.report.theme.views import Figure
 
 _ALIKE = 5.0  # deg: of circles with steering as near as this, one is drawn
 _SHORT = {"turning circle": "circle", "zig-zag": "zig-zag", "straight run": "straight"}
-_MANOEUVRES = 12  # that are drawn
 _ROW = 30  # px
 
 
@@ -124,39 +122,3 @@ def places_of(trials: Sequence[SeaTrial], kind: str) -> dict[str, list[int]]:
                 places[name].append(at)
             at += 1
     return places
-
-
-def separation_figure(study: SeaTrialStudy) -> Figure:
-    """By manoeuvre and pair of sets, the log-evidence by which the right one is expected to lead."""
-    ranked = study.separations[:_MANOEUVRES][::-1]
-    names = [f"{separation.manoeuvre} ({separation.minutes:.0f} min)" for separation in ranked]
-    traces = []
-    for (pair, (a, b)), colour in zip(
-        zip(ranked[0].nats, study.pairs, strict=True), palette.CYCLE * 2, strict=False
-    ):
-        sizes = rounded([max(separation.nats[pair], 0.1) for separation in ranked], 3)
-        dots = {
-            "type": "scatter",
-            "mode": "markers",
-            "name": f"{a} / {b}".replace("_", " "),
-            "x": sizes,
-            "y": names,
-        }
-        traces.append(
-            dots | {"marker": {"color": colour, "size": 9}, "hovertemplate": "%{x:.3~g} nats"}
-        )
-    layout = {
-        "xaxis": {"type": "log", "title": {"text": "nats"}},
-        "yaxis": {"automargin": True, "dtick": 1, "tickfont": {"size": 11}},
-        "shapes": [limit(CLEAR)],
-        "hovermode": "closest",
-        "legend": {"orientation": "h", "x": 0.5, "xanchor": "center", "y": -0.18},
-    }
-    return Figure(
-        "What manoeuvres would tell",
-        "nats",
-        traces,
-        layout,
-        "Dotted: beyond it a pair of causes counts as separated. What is below 0.1 is drawn there.",
-        140 + _ROW * len(ranked),
-    )

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from shipcosim.diagnose.sea_trials.study import SeaTrialStudy, motions_of
-from shipcosim.report.sea_trials.figures import error_figure, separation_figure, track_figure
+from shipcosim.report.sea_trials.figures import error_figure, track_figure
 from shipcosim.report.sea_trials.words import (
     features_table,
     held_out_table,
@@ -44,8 +44,8 @@ class SeaTrialPage(FigurePage):
 
     Attributes
     ----------
-    tracks, errors, manoeuvres : sequence of Figure
-        Tracks of circles; errors of features; what manoeuvres would tell.
+    tracks, errors : sequence of Figure
+        Tracks of circles; errors of features.
     sets, held_out, features, separations : Table
     steps : sequence of str
         What to sail next.
@@ -53,7 +53,6 @@ class SeaTrialPage(FigurePage):
 
     tracks: Figures
     errors: Figures
-    manoeuvres: Figures
     sets: Table
     held_out: Table
     features: Table
@@ -70,9 +69,8 @@ def _page(study: SeaTrialStudy, facts: dict[str, str]) -> SeaTrialPage:
     circles = any(trial.kind == "turning circle" for trial in study.trials)
     tracks = (track_figure(study, *motions_of(study)),) if circles else ()
     errors = (error_figure(study),)
-    manoeuvres = (separation_figure(study),) if study.separations else ()
     facts = facts | {"Trials": trials(study)}
-    figures = (*tracks, *errors, *manoeuvres)
+    figures = (*tracks, *errors)
     there = {"tracks": circles, "judged": bool(study.held_out), "next": bool(study.separations)}
     return SeaTrialPage(
         title="Sea trials",
@@ -83,7 +81,6 @@ def _page(study: SeaTrialStudy, facts: dict[str, str]) -> SeaTrialPage:
         figures=figures,
         tracks=tracks,
         errors=errors,
-        manoeuvres=manoeuvres,
         sets=sets_table(study),
         held_out=held_out_table(study),
         features=features_table(study),

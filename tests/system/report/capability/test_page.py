@@ -71,7 +71,7 @@ def test_every_figure_is_drawn_and_no_text_lies_over_another(shown_at, file, wid
     places, drawn = page.ask(
         "return ['.plot', '.plot.js-plotly-plot'].map(s => document.querySelectorAll(s).length)"
     )
-    assert places == drawn == 5
+    assert places == drawn == 4
     assert (
         page.collisions() == [] and page.ask("return document.documentElement.scrollWidth") <= width
     )

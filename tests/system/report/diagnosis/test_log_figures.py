@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from shipcosim.diagnose.finding import Finding
-from shipcosim.report.diagnosis.log_figures import log_figures, track_figure
+from shipcosim.report.diagnosis.log_figures import log_figures
 
 
 def by_title(figures):
@@ -69,10 +69,3 @@ def test_heading_is_interrupted_where_it_passes_north():
 def test_thruster_whose_speed_is_much_larger_gets_a_panel_of_its_own():
     titles = by_title(log_figures(log_of(), log_of(), []))
     assert {"Shaft speed, port", "Shaft speed, tunnel"} <= set(titles)
-
-
-def test_track_is_to_one_scale_with_north_up():
-    track = track_figure(log_of())
-    assert track.layout["yaxis"]["scaleanchor"] == "x"
-    assert track.traces[0]["y"][-1] == 599.0 and track.traces[0]["x"][-1] == 1198.0
-    assert track_figure(log_of().drop_vars("north")) is None
