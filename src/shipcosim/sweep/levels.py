@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import zlib
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import floor, tau
@@ -81,13 +80,16 @@ class Levels:
     def of(self, number: int) -> list[Level]:
         """Levels of the factor with a number; each may be there once."""
         levels = self._made(number)
-        (label, times), *_ = Counter(level.label for level in levels).most_common(1) or [("", 0)]
-        if times > 1:
-            self.complain(("factor", number), f"The level {label} is there twice.", "Keep one.")
-            return levels
+        labels = [level.label for level in levels]
+        for i, label in enumerate(labels):
+            if label in labels[:i]:
+                place = ("case", i, "label") if self._study.factor[number].case else ()
+                message = f"The level {label} is there twice."
+                self.complain(("factor", number, *place), message, "Keep one.")
+                return levels
         # Angles a whole turn apart are one direction, which would count twice.
         first: dict[float, Any] = {}
-        for label in [level.label for level in levels] if self._is_angle(number) else ():
+        for label in labels if self._is_angle(number) else ():
             direction = round(float(label) / tau % 1.0, 9) % 1.0
             if direction in first:
                 self.complain(

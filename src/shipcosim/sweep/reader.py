@@ -196,7 +196,7 @@ def _merged(base: dict[str, Any], extending: dict[str, Any]) -> dict[str, Any]:
 
 
 def _repeated(study: Study) -> list[Problem]:
-    """Problems of repeated column names and repeated labels of cases."""
+    """Problems of repeated column names."""
     seen = {}
     problems = []
     # Factors, samples, searches, quantities and summaries share the columns of the tables.
@@ -217,13 +217,4 @@ def _repeated(study: Study) -> list[Problem]:
                 )
             )
         seen.setdefault(name, str(keys[0]))
-    # Labels identify the cases in the table.
-    for i, factor in enumerate(study.factor):
-        labels = [case.label for case in factor.case or ()]
-        for j, label in enumerate(labels):
-            if label in labels[:j]:
-                keys = ("factor", i, "case", j, "label")
-                problems.append(
-                    problem_of(study, keys, "Two cases have the same label.", "Give each its own.")
-                )
     return problems

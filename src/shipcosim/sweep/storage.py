@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import json
-import os
 import platform
 import shutil
 from collections.abc import Iterable, Iterator
@@ -25,7 +24,7 @@ from shipcosim.staging import set_aside
 from shipcosim.sweep.plan import ColumnOf, Plan
 from shipcosim.sweep.summary import SHARE
 from shipcosim.sweep.work import Row
-from shipcosim.temporary import clear_killed
+from shipcosim.temporary import clear_killed, replacement
 
 if TYPE_CHECKING:
     import pandas
@@ -283,30 +282,19 @@ class Store:
         import pyarrow.csv
         import pyarrow.parquet as parquet
 
-        numbers = table["run"].to_numpy()
         kinds = self._kinds()
-        new = {name: self.folder / f".{name}.unfinished" for name in ("runs.parquet", "runs.csv")}
-        try:
-            # Group by group, because the inputs of all runs together may exceed the memory.
-            first = self._group(table.slice(0, 0), kinds)
-            with (
-                parquet.ParquetWriter(
-                    new["runs.parquet"], first.schema, compression="zstd"
-                ) as whole,
-                pyarrow.csv.CSVWriter(
-                    new["runs.csv"], first.drop_columns(["input"]).schema
-                ) as plain,
-            ):
-                for start in range(0, len(numbers), GROUP):
-                    group = self._group(table.slice(start, GROUP), kinds)
-                    whole.write_table(group, GROUP)
-                    plain.write_table(group.drop_columns(["input"]))
-            # Rename when complete: a reader never sees half a table.
-            for name, path in new.items():
-                os.replace(path, self.folder / name)
-        finally:
-            for path in new.values():
-                path.unlink(missing_ok=True)
+        # Group by group, because the inputs of all runs together may exceed the memory.
+        first = self._group(table.slice(0, 0), kinds)
+        with (
+            replacement(self.folder / "runs.parquet") as whole_file,
+            replacement(self.folder / "runs.csv") as plain_file,
+            parquet.ParquetWriter(whole_file, first.schema, compression="zstd") as whole,
+            pyarrow.csv.CSVWriter(plain_file, first.drop_columns(["input"]).schema) as plain,
+        ):
+            for start in range(0, table.num_rows, GROUP):
+                group = self._group(table.slice(start, GROUP), kinds)
+                whole.write_table(group, GROUP)
+                plain.write_table(group.drop_columns(["input"]))
 
     def _kinds(self) -> dict[str, Any]:
         """Types of the columns of factors and samples."""
@@ -364,11 +352,10 @@ def _kind(labels: list[Value]) -> Any:
     """Arrow type of labels: numbers if all are numbers, else texts."""
     import pyarrow
 
-    if all(isinstance(label, bool) for label in labels):
-        return pyarrow.bool_()
-    if any(isinstance(label, (bool, str)) for label in labels):
+    try:
+        return pyarrow.array(labels).type
+    except pyarrow.ArrowException:
         return pyarrow.string()
-    return pyarrow.int64() if all(isinstance(label, int) for label in labels) else pyarrow.float64()
 
 
 def _of_summaries(plan: Plan) -> list[ColumnOf]:

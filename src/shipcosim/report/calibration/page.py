@@ -11,7 +11,7 @@ from shipcosim.report.calibration.words import (
     moved_rows,
     outcome,
 )
-from shipcosim.report.diagnosis.by_log import error_figures, error_table
+from shipcosim.report.diagnosis.by_log import error_table
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import rounded, shade
 from shipcosim.report.theme.numbers import metres, signed
@@ -37,9 +37,9 @@ class CalibrationPage(FigurePage):
     Attributes
     ----------
     refusals, remarks : sequence of str
-    moved, errors : sequence of Figure
-        What moved by how many tolerances; errors before and after.
-    numbers, error_table, logs : Table
+    moved : sequence of Figure
+        What moved by how many tolerances.
+    errors, numbers, logs : Table
     untold : str
         Numbers that the logs say next to nothing of.
     """
@@ -47,9 +47,8 @@ class CalibrationPage(FigurePage):
     refusals: Sequence[str]
     remarks: Sequence[str]
     moved: Figures
-    errors: Figures
+    errors: Table
     numbers: Table
-    error_table: Table
     logs: Table
     untold: str
 
@@ -61,7 +60,6 @@ def render(ship: CalibratedShip) -> str:
 
 def _page(ship: CalibratedShip) -> CalibrationPage:
     what = (_moved_figure(ship),)
-    errors = error_figures(errors_by_log(ship), "calibrated")
     reference = ship.reference
     facts = {"System": reference.system, "Logs": ", ".join(log.name for log in ship.logs)}
     scale = reference.tolerance_scale
@@ -75,10 +73,9 @@ def _page(ship: CalibratedShip) -> CalibrationPage:
         remarks=ship.remarks,
         key_figures=_key_figures(ship),
         moved=what,
-        errors=errors,
-        figures=(*what, *errors),
+        figures=what,
         numbers=Table(moved_rows(ship), ("Number", "System", "By the logs", "Tolerances")),
-        error_table=error_table(errors_by_log(ship), "calibrated"),
+        errors=error_table(errors_by_log(ship), "calibrated"),
         logs=Table(
             log_rows(ship),
             ("Log", "Faults, repaired", "Weather fitted", "Unmodelled errors left"),

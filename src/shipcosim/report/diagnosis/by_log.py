@@ -1,6 +1,5 @@
-"""What each of several logs shows in a diagnosis or calibration by all: rows and figures by log."""
+"""What each of several logs shows in a diagnosis or calibration by all: rows and tracks by log."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -9,18 +8,13 @@ from shipcosim.diagnose.reference.log_errors import LogErrors
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.track_figures import track_figure
 from shipcosim.report.diagnosis.words import finding_text, listed, title
-from shipcosim.report.theme import palette
-from shipcosim.report.theme.figures import bars
 from shipcosim.report.theme.numbers import metres, plain
-from shipcosim.report.theme.views import Figure, Figures, Table
+from shipcosim.report.theme.views import Figures, Table
 
 TRACKS = 3
 """Logs whose tracks are all shown; of more the longest."""
-LOOKS = {
-    "before": ("as the system is", palette.VERMILLION),
-    "after": ("{}", palette.BLUE),
-    "floor": ("with this log fitted too", palette.FAINT),
-}
+SHIPS = {"before": "as the system is", "after": "{}", "floor": "with this log fitted too"}
+"""Ships that a log is predicted by."""
 CHANNELS = {"Position": "m", "Heading": "°"}
 WITH_CAUSES = "with the causes"
 
@@ -34,29 +28,20 @@ def error_table(errors: Mapping[str, LogErrors], after: str = WITH_CAUSES) -> Ta
     after : str
         How the ship after differs.
     """
-    looks = _looks(errors, after)
-    head = [f"{channel}, {name}" for channel in CHANNELS for name, _ in looks.values()]
+    labels = {label for error in errors.values() for label in error.position}
+    ships = [label for label in SHIPS if label in labels]
+    head = [f"{channel}, {SHIPS[ship].format(after)}" for channel in CHANNELS for ship in ships]
     rows = []
     for log, error in errors.items():
         horizons = " / ".join(f"{horizon:.2g}" for horizon in error.horizon)
         cells = []
         for sizes, unit in zip((error.position, error.heading), CHANNELS.values(), strict=True):
-            for label in looks:
+            for label in ships:
                 by_horizon = " / ".join(plain(value, 2) for value in sizes.get(label, ()))
                 cells.append(f"{by_horizon} {unit}".replace(" °", "°") if by_horizon else "–")
         fitted_on = _fitted_on(error) if "after" in error.position else ""
         rows.append((log, f"{horizons} s", *cells, fitted_on))
     return Table(rows, ("Log", "After", *head, "Numbers by"))
-
-
-def _looks(errors: Mapping[str, LogErrors], after: str) -> dict[str, tuple[str, str]]:
-    """Name and colour of the ships that any log was predicted by."""
-    labels = {label for error in errors.values() for label in error.position}
-    return {
-        label: (name.format(after), colour)
-        for label, (name, colour) in LOOKS.items()
-        if label in labels
-    }
 
 
 def _fitted_on(errors: LogErrors) -> str:
@@ -94,21 +79,6 @@ def error_after(diagnosis: Diagnosis) -> str:
     if not base:
         return "not measured"
     return f"{metres(base['position_error_m'][-1])} after {base['horizon_s'][-1]:.4g} s"
-
-
-def error_figures(errors: Mapping[str, LogErrors], after: str = WITH_CAUSES) -> Figures:
-    """Errors after the longest horizon by log, in position and heading; arguments as for `error_table`."""
-    figures = []
-    layout = {"barmode": "group", "xaxis": {"type": "category"}}
-    names = [f"{log}, {error.horizon[-1]:.2g} s" for log, error in errors.items()]
-    for channel, unit in CHANNELS.items() if errors else ():
-        traces = []
-        every = [getattr(error, channel.lower()) for error in errors.values()]
-        for label, (name, colour) in _looks(errors, after).items():
-            last = [sizes.get(label, (math.nan,))[-1] for sizes in every]
-            traces.append(bars(name, names, last, colour, unit))
-        figures.append(Figure(f"{channel} error by log", unit, tuple(traces), layout))
-    return tuple(figures)
 
 
 def track_figures(errors: dict[str, LogErrors]) -> Figures:

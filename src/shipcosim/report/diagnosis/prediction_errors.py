@@ -58,9 +58,8 @@ class ErrorSection:
 def error_section(diagnosis: Diagnosis) -> ErrorSection:
     """Section 2 of the page for the template."""
     if isinstance(diagnosis, JointDiagnosis):
-        figures = by_log.error_figures(diagnosis.errors)
         table = by_log.error_table(diagnosis.errors)
-        return ErrorSection(by_log.error_after(diagnosis), figures, table, False, ())
+        return ErrorSection(by_log.error_after(diagnosis), (), table, False, ())
     # Errors of the model as it was; the noise floor only where it is known.
     errors = diagnosis.predictions
     models = models_to_show(("plain", "floor"), diagnosis)

@@ -1,4 +1,4 @@
-"""Pictures of a notebook, drawn by matplotlib: tracks on a chart, signals over time, a distribution."""
+"""Pictures of a notebook, drawn by matplotlib: tracks on a chart, signals over time."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from shipcosim.report.run.track import hull_outline, outline_rows, placed, symbo
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.display import thinned
 from shipcosim.report.theme.figures import thinned_curve
+from shipcosim.report.theme.views import JsonObject
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -99,16 +100,6 @@ class Path:
     style: str = "-"
 
 
-@dataclass(frozen=True)
-class Circle:
-    """Where the ship is expected: centre north and east, radius, and whether she was there. [m]"""
-
-    x: float
-    y: float
-    radius: float
-    passed: bool
-
-
 def can_draw() -> bool:
     """True if matplotlib is installed."""
     return find_spec("matplotlib") is not None
@@ -145,7 +136,7 @@ def track_svg(
     paths: Sequence[Path],
     name: str,
     size: tuple[float, float] | None = None,
-    circles: Sequence[Circle] = (),
+    circles: Sequence[JsonObject] = (),
 ) -> str:
     """Ways on a chart: north up, one scale both ways, the ship drawn to scale where her size is known.
 
@@ -157,8 +148,8 @@ def track_svg(
         What is drawn.
     size : (float, float), optional
         Length and breadth of the ship; a small symbol shows where she was without. [m, m]
-    circles : sequence of Circle
-        Of expectations.
+    circles : sequence of dict
+        Of expectations, as `expected_circles` gives them.
 
     Returns
     -------
@@ -167,17 +158,15 @@ def track_svg(
     """
 
     def draw(figure: Figure) -> None:
+        from matplotlib.patches import Circle
+
         axes = figure.subplots()
         axes.set(xlabel="east [m]", ylabel="north [m]")
         # Where she was to be lies below her way, and her outlines below the line.
         for circle in circles:
-            angle = np.linspace(0.0, 2.0 * np.pi, 73)
-            east, north = (
-                circle.y + circle.radius * np.sin(angle),
-                circle.x + circle.radius * np.cos(angle),
-            )
-            colour = COLOURS[palette.PASSED if circle.passed else palette.FAILED]
-            axes.plot(east, north, color=colour, linewidth=1.0)
+            north, east = circle["centre"]
+            colour = COLOURS[palette.PASSED if circle["passed"] else palette.FAILED]
+            axes.add_patch(Circle((east, north), circle["radius"], fill=False, edgecolor=colour))
         for path in paths:
             _draw_outlines(axes, path, size)
             east, north = thinned_curve(path.y, path.x, TRACK_POINTS)
@@ -282,31 +271,3 @@ def _draw_panel(axes: Axes, shown: Dataset, unit: str, signals: Sequence[str]) -
         label = signal.removeprefix(f"{common}.")
         axes.plot(drawn["time"].values, values, color=COLOURS[colour], label=label)
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
-
-
-def distribution_svg(
-    name: str, title: str, reached: NDArray, share: NDArray, half_width: float
-) -> str:
-    """Share of runs up to each value, with its 95 % band.
-
-    Parameters
-    ----------
-    name, title : str
-        What is drawn, and the line above it.
-    reached, share : (n,) array
-        Values in ascending order, and the share of runs up to each.
-    half_width : float
-        Of the band.
-    """
-
-    def draw(figure: Figure) -> None:
-        axes = figure.subplots()
-        axes.set_title(title)
-        axes.set_xlabel("dotted: 95 % band (Dvoretzky-Kiefer-Wolfowitz)")
-        # The share stays until the next value.
-        for edge in (-half_width, half_width):
-            band = np.clip(share + edge, 0.0, 1.0)
-            axes.step(reached, band, ":", where="post", color=COLOURS[palette.BLUE], linewidth=0.8)
-        axes.step(reached, share, where="post", color=COLOURS[palette.BLUE], linewidth=2.0)
-
-    return figure_svg(name, 400, 300, draw)

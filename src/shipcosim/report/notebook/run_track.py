@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from xarray import Dataset
 
-from shipcosim.report.notebook.figures import Circle, Path, track_svg
+from shipcosim.report.notebook.figures import Path, track_svg
+from shipcosim.report.run.scene import expected_circles
 from shipcosim.report.run.vessels import find_vessels, pose_of
 from shipcosim.report.theme import palette
 from shipcosim.scenario import Verdict
@@ -36,19 +37,4 @@ def run_track(table: Dataset, verdicts: Sequence[Verdict], name: str) -> str | N
         x, y = pose_of(table, reference[:2])
         paths.append(Path("reference", x, y, colour=palette.REFERENCE, style="--"))
     paths.append(Path(f"{vessel.name}, start dashed, end filled", north, east, heading))
-    return track_svg(paths, name, vessel.size, _circles(verdicts, list(vessel.pose[:2])))
-
-
-def _circles(verdicts: Sequence[Verdict], position: list[str]) -> list[Circle]:
-    """Where expectations on the position want the ship; a place asked for twice is held if it is each time."""
-    held: dict[tuple[float, float, float], bool] = {}
-    for verdict in verdicts:
-        near = verdict.expect.near
-        within = verdict.expect.within
-        if verdict.expect.signal != position or near is None or within is None:
-            continue
-        numbers = [value for value in near if not isinstance(value, str)]
-        if len(numbers) == 2:
-            place = (numbers[0], numbers[1], within)
-            held[place] = held.get(place, True) and verdict.passed
-    return [Circle(*place, passed) for place, passed in held.items()]
+    return track_svg(paths, name, vessel.size, expected_circles(verdicts, vessel.pose))

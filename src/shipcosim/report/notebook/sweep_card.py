@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from shipcosim.report.notebook.card import Card
-from shipcosim.report.notebook.figures import distribution_svg
 from shipcosim.report.study.page import page_of
-from shipcosim.report.study.statistics import distribution
-from shipcosim.report.study.tables import QUANTITY, StudyTables
-from shipcosim.report.study.words import is_failed
-from shipcosim.report.theme.numbers import finite
+from shipcosim.report.study.tables import StudyTables
 from shipcosim.report.theme.views import Block, Table
 
 MOST_ROWS = 12
 
 
 def sweep_card(tables: StudyTables) -> Card:
-    """What the study says, its quantities and summary, failed runs, and the distribution of the first quantity."""
+    """What the study says, its quantities and summary, and failed runs."""
     page = page_of(tables)
     failed = [f"{error.count} runs: {error.text}" for error in page.errors[:MOST_ROWS]]
     shown = page.summary.rows[:MOST_ROWS]
@@ -41,21 +35,4 @@ def sweep_card(tables: StudyTables) -> Card:
             Block(heading, Table(shown, page.summary.head)),
             Block("Failed runs", lines=failed),
         ),
-        draw=lambda: _picture(tables),
     )
-
-
-def _picture(tables: StudyTables) -> str:
-    """Share of runs up to each value of the first quantity that is a number, as SVG; empty where there is none."""
-    runs = tables.runs.iloc[np.flatnonzero(~is_failed(tables))]
-    columns = tables.columns(runs)
-    # A quantity that is the same in all runs has no distribution.
-    for quantity in columns.values():
-        numbers = finite(quantity.values) if quantity.is_number else []
-        if quantity.role == QUANTITY and len(numbers) and np.ptp(numbers):
-            return distribution_svg(
-                f"distribution of {quantity.name}",
-                f"Share of runs up to each {quantity.titled}",
-                *distribution(quantity.values),
-            )
-    return ""

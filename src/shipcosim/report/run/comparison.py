@@ -11,7 +11,7 @@ from xarray import Dataset
 from shipcosim.angles import wrap_series
 from shipcosim.errors import Problem, ShipcosimError, error_at, shortened
 from shipcosim.report.run.derived import ERRORS, FROM_REFERENCE
-from shipcosim.report.run.details import Detail, parsed
+from shipcosim.report.run.details import parsed
 from shipcosim.report.run.moments import Moment
 from shipcosim.report.run.page import RunPage, drawn_data, drawn_rows, links, shown_table
 from shipcosim.report.run.panels import Panel, Section, constants_as_words, make_sections
@@ -20,7 +20,7 @@ from shipcosim.report.run.scene import make_run
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.display import turned_to
 from shipcosim.report.theme.numbers import extent, finite, plain
-from shipcosim.report.theme.views import Fact, Outcome, Table
+from shipcosim.report.theme.views import Block, Fact, Outcome, Table
 
 COLOURS = (palette.BLUE, palette.PURPLE)
 THE_LINE = (
@@ -357,7 +357,7 @@ def _table(differing: Sequence[Difference]) -> Table:
     return Table(rows, ("Signal", "rms", "Largest", "At")) if rows else Table(())
 
 
-def _start_values(pair: Pair) -> Detail | None:
+def _start_values(pair: Pair) -> Block | None:
     """Start values that differ."""
     texts = (parsed(table.attrs.get("start_values", "{}")) for table in pair.tables)
     values = [
@@ -385,7 +385,7 @@ def _changed(pair: Pair) -> Sequence[str]:
     return (*changes, f"{more} more under Parameters") if more else changes
 
 
-def _details(pair: Pair) -> Sequence[Detail]:
+def _details(pair: Pair) -> Sequence[Block]:
     """Entries that differ between the attributes of the runs: start values, events, versions."""
     # Start values have a table of their own; long lists are left out.
     left_out = ("start_values", "remarks", "fmus")
@@ -397,9 +397,9 @@ def _details(pair: Pair) -> Sequence[Detail]:
     return [detail for detail in tables if detail is not None]
 
 
-def _unlike(title: str, pair: Pair, contents: Sequence[Mapping[str, Any]]) -> Detail | None:
+def _unlike(title: str, pair: Pair, contents: Sequence[Mapping[str, Any]]) -> Block | None:
     """A table of the entries that differ, or None."""
     names: Iterable[str] = dict.fromkeys([*contents[0], *contents[1]])
     entries = [(name, *(str(content.get(name, "–")) for content in contents)) for name in names]
     rows = [row for row in entries if row[1] != row[2]]
-    return Detail(title, Table(rows, ("", *pair.names))) if rows else None
+    return Block(title, Table(rows, ("", *pair.names))) if rows else None

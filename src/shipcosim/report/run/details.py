@@ -2,30 +2,21 @@
 
 import json
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from xarray import Dataset
 
 from shipcosim.errors import capitalised
-from shipcosim.report.theme.views import Table
+from shipcosim.report.theme.views import Block, Table
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System
 
 SHOWN_ELSEWHERE = ("events", "remarks", "changed", "not_reached", "judged_on")
 
 
-@dataclass(frozen=True)
-class Detail:
-    """A table to unfold, and its title."""
-
-    title: str
-    table: Table
-
-
 def details(
     table: Dataset, scenario: Scenario | None = None, system: System | None = None
-) -> Sequence[Detail]:
+) -> Sequence[Block]:
     """Events and start values of the scenario, and what the attributes of the table say.
 
     Parameters
@@ -39,7 +30,7 @@ def details(
 
     Returns
     -------
-    sequence of Detail
+    sequence of Block
     """
     sections = []
     if scenario is not None and scenario.events:
@@ -102,8 +93,8 @@ def _unit(system: System | None, component: str, name: str) -> str | None:
     return variables[name].unit if name in variables else None
 
 
-def _detail(title: str, rows: Iterable[tuple[Any, Any]]) -> Detail:
-    return Detail(
+def _detail(title: str, rows: Iterable[tuple[Any, Any]]) -> Block:
+    return Block(
         capitalised(title.replace("_", " ")),
         Table([(str(name), _text(value)) for name, value in rows]),
     )

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from xarray import Dataset
 
 from shipcosim.report.run.derived import add_derived
-from shipcosim.report.run.details import Detail, details, parsed
+from shipcosim.report.run.details import details, parsed
 from shipcosim.report.run.expectations import Judged, judged, outcome
 from shipcosim.report.run.key_figures import key_figures
 from shipcosim.report.run.moments import Moment, find_moments
@@ -21,7 +21,16 @@ from shipcosim.report.theme import palette
 from shipcosim.report.theme.display import display_table, is_constant, series_in, thinned
 from shipcosim.report.theme.packing import most_rows, packed_series
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import Fact, JsonObject, Link, Outcome, Page, Table, known_facts
+from shipcosim.report.theme.views import (
+    Block,
+    Fact,
+    JsonObject,
+    Link,
+    Outcome,
+    Page,
+    Table,
+    known_facts,
+)
 from shipcosim.scenario import Scenario, Verdict
 from shipcosim.series import write_file
 from shipcosim.ssp import AnyPath, System
@@ -56,7 +65,7 @@ class RunPage(Page):
         Where not every row is drawn.
     sections : sequence of Section
         Panels over time.
-    details : sequence of Detail
+    details : sequence of Block
         Tables to unfold.
     figures_title : str
         Heading of the key figures.
@@ -72,7 +81,7 @@ class RunPage(Page):
     key_figures: Table
     thinned: Thinned | None
     sections: Sequence[Section]
-    details: Sequence[Detail]
+    details: Sequence[Block]
     changed: Sequence[str] = ()
     figures_title: str = "Key figures"
     changed_title: str = "Changed for this run"

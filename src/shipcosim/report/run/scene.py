@@ -197,12 +197,9 @@ def make_run(
     if columns.without_unit:
         without = ", ".join(dict.fromkeys(columns.without_unit))
         supposed.append(f"without a unit in the table: {without}")
-    circles = [
-        circle
-        for verdict in verdicts
-        for vessel in vessels
-        for circle in _circle(verdict, vessel, shift)
-    ]
+    circles = []
+    for vessel in vessels:
+        circles += expected_circles(verdicts, vessel.pose, shift)
     return Run(
         label,
         packed_series(time[columns.rows], EXACT),
@@ -422,15 +419,20 @@ def _first_in(table: Dataset, names: Iterable[str]) -> str | None:
     return next((name for name in names if name in table and table[name].dtype.kind in "fiu"), None)
 
 
-def _circle(verdict: Verdict, vessel: Vessel, shift: float) -> list[JsonObject]:
-    """Circle of an expectation on the vessel's position; else nothing."""
-    expect = verdict.expect
-    # Only fixed points: a moving target is no circle.
-    centre = [value for value in expect.near or [] if isinstance(value, int | float)]
-    if expect.signal != list(vessel.pose[:2]) or len(centre) != 2 or expect.within is None:
-        return []
-    during = None if expect.during is None else [t + shift for t in expect.during]
-    return [{"centre": centre, "radius": expect.within, "during": during, "passed": verdict.passed}]
+def expected_circles(
+    verdicts: Sequence[Verdict], pose: Sequence[str], shift: float = 0.0
+) -> list[JsonObject]:
+    """Centre, radius, window and result of the expectations on a vessel's position. [m, m, s]"""
+    circles = []
+    for verdict in verdicts:
+        expect = verdict.expect
+        # Only fixed points: a moving target is no circle.
+        centre = [value for value in expect.near or [] if isinstance(value, int | float)]
+        if expect.signal == list(pose[:2]) and len(centre) == 2 and expect.within is not None:
+            during = None if expect.during is None else [t + shift for t in expect.during]
+            circle = {"centre": centre, "radius": expect.within, "during": during}
+            circles.append(circle | {"passed": verdict.passed})
+    return circles
 
 
 def _watch(table: Dataset) -> dict[str, float]:
