@@ -238,7 +238,6 @@ def _page(pair: Pair, merged: Dataset, differing: Sequence[Difference]) -> RunPa
         links=links(runs, sections),
         data=data,
         remarks=tuple(_remarks(pair)),
-        weather=(),
         expectations=(),
         key_figures=_table(differing),
         thinned=thinned,

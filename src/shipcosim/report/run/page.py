@@ -16,7 +16,6 @@ from shipcosim.report.run.predictions import make_predictions, summarise
 from shipcosim.report.run.remarks import remarks
 from shipcosim.report.run.roles import Roles, find_roles
 from shipcosim.report.run.scene import Run, make_run
-from shipcosim.report.run.weather import Flow, weather
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.display import display_table, is_constant, series_in, thinned
 from shipcosim.report.theme.packing import most_rows, packed_series
@@ -58,7 +57,6 @@ class RunPage(Page):
         What must not be overlooked.
     changed : sequence of str
         What the command line changed of what the files say.
-    weather : sequence of Flow
     expectations : sequence of Judged
     key_figures : Table
     thinned : Thinned, optional
@@ -76,7 +74,6 @@ class RunPage(Page):
     """
 
     remarks: Sequence[str]
-    weather: Sequence[Flow]
     expectations: Sequence[Judged]
     key_figures: Table
     thinned: Thinned | None
@@ -184,7 +181,6 @@ def _page(
         data=data,
         remarks=tuple(remarks(table, shown, roles)),
         changed=tuple(parsed(table.attrs.get("changed", "[]"))),
-        weather=weather(shown, roles),
         expectations=expected,
         key_figures=key_figures(shown, roles, summarise(make_predictions(table))),
         thinned=thin,
