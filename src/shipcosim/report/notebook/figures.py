@@ -183,28 +183,21 @@ def track_svg(
 
 
 def _draw_outlines(axes: Axes, path: Path, size: tuple[float, float] | None) -> None:
-    """The ship on her way; her start dashed, her end filled."""
+    """The ship on her way."""
     if path.psi is None:
         return
     is_known = np.isfinite(path.x) & np.isfinite(path.y) & np.isfinite(path.psi)
     if not is_known.any():
         return
-    x = path.x[is_known]
-    y = path.y[is_known]
-    psi = path.psi[is_known]
+    x, y, psi = (values[is_known] for values in (path.x, path.y, path.psi))
     length, breadth = size or symbol_size(x, y)
     hull = hull_outline(length, breadth)
     rows = outline_rows(x, y, psi, length)
     for k in rows:
-        # First and last outline stand out; those between show how she turned.
-        at_end = k in (rows[0], rows[-1])
-        axes.fill(
-            *placed(hull, x[k], y[k], psi[k]),
-            facecolor=(COLOURS[path.colour], 0.15 if k == rows[-1] else 0.04),
-            edgecolor=INK if at_end else COLOURS[path.colour],
-            linewidth=1.2 if at_end else 0.6,
-            linestyle="--" if k == rows[0] and len(rows) > 1 else "-",
-        )
+        # Her last outline is filled.
+        colour = COLOURS[path.colour]
+        filled = (colour, 0.15 if k == rows[-1] else 0.0)
+        axes.fill(*placed(hull, x[k], y[k], psi[k]), fc=filled, ec=colour, linewidth=0.6)
 
 
 def panels_svg(

@@ -36,5 +36,5 @@ def run_track(table: Dataset, verdicts: Sequence[Verdict], name: str) -> str | N
     if reference := vessel.aims.get("reference"):
         x, y = pose_of(table, reference[:2])
         paths.append(Path("reference", x, y, colour=palette.REFERENCE, style="--"))
-    paths.append(Path(f"{vessel.name}, start dashed, end filled", north, east, heading))
+    paths.append(Path(f"{vessel.name}, end filled", north, east, heading))
     return track_svg(paths, name, vessel.size, expected_circles(verdicts, vessel.pose))

@@ -1,20 +1,17 @@
-"""Figures of sea trials: tracks of turning circles, errors of features."""
+"""Tracks of sea trials on one chart."""
 
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shipcosim.diagnose.sea_trials.features import FEATURES
 from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
 from shipcosim.diagnose.sea_trials.windows import SeaTrial
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.figures import line, rounded
+from shipcosim.report.theme.figures import line
 from shipcosim.report.theme.views import Figure
 
 _ALIKE = 5.0  # deg: of circles with steering as near as this, one is drawn
-_SHORT = {"turning circle": "circle", "zig-zag": "zig-zag", "straight run": "straight"}
-_ROW = 30  # px
 
 
 def track_figure(study: SeaTrialStudy, before: list[NDArray], after: list[NDArray]) -> Figure:
@@ -66,59 +63,3 @@ def _turned(motion: NDArray) -> tuple[NDArray, NDArray]:
     c = np.cos(course)
     s = np.sin(course)
     return c * east - s * north, c * north + s * east
-
-
-def error_figure(study: SeaTrialStudy) -> Figure:
-    """Root mean square errors of the features by kind of trial, before and after, beside how well they repeat."""
-    evidence = study.evidence
-    spread = np.sqrt(np.diag(evidence.noise))
-    errors = {"as modelled": evidence.predicted - evidence.measured}
-    if study.best.hypotheses:
-        errors["with the causes"] = study.after - evidence.measured
-    kinds = dict.fromkeys(trial.kind for trial in study.trials)
-    places = {
-        f"{_SHORT[kind]}: {name}": rows
-        for kind in kinds
-        for name, rows in places_of(study.trials, kind).items()
-    }
-    names = [f"{name} [0.01 rad]" if name.endswith("drift") else name for name in places][::-1]
-
-    def sizes(off):
-        return rounded(
-            [100.0 * np.sqrt(np.mean(np.square(off[rows]))) for rows in places.values()], 3
-        )[::-1]
-
-    traces = []
-    for (name, off), colour in zip(errors.items(), (palette.ORANGE, palette.BLUE), strict=False):
-        drawn = {"type": "bar", "orientation": "h", "name": name, "x": sizes(off), "y": names}
-        traces.append(drawn | {"marker": {"color": colour}, "hovertemplate": "%{x:.3~g} %"})
-    repeats = {
-        "type": "scatter",
-        "mode": "markers",
-        "name": "how well trials repeat",
-        "x": sizes(spread),
-        "y": names,
-    }
-    look = {"color": palette.INK, "symbol": "line-ns-open", "size": 12}
-    traces.append(repeats | {"marker": look, "hovertemplate": "%{x:.3~g} %"})
-    layout = {
-        "barmode": "group",
-        "hovermode": "y unified",
-        "xaxis": {"title": {"text": "%"}},
-        "yaxis": {"automargin": True, "dtick": 1, "tickfont": {"size": 11}},
-        "legend": {"orientation": "h", "x": 0.5, "xanchor": "center", "y": -0.1},
-    }
-    note = "Root mean square over all trials of the kind. Upright strokes: standard deviation with which trials repeat."
-    return Figure("Errors of the features", "%", traces, layout, note, 110 + _ROW * len(names))
-
-
-def places_of(trials: Sequence[SeaTrial], kind: str) -> dict[str, list[int]]:
-    """By feature of a kind, its places among the features of all trials."""
-    places: dict[str, list[int]] = {name: [] for name in FEATURES[kind]}
-    at = 0
-    for trial in trials:
-        for name in FEATURES[trial.kind]:
-            if trial.kind == kind:
-                places[name].append(at)
-            at += 1
-    return places

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from shipcosim.diagnose.sea_trials.study import SeaTrialStudy, motions_of
-from shipcosim.report.sea_trials.figures import error_figure, track_figure
+from shipcosim.report.sea_trials.figures import track_figure
 from shipcosim.report.sea_trials.words import (
     features_table,
     held_out_table,
@@ -17,7 +17,6 @@ from shipcosim.report.sea_trials.words import (
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import (
     FigurePage,
-    Figures,
     KeyFigure,
     Table,
     facts_of,
@@ -44,15 +43,11 @@ class SeaTrialPage(FigurePage):
 
     Attributes
     ----------
-    tracks, errors : sequence of Figure
-        Tracks of circles; errors of features.
     sets, held_out, features, separations : Table
     steps : sequence of str
         What to sail next.
     """
 
-    tracks: Figures
-    errors: Figures
     sets: Table
     held_out: Table
     features: Table
@@ -68,9 +63,7 @@ def render(study: SeaTrialStudy, facts: dict[str, str]) -> str:
 def _page(study: SeaTrialStudy, facts: dict[str, str]) -> SeaTrialPage:
     circles = any(trial.kind == "turning circle" for trial in study.trials)
     tracks = (track_figure(study, *motions_of(study)),) if circles else ()
-    errors = (error_figure(study),)
     facts = facts | {"Trials": trials(study)}
-    figures = (*tracks, *errors)
     there = {"tracks": circles, "judged": bool(study.held_out), "next": bool(study.separations)}
     return SeaTrialPage(
         title="Sea trials",
@@ -78,9 +71,7 @@ def _page(study: SeaTrialStudy, facts: dict[str, str]) -> SeaTrialPage:
         outcome=outcome(study),
         links=links_of(SECTIONS, there),
         key_figures=_key_figures(study),
-        figures=figures,
-        tracks=tracks,
-        errors=errors,
+        figures=tracks,
         sets=sets_table(study),
         held_out=held_out_table(study),
         features=features_table(study),

@@ -30,8 +30,6 @@ from shipcosim.sweep.study_model import View
 TALL = 380  # px
 POLAR = 420
 BAR = 18
-MOST_LETTERS = 40
-"""Letters of the names of all bars that fit below them."""
 MOST_DOTS = 2500
 """Dots of a figure; the table and the scatter plot beside it hold more."""
 
@@ -213,8 +211,6 @@ def bars(tables: StudyTables, view: View) -> Figure:
     factors = [] if has_several and view.series is None else view.series
     series = series_of(frame, factors, [category.name])
     names = [category.text(at) for at in levels]
-    # Long names need horizontal bars.
-    is_upright = sum(map(len, names)) <= MOST_LETTERS
     traces = []
     groups = []
     colours = iter(palette.CYCLE)
@@ -230,9 +226,7 @@ def bars(tables: StudyTables, view: View) -> Figure:
             )
             groups += rows_by_level
             label = ", ".join(filter(None, (value.name if has_several else "", group.label)))
-            traces.append(
-                _bar(label or value.name, names, points, next(colours, palette.INK), is_upright)
-            )
+            traces.append(_bar(label or value.name, names, points, next(colours, palette.INK)))
     # Tell the reader what is left out, and what the interval is.
     fewer = f"The first {len(levels)} of {len(every)}." if len(levels) < len(every) else ""
     notes = [
@@ -242,27 +236,22 @@ def bars(tables: StudyTables, view: View) -> Figure:
         left_out(frame, series),
     ]
     title = f"{', '.join(view.value)} by {category.name}"
-    height = TALL if is_upright else max(TALL, BAR * len(levels) * len(traces))
-    # Long names stand next to horizontal bars, the first one on top.
-    axes: PlotlyDict = {"barmode": "group"}
-    if is_upright:
-        axes["xaxis"] = {"type": "category"}
-    else:
-        axes["yaxis"] = {"type": "category", "autorange": "reversed"}
+    height = max(TALL, BAR * len(levels) * len(traces))
+    # Names stand next to the bars, the first one on top.
+    axes = {"barmode": "group", "yaxis": {"type": "category", "autorange": "reversed"}}
     return _figure(view, title, values[0].unit, traces, axes, notes, height)
 
 
-def _bar(
-    name: str, categories: Sequence[str], points: NDArray, colour: str, is_upright: bool
-) -> PlotlyDict:
-    # Upright or horizontal bars with the same data.
-    along, across = ("y", "x") if is_upright else ("x", "y")
-    made = {"type": "bar", "name": name, across: list(categories), along: rounded(points[:, 0])}
-    made |= {
+def _bar(name: str, categories: Sequence[str], points: NDArray, colour: str) -> PlotlyDict:
+    made: PlotlyDict = {
+        "type": "bar",
+        "orientation": "h",
+        "name": name,
+        "x": rounded(points[:, 0]),
+        "y": list(categories),
         "marker": {"color": palette.faded(colour, 0.75)},
-        "hovertemplate": f"%{{{along}:.3~g}}",
+        "hovertemplate": "%{x:.3~g}",
     }
-    made |= {"orientation": "v" if is_upright else "h"}
     # Error bars from the interval, where there is one.
     if not np.isfinite(points[:, 1:]).any():
         return made
@@ -270,7 +259,7 @@ def _bar(
         up = points[:, 2] - points[:, 0]
         down = points[:, 0] - points[:, 1]
     ends = {"type": "data", "symmetric": False, "array": rounded(up), "arrayminus": rounded(down)}
-    return made | {f"error_{along}": ends | {"color": palette.INK, "thickness": 1.4, "width": 4}}
+    return made | {"error_x": ends | {"color": palette.INK, "thickness": 1.4, "width": 4}}
 
 
 def pareto(tables: StudyTables, view: View) -> Figure:

@@ -114,7 +114,7 @@ def test_means_of_runs_have_a_named_interval(tables):
     figure = page_of(with_views(tables, view)).plots[0]
     assert "Wilson" in figure.note
     some = tables.runs.query("wind == 12 and lost == 'port lost'")["held"].dropna()
-    assert figure.traces[2]["y"][2] == pytest.approx(some.astype(float).mean(), rel=1e-4)
+    assert figure.traces[2]["x"][2] == pytest.approx(some.astype(float).mean(), rel=1e-4)
 
 
 def test_front_of_what_shall_be_large_is_at_the_other_end(tables):
