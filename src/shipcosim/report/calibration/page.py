@@ -1,7 +1,6 @@
 """The page of a calibration: what moved, the error before and after, and what the logs could not tell."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from shipcosim.diagnose.calibration_pipeline import CalibratedShip
 from shipcosim.report.calibration.words import (
@@ -19,66 +18,39 @@ from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import (
     Figure,
     FigurePage,
-    Figures,
     KeyFigure,
     Table,
     facts_of,
-    links_of,
 )
 
-SECTIONS = {"moved": "Numbers", "errors": "Errors", "logs": "Logs", "untold": "Not told"}
 _ROW = 22  # px, of a number in the figure
-
-
-@dataclass(frozen=True)
-class CalibrationPage(FigurePage):
-    """What the page of a calibration shows.
-
-    Attributes
-    ----------
-    refusals, remarks : sequence of str
-    moved : sequence of Figure
-        What moved by how many tolerances.
-    errors, numbers, logs : Table
-    untold : str
-        Numbers that the logs say next to nothing of.
-    """
-
-    refusals: Sequence[str]
-    remarks: Sequence[str]
-    moved: Figures
-    errors: Table
-    numbers: Table
-    logs: Table
-    untold: str
 
 
 def render(ship: CalibratedShip) -> str:
     """The page of a calibration as HTML."""
-    return render_template("calibration/templates/calibration.html.jinja", _page(ship))
-
-
-def _page(ship: CalibratedShip) -> CalibrationPage:
-    what = (_moved_figure(ship),)
     reference = ship.reference
-    facts = {"System": reference.system, "Logs": ", ".join(log.name for log in ship.logs)}
     scale = reference.tolerance_scale
-    facts["Tolerances"] = "as stated" if scale == 1.0 else f"{scale:g} times as stated"
-    return CalibrationPage(
+    facts = {
+        "System": reference.system,
+        "Logs": ", ".join(log.name for log in ship.logs),
+        "Tolerances": "as stated" if scale == 1.0 else f"{scale:g} times as stated",
+    }
+    page = FigurePage(
         title=f"Calibration of {reference.system}",
         facts=facts_of(facts),
         outcome=outcome(ship),
-        links=links_of(SECTIONS),
+        key_figures=_key_figures(ship),
+        figures=(_moved_figure(ship),),
+    )
+    return render_template(
+        "calibration/templates/calibration.html.jinja",
+        page,
         refusals=ship.refusals,
         remarks=ship.remarks,
-        key_figures=_key_figures(ship),
-        moved=what,
-        figures=what,
         numbers=Table(moved_rows(ship), ("Number", "System", "By the logs", "Tolerances")),
         errors=error_table(errors_by_log(ship), "calibrated"),
         logs=Table(
-            log_rows(ship),
-            ("Log", "Faults, repaired", "Weather fitted", "Unmodelled errors left"),
+            log_rows(ship), ("Log", "Faults, repaired", "Weather fitted", "Unmodelled errors left")
         ),
         untold=", ".join(number.name for number in ship.untold),
     )

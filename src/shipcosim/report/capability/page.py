@@ -20,16 +20,7 @@ from shipcosim.report.theme.views import (
     Outcome,
     Table,
     facts_of,
-    links_of,
 )
-
-SECTIONS = {
-    "plot": "Plot",
-    "numbers": "Numbers",
-    "loads": "Loads",
-    "thrusters": "Thrusters",
-    "basis": "Basis",
-}
 
 
 @dataclass(frozen=True)
@@ -92,7 +83,6 @@ def page_of(capability: Capability) -> CapabilityPage:
         title=f"Static DP capability of {vessel.name}",
         facts=facts_of(facts),
         outcome=_outcome(capability),
-        links=links_of(SECTIONS),
         key_figures=_key_figures(capability),
         plots=plots,
         loads=loads,

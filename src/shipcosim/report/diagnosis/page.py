@@ -18,7 +18,6 @@ from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import (
     Fact,
     Figures,
-    Link,
     Table,
 )
 
@@ -60,7 +59,7 @@ def _page(diagnosis: Diagnosis) -> DiagnosisPage:
         raise ValueError(
             "only a diagnosis with its log and evidence has a page; shipcosim.diagnose makes one"
         )
-    # Sections first: links and figures follow from them.
+    # Sections first: figures follow from them.
     log = log_section(diagnosis)
     cause = cause_section(diagnosis, diagnosis.evidence)
     error = error_section(diagnosis)
@@ -70,18 +69,12 @@ def _page(diagnosis: Diagnosis) -> DiagnosisPage:
     causes = (*cause.sizes, *cause.figures, *cause.unmodelled, *cause.whiteness)
     tracks = _track_figures(diagnosis)
     figures = (*tracks, *log.figures, *error.figures, *error.forces, *causes, *gain.figures)
-    # Each link tells the result of its section.
-    links = {"log": ("Log", log), "error": ("Error", error), "causes": ("Cause", cause)}
-    links |= {"extension": ("Extension", extension), "gain": ("Gain", gain)}
     step = [Fact("Step", f"{diagnosis.log.step:g} s")] if diagnosis.log else []
     steps = next_steps(diagnosis, extension.system if extension.state == "extended" else None)
     return DiagnosisPage(
         title=f"Diagnosis of {diagnosis.name}",
         facts=(*facts_of(diagnosis), *step),
         outcome=outcome(diagnosis),
-        links=tuple(
-            Link(anchor, title, section.found) for anchor, (title, section) in links.items()
-        ),
         key_figures=key_figures(diagnosis),
         discrepancies=Table(
             discrepancy_rows(diagnosis), ("", "size", "of the error", "logs")[: 4 if several else 3]

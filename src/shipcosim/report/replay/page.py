@@ -1,7 +1,6 @@
 """The page of a replay: a log, and its simulation by one or two systems."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from shipcosim.diagnose.replays import LogReplay
 from shipcosim.diagnose.validation.tracks import errors_of
@@ -9,22 +8,7 @@ from shipcosim.report.diagnosis.scene import ScenePage, make_scene
 from shipcosim.report.diagnosis.track_figures import error_rows, over_time_figures, track_figure
 from shipcosim.report.theme.numbers import metres
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import Outcome, Table, facts_of
-
-
-@dataclass(frozen=True)
-class ReplayPage(ScenePage):
-    """What the page of a replay shows.
-
-    Attributes
-    ----------
-    errors : Table
-    remarks : sequence of str
-        What was found in the log and handled.
-    """
-
-    errors: Table
-    remarks: Sequence[str]
+from shipcosim.report.theme.views import Outcome, facts_of
 
 
 def render(replay: LogReplay, title: str, facts: dict[str, str]) -> str:
@@ -32,16 +16,19 @@ def render(replay: LogReplay, title: str, facts: dict[str, str]) -> str:
     # Track and channels, measured and simulated.
     tracks = replay.tracks
     figures = (track_figure(tracks), *over_time_figures(tracks))
-    page = ReplayPage(
+    page = ScenePage(
         title=f"Replay of {title}",
         facts=facts_of(facts),
         outcome=replay_outcome(replay),
         scene=make_scene(tracks, None, replay.system),
         figures=figures,
+    )
+    return render_template(
+        "replay/templates/replay.html.jinja",
+        page,
         errors=error_rows(errors_of(tracks)),
         remarks=remarks_of(replay),
     )
-    return render_template("replay/templates/replay.html.jinja", page)
 
 
 def remarks_of(replay: LogReplay) -> Sequence[str]:

@@ -13,7 +13,7 @@ from shipcosim.errors import Problem, ShipcosimError, error_at, shortened
 from shipcosim.report.run.derived import ERRORS, FROM_REFERENCE
 from shipcosim.report.run.details import parsed
 from shipcosim.report.run.moments import Moment
-from shipcosim.report.run.page import RunPage, drawn_data, drawn_rows, links, shown_table
+from shipcosim.report.run.page import RunPage, drawn_data, drawn_rows, shown_table
 from shipcosim.report.run.panels import Panel, Section, constants_as_words, make_sections
 from shipcosim.report.run.roles import Roles
 from shipcosim.report.run.scene import make_run
@@ -235,7 +235,6 @@ def _page(pair: Pair, merged: Dataset, differing: Sequence[Difference]) -> RunPa
         title=f"{pair.names[0]} and {pair.names[1]}",
         facts=facts,
         outcome=_outcome(pair, differing),
-        links=links(runs, sections),
         data=data,
         remarks=tuple(_remarks(pair)),
         expectations=(),

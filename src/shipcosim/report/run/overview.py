@@ -1,7 +1,6 @@
 """The page of several scenarios: what happened, what must hold, measured values, verdict."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from shipcosim.report.run.page import Digest
@@ -18,18 +17,6 @@ class ScenarioRow(NamedTuple):
     description: str
     page: str
     digest: Digest
-
-
-@dataclass(frozen=True)
-class OverviewPage(Page):
-    """What the page of several scenarios shows.
-
-    Attributes
-    ----------
-    rows : sequence of ScenarioRow
-    """
-
-    rows: Sequence[ScenarioRow]
 
 
 def overview_outcome(rows: Sequence[ScenarioRow]) -> Outcome:
@@ -62,5 +49,5 @@ def write_overview(rows: Sequence[ScenarioRow], path: AnyPath, *, title: str) ->
         If the file cannot be written.
     """
     facts = (Fact("Scenarios", str(len(rows))),)
-    page = OverviewPage(title=title, facts=facts, outcome=overview_outcome(rows), rows=rows)
-    write_file(path, render("run/templates/overview.html.jinja", page).encode())
+    page = Page(title=title, facts=facts, outcome=overview_outcome(rows))
+    write_file(path, render("run/templates/overview.html.jinja", page, rows=rows).encode())

@@ -24,7 +24,6 @@ from shipcosim.report.theme.views import (
     Block,
     Fact,
     JsonObject,
-    Link,
     Outcome,
     Page,
     Table,
@@ -177,7 +176,6 @@ def _page(
         title=_title(scenario, system),
         facts=_facts(table, scenario),
         outcome=outcome(table, verdicts),
-        links=links(runs, sections),
         data=data,
         remarks=tuple(remarks(table, shown, roles)),
         changed=tuple(parsed(table.attrs.get("changed", "[]"))),
@@ -221,13 +219,6 @@ def _facts(table: Dataset, scenario: Scenario | None) -> Sequence[Fact]:
     if "engine" in table.attrs:
         facts.append(("Engine", str(table.attrs["engine"])))
     return known_facts(facts)
-
-
-def links(runs: Sequence[Run], sections: Sequence[Section]) -> Sequence[Link]:
-    """Navigation of the page."""
-    chart = [Link("scene", "Scene")] if runs else []
-    panels = [Link(f"section-{k}", section.title) for k, section in enumerate(sections)]
-    return (*chart, *panels, Link("choose", "All signals"), Link("details", "Parameters"))
 
 
 def drawn_rows(shown: Dataset) -> tuple[Dataset, Thinned | None]:

@@ -1,7 +1,6 @@
 """The page of sea trials: tracks, features before and after, causes, and what would tell them apart."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from shipcosim.diagnose.sea_trials.study import SeaTrialStudy, motions_of
 from shipcosim.report.sea_trials.figures import track_figure
@@ -18,18 +17,9 @@ from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import (
     FigurePage,
     KeyFigure,
-    Table,
     facts_of,
-    links_of,
 )
 
-SECTIONS = {
-    "tracks": "Tracks",
-    "features": "Features",
-    "causes": "Causes",
-    "judged": "Judged on what was not fitted",
-    "next": "What to sail next",
-}
 KEY_FEATURES = {
     "speed": "steady speed",
     "rate": "steady rate of turn",
@@ -37,41 +27,19 @@ KEY_FEATURES = {
 }
 
 
-@dataclass(frozen=True)
-class SeaTrialPage(FigurePage):
-    """What the page of sea trials shows.
-
-    Attributes
-    ----------
-    sets, held_out, features, separations : Table
-    steps : sequence of str
-        What to sail next.
-    """
-
-    sets: Table
-    held_out: Table
-    features: Table
-    separations: Table
-    steps: Sequence[str]
-
-
 def render(study: SeaTrialStudy, facts: dict[str, str]) -> str:
     """The page of sea trials as HTML; `facts` are shown below its title."""
-    return render_template("sea_trials/templates/sea_trials.html.jinja", _page(study, facts))
-
-
-def _page(study: SeaTrialStudy, facts: dict[str, str]) -> SeaTrialPage:
     circles = any(trial.kind == "turning circle" for trial in study.trials)
-    tracks = (track_figure(study, *motions_of(study)),) if circles else ()
-    facts = facts | {"Trials": trials(study)}
-    there = {"tracks": circles, "judged": bool(study.held_out), "next": bool(study.separations)}
-    return SeaTrialPage(
+    page = FigurePage(
         title="Sea trials",
-        facts=facts_of(facts),
+        facts=facts_of(facts | {"Trials": trials(study)}),
         outcome=outcome(study),
-        links=links_of(SECTIONS, there),
         key_figures=_key_figures(study),
-        figures=tracks,
+        figures=(track_figure(study, *motions_of(study)),) if circles else (),
+    )
+    return render_template(
+        "sea_trials/templates/sea_trials.html.jinja",
+        page,
         sets=sets_table(study),
         held_out=held_out_table(study),
         features=features_table(study),

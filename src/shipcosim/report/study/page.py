@@ -27,19 +27,11 @@ from shipcosim.report.theme.views import (
     Outcome,
     Page,
     Table,
-    links_of,
 )
 from shipcosim.sweep.study_model import View
 
 BYTES_FOR_RUNS = 800_000  # of a page that shall stay below 1.6 MB
 EXACT = 1e9  # steps of the numbers of runs
-SECTIONS = {
-    "views": "Views",
-    "runs": "Runs",
-    "failed": "Failed runs",
-    "summary": "Summary",
-    "study": "How it was made",
-}
 VIEWS: Mapping[str, Callable[[StudyTables, View], Figure]] = {
     "polar": figures.polar,
     "curves": figures.curves,
@@ -125,15 +117,13 @@ def page_of(tables: StudyTables) -> StudyPage:
     errors = [
         ErrorOfRuns(text, len(numbers), numbers[:20]) for text, numbers in words.errors(tables)
     ]
-    there = {"views": tracks or plots, "failed": errors, "summary": len(tables.summary)}
     return StudyPage(
         title=str(tables.study.get("description") or tables.name),
         facts=words.facts(tables),
         outcome=words.outcome(tables, runs, summary),
-        links=links_of(SECTIONS, there),
         data=_data(tables, runs, rows, tracks, drawn),
         remarks=[*map(str, tables.about.get("remarks") or ()), *undrawn],
-        key_figures=words.key_figures(tables, runs, summary),
+        key_figures=words.key_figures(tables, runs),
         tracks=tracks,
         plots=plots,
         figures=drawn,

@@ -19,7 +19,6 @@ from shipcosim.report.study.tables import (
     Column,
     Columns,
     StudyTables,
-    signed,
 )
 from shipcosim.report.theme.numbers import finite, percent, plain
 from shipcosim.report.theme.views import Fact, KeyFigure, Outcome, Table
@@ -107,37 +106,21 @@ def _of_runs(runs: Columns) -> str:
     return f"{name}: {column.text(middle)} in the median, {column.text(high)} in nine of ten runs, {most} at most."
 
 
-def key_figures(tables: StudyTables, runs: Columns, summary: Columns) -> Sequence[KeyFigure]:
-    """Number of runs, and values of the first quantities and summaries."""
+def key_figures(tables: StudyTables, runs: Columns) -> Sequence[KeyFigure]:
+    """Number of runs, and values of the first quantities."""
     figures = [KeyFigure(str(len(tables.runs)), f"runs, {int(is_failed(tables).sum())} failed")]
-    # Summaries first: they are what the study asks for.
-    for column in [*summary.values(), *runs.values()]:
-        has_value = np.isfinite if column.role == QUANTITY else lambda values: ~np.isnan(values)
-        numbers = column.values[has_value(column.values)]
-        # Only numbers that a reader can compare; ends of intervals belong to their value.
-        is_end = column.name.endswith(("_low", "_high"))
-        if len(numbers) and not column.labels and column.role in (QUANTITY, SUMMARY) and not is_end:
-            figures.append(_key_figure(column, numbers))
-    return tuple(figures[:MOST_FIGURES])
-
-
-def _key_figure(column: Column, numbers: NDArray) -> KeyFigure:
-    name = column.description or column.name.replace("_", " ")
-    # A share, the range of a summary, or the value that nine of ten runs stay below.
-    if column.is_truth:
-        _, low, high = wilson(int(numbers.sum()), len(numbers))
-        return KeyFigure(
-            percent(numbers.mean()), f"{name}; 95 % interval {percent(low)} to {percent(high)}"
-        )
-    if column.ranges:
-        ends = [column.text_at(int(end(column.values))) for end in (np.nanargmin, np.nanargmax)]
-        return KeyFigure(ends[0] if ends[0] == ends[1] else f"{ends[0]} … {ends[1]}", name)
-    if column.role == SUMMARY:
-        low = column.text(numbers.min())
-        high = column.text(numbers.max())
-        unitless = signed(numbers.min(), 3) if np.isfinite(numbers.max()) else low
-        return KeyFigure(low if low == high else f"{unitless} to {high}", name)
-    return KeyFigure(column.text(np.quantile(numbers, 0.9)), f"{name}: nine of ten runs are below")
+    for column in runs.values():
+        numbers = finite(column.values)
+        name = column.description or column.name.replace("_", " ")
+        # A share, or the value that nine of ten runs stay below.
+        if column.role == QUANTITY and column.is_truth and len(numbers):
+            _, low, high = wilson(int(numbers.sum()), len(numbers))
+            meaning = f"{name}; 95 % interval {percent(low)} to {percent(high)}"
+            figures.append(KeyFigure(percent(numbers.mean()), meaning))
+        elif column.role == QUANTITY and len(numbers):
+            value = column.text(np.quantile(numbers, 0.9))
+            figures.append(KeyFigure(value, f"{name}: nine of ten runs are below"))
+    return figures[:MOST_FIGURES]
 
 
 def quantities_table(runs: Columns) -> Table:

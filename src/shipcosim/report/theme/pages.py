@@ -2,6 +2,7 @@
 
 from functools import cache
 from importlib.resources import files
+from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
@@ -11,7 +12,7 @@ from shipcosim.report.theme.packing import packed_data, packed_text
 from shipcosim.report.theme.views import Page
 
 
-def render(template: str, page: Page) -> str:
+def render(template: str, page: Page, **parts: Any) -> str:
     """Render a page as HTML; texts are escaped, and misspelt names in templates are errors.
 
     Parameters
@@ -20,12 +21,14 @@ def render(template: str, page: Page) -> str:
         File below `report/`, as in ``"run/templates/run.html.jinja"``.
     page : Page
         What it shows.
+    **parts
+        What this page alone shows, by the names in its template.
 
     Returns
     -------
     str
     """
-    return _environment().get_template(template).render(page=page)
+    return _environment().get_template(template).render(page=page, **parts)
 
 
 @cache

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 JsonObject = dict[str, Any]
@@ -43,22 +42,6 @@ class Outcome:
     kind: str
     word: str
     sentence: str
-
-
-@dataclass(frozen=True)
-class Link:
-    """A link to a section of the page: anchor, title, and its finding in a few words."""
-
-    anchor: str
-    title: str
-    text: str = ""
-
-
-def links_of(
-    sections: Mapping[str, str], there: Mapping[str, object] = MappingProxyType({})
-) -> Sequence[Link]:
-    """Links to sections, from titles by anchor, without those that a page lacks."""
-    return [Link(anchor, title) for anchor, title in sections.items() if there.get(anchor, True)]
 
 
 @dataclass(frozen=True)
@@ -129,8 +112,6 @@ class Page:
     facts : sequence of Fact
         Below the title.
     outcome : Outcome
-    links : sequence of Link
-        Navigation within the page.
     data : mapping or tuple
         What the script of the page draws, as JSON.
     """
@@ -138,7 +119,6 @@ class Page:
     title: str
     facts: Sequence[Fact]
     outcome: Outcome
-    links: Sequence[Link] = ()
     data: Mapping[str, Any] | Sequence[Any] = ()
 
 
