@@ -23,7 +23,6 @@ from shipcosim.report.theme.views import (
     Figure,
     Figures,
     JsonObject,
-    KeyFigure,
     Outcome,
     Page,
     Table,
@@ -66,7 +65,6 @@ class StudyPage(Page):
     ----------
     remarks : sequence of str
         What must not be overlooked, and views that cannot be drawn.
-    key_figures : sequence of KeyFigure
     tracks : sequence of TracksView
         Charts of recorded tracks.
     plots, figures : sequence of Figure
@@ -82,7 +80,6 @@ class StudyPage(Page):
     """
 
     remarks: Sequence[str]
-    key_figures: Sequence[KeyFigure]
     tracks: Sequence[TracksView]
     plots: Figures
     figures: Figures
@@ -123,7 +120,6 @@ def page_of(tables: StudyTables) -> StudyPage:
         outcome=words.outcome(tables, runs, summary),
         data=_data(tables, runs, rows, tracks, drawn),
         remarks=[*map(str, tables.about.get("remarks") or ()), *undrawn],
-        key_figures=words.key_figures(tables, runs),
         tracks=tracks,
         plots=plots,
         figures=drawn,

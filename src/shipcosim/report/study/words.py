@@ -1,4 +1,4 @@
-"""A study in words: result, key figures, how it was made."""
+"""A study in words: result, quantities, how it was made."""
 
 from __future__ import annotations
 
@@ -21,10 +21,9 @@ from shipcosim.report.study.tables import (
     StudyTables,
 )
 from shipcosim.report.theme.numbers import finite, percent, plain
-from shipcosim.report.theme.views import Fact, KeyFigure, Outcome, Table
+from shipcosim.report.theme.views import Fact, Outcome, Table
 from shipcosim.sweep.summary import wilson
 
-MOST_FIGURES = 4
 MOST_ERRORS = 50
 MATTERS = 0.05
 """Share of a variance from which a factor is named."""
@@ -104,23 +103,6 @@ def _of_runs(runs: Columns) -> str:
     low, middle, high = np.quantile(numbers, [0.0, 0.5, 0.9])
     most = column.text(numbers.max())
     return f"{name}: {column.text(middle)} in the median, {column.text(high)} in nine of ten runs, {most} at most."
-
-
-def key_figures(tables: StudyTables, runs: Columns) -> Sequence[KeyFigure]:
-    """Number of runs, and values of the first quantities."""
-    figures = [KeyFigure(str(len(tables.runs)), f"runs, {int(is_failed(tables).sum())} failed")]
-    for column in runs.values():
-        numbers = finite(column.values)
-        name = column.description or column.name.replace("_", " ")
-        # A share, or the value that nine of ten runs stay below.
-        if column.role == QUANTITY and column.is_truth and len(numbers):
-            _, low, high = wilson(int(numbers.sum()), len(numbers))
-            meaning = f"{name}; 95 % interval {percent(low)} to {percent(high)}"
-            figures.append(KeyFigure(percent(numbers.mean()), meaning))
-        elif column.role == QUANTITY and len(numbers):
-            value = column.text(np.quantile(numbers, 0.9))
-            figures.append(KeyFigure(value, f"{name}: nine of ten runs are below"))
-    return figures[:MOST_FIGURES]
 
 
 def quantities_table(runs: Columns) -> Table:
