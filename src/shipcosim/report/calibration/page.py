@@ -20,7 +20,7 @@ from shipcosim.report.theme.views import (
     FigurePage,
     KeyFigure,
     Table,
-    facts_of,
+    known_facts,
 )
 
 _ROW = 22  # px, of a number in the figure
@@ -37,7 +37,7 @@ def render(ship: CalibratedShip) -> str:
     }
     page = FigurePage(
         title=f"Calibration of {reference.system}",
-        facts=facts_of(facts),
+        facts=known_facts(facts),
         outcome=outcome(ship),
         key_figures=_key_figures(ship),
         figures=(_moved_figure(ship),),

@@ -19,7 +19,7 @@ from shipcosim.report.theme.views import (
     KeyFigure,
     Outcome,
     Table,
-    facts_of,
+    known_facts,
 )
 
 
@@ -81,7 +81,7 @@ def page_of(capability: Capability) -> CapabilityPage:
     particulars = Table(rows, ("file", "what", "value", "from"))
     return CapabilityPage(
         title=f"Static DP capability of {vessel.name}",
-        facts=facts_of(facts),
+        facts=known_facts(facts),
         outcome=_outcome(capability),
         key_figures=_key_figures(capability),
         plots=plots,

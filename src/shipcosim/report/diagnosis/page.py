@@ -1,15 +1,13 @@
 """The page of a diagnosis: what it shows, and the functions that write it."""
 
-from dataclasses import dataclass
-
 from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.by_log import track_figures
-from shipcosim.report.diagnosis.cause_section import CauseSection, cause_section
-from shipcosim.report.diagnosis.extension_section import ExtensionSection, extension_section
-from shipcosim.report.diagnosis.gain_section import GainSection, gain_section
-from shipcosim.report.diagnosis.log_section import LogSection, log_section
-from shipcosim.report.diagnosis.prediction_errors import ErrorSection, error_section
+from shipcosim.report.diagnosis.cause_section import cause_section
+from shipcosim.report.diagnosis.extension_section import extension_section
+from shipcosim.report.diagnosis.gain_section import gain_section
+from shipcosim.report.diagnosis.log_section import log_section
+from shipcosim.report.diagnosis.prediction_errors import error_section
 from shipcosim.report.diagnosis.scene import ScenePage, make_scene
 from shipcosim.report.diagnosis.summary import key_figures
 from shipcosim.report.diagnosis.track_figures import over_time_figures, track_figure
@@ -22,37 +20,8 @@ from shipcosim.report.theme.views import (
 )
 
 
-@dataclass(frozen=True)
-class DiagnosisPage(ScenePage):
-    """What the page of a diagnosis shows: figures that matter, what to do next, and five sections.
-
-    Attributes
-    ----------
-    discrepancies : Table
-        What is wrong at first sight, largest first.
-    next_steps : tuple of str
-        What to do now.
-    tracks : tuple of Figure
-        Track and speeds, measured and simulated; empty where no stretch of the log is whole.
-    log, error, cause, extension, gain : section of the page
-    """
-
-    discrepancies: Table
-    next_steps: tuple[str, ...]
-    tracks: Figures
-    log: LogSection
-    error: ErrorSection
-    cause: CauseSection
-    extension: ExtensionSection
-    gain: GainSection
-
-
 def render(diagnosis: Diagnosis) -> str:
     """The page as HTML."""
-    return render_template("diagnosis/templates/diagnosis.html.jinja", _page(diagnosis))
-
-
-def _page(diagnosis: Diagnosis) -> DiagnosisPage:
     # A page needs the log and the evidence, or several logs; a stored result has neither.
     several = isinstance(diagnosis, JointDiagnosis)
     if not several and (diagnosis.log is None or diagnosis.evidence is None):
@@ -70,24 +39,27 @@ def _page(diagnosis: Diagnosis) -> DiagnosisPage:
     tracks = _track_figures(diagnosis)
     figures = (*tracks, *log.figures, *error.figures, *error.forces, *causes, *gain.figures)
     step = [Fact("Step", f"{diagnosis.log.step:g} s")] if diagnosis.log else []
-    steps = next_steps(diagnosis, extension.system if extension.state == "extended" else None)
-    return DiagnosisPage(
+    is_extended = extension.state == "extended"
+    page = ScenePage(
         title=f"Diagnosis of {diagnosis.name}",
         facts=(*facts_of(diagnosis), *step),
         outcome=outcome(diagnosis),
         key_figures=key_figures(diagnosis),
-        discrepancies=Table(
-            discrepancy_rows(diagnosis), ("", "size", "of the error", "logs")[: 4 if several else 3]
-        ),
-        next_steps=tuple(steps),
+        scene=() if several else make_scene(diagnosis.tracks, diagnosis.force, diagnosis.system),
+        figures=figures,
+    )
+    head = ("", "size", "of the error", "logs")
+    return render_template(
+        "diagnosis/templates/diagnosis.html.jinja",
+        page,
+        discrepancies=Table(discrepancy_rows(diagnosis), head[: 4 if several else 3]),
+        next_steps=next_steps(diagnosis, extension.system if is_extended else None),
         tracks=tracks,
         log=log,
         error=error,
         cause=cause,
         extension=extension,
         gain=gain,
-        scene=() if several else make_scene(diagnosis.tracks, diagnosis.force, diagnosis.system),
-        figures=figures,
     )
 
 

@@ -129,7 +129,7 @@ def facts_of(diagnosis: Diagnosis) -> Sequence[Fact]:
     minutes = sum(time[-1] - time[0] for time in times) / 60.0
     length = f"{names}{minutes:.0f} min, {sum(map(len, times))} rows" if times else ""
     system = diagnosis.system.name if diagnosis.system else ""
-    return known_facts((("System", system), ("Logs" if names else "Log", length)))
+    return known_facts({"System": system, "Logs" if names else "Log": length})
 
 
 def _sentence(diagnosis: Diagnosis) -> str:

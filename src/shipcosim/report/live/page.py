@@ -98,14 +98,13 @@ def page_of(
 
 
 def _facts(written: Scenario) -> Sequence[Fact]:
-    return known_facts(
-        [
-            ("Ship", ", ".join(written.parameters)),
-            ("System", written.system),
-            ("Scenario", written.name),
-            ("Step size", f"{written.step_size:g} s"),
-        ]
-    )
+    facts = {
+        "Ship": ", ".join(written.parameters),
+        "System": written.system,
+        "Scenario": written.name,
+        "Step size": f"{written.step_size:g} s",
+    }
+    return known_facts(facts)
 
 
 def _growing(run: Run, plan: Plan) -> JsonObject:

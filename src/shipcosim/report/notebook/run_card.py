@@ -55,12 +55,12 @@ def _facts(table: Dataset, scenario: Scenario, system: System) -> Sequence[Fact]
     """What ran, for how long, in which steps."""
     time = table["time"].values
     span = f"{time[0]:g} to {time[-1]:g} s" if len(time) else "nothing"
-    facts = [
-        ("System", system.name),
-        ("Simulated", span),
-        ("Step size", f"{scenario.step_size:g} s"),
-    ]
-    facts.append(("Table", f"{len(time)} rows, {len(table)} signals"))
+    facts = {
+        "System": system.name,
+        "Simulated": span,
+        "Step size": f"{scenario.step_size:g} s",
+        "Table": f"{len(time)} rows, {len(table)} signals",
+    }
     return known_facts(facts)
 
 

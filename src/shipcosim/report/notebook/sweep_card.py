@@ -13,7 +13,7 @@ MOST_ROWS = 12
 def sweep_card(tables: StudyTables) -> Card:
     """What the study says, its quantities and summary, and failed runs."""
     page = page_of(tables)
-    failed = [f"{error.count} runs: {error.text}" for error in page.errors[:MOST_ROWS]]
+    failed = [f"{len(runs)} runs: {text}" for text, runs in page.errors[:MOST_ROWS]]
     shown = page.summary.rows[:MOST_ROWS]
     numbers = [
         (f"{name} [{unit}]" if unit else name, *some[1:4])

@@ -8,7 +8,7 @@ from shipcosim.report.diagnosis.scene import ScenePage, make_scene
 from shipcosim.report.diagnosis.track_figures import error_rows, over_time_figures, track_figure
 from shipcosim.report.theme.numbers import metres
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import Outcome, facts_of
+from shipcosim.report.theme.views import Outcome, known_facts
 
 
 def render(replay: LogReplay, title: str, facts: dict[str, str]) -> str:
@@ -18,7 +18,7 @@ def render(replay: LogReplay, title: str, facts: dict[str, str]) -> str:
     figures = (track_figure(tracks), *over_time_figures(tracks))
     page = ScenePage(
         title=f"Replay of {title}",
-        facts=facts_of(facts),
+        facts=known_facts(facts),
         outcome=replay_outcome(replay),
         scene=make_scene(tracks, None, replay.system),
         figures=figures,

@@ -11,6 +11,7 @@ from shipcosim.report.theme.views import Block, Table
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System
 
+CHANGES = {"override": "{} = {}", "bias": "{} + {}", "reset": "{} released"}
 SHOWN_ELSEWHERE = ("events", "remarks", "changed", "not_reached", "judged_on")
 
 
@@ -36,9 +37,7 @@ def details(
     if scenario is not None and scenario.events:
         rows = []
         for event in scenario.events:
-            changes = [f"{name} = {value}" for name, value in event.override.items()]
-            changes += [f"{name} + {value}" for name, value in event.bias.items()]
-            changes += [f"{name} released" for name in event.reset]
+            changes = [CHANGES[verb].format(*change) for verb, *change in event.changes]
             rows.append((f"{event.time:g} s", ", ".join(changes)))
         sections.append(_detail("events", rows))
     if scenario is not None and scenario.set:

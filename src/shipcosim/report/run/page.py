@@ -204,20 +204,14 @@ def _title(scenario: Scenario | None, system: System | None) -> str:
 
 def _facts(table: Dataset, scenario: Scenario | None) -> Sequence[Fact]:
     """What was run, for how long, with which step size and engine."""
-    facts = []
-    if scenario is not None:
-        facts = [
-            ("Ship", ", ".join(scenario.parameters)),
-            ("System", scenario.system),
-            ("Scenario", scenario.name),
-        ]
     time = table["time"].values
-    if len(time):
-        facts.append(("Simulated", f"{time[-1] - time[0]:g} s"))
-    if "step_size" in table.attrs:
-        facts.append(("Step size", f"{table.attrs['step_size']} s"))
-    if "engine" in table.attrs:
-        facts.append(("Engine", str(table.attrs["engine"])))
+    facts = {}
+    if scenario is not None:
+        facts["Ship"] = ", ".join(scenario.parameters)
+        facts |= {"System": scenario.system, "Scenario": scenario.name}
+    facts["Simulated"] = f"{time[-1] - time[0]:g} s" if len(time) else ""
+    facts["Step size"] = f"{table.attrs['step_size']} s" if "step_size" in table.attrs else ""
+    facts["Engine"] = str(table.attrs.get("engine", ""))
     return known_facts(facts)
 
 

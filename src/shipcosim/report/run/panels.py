@@ -9,7 +9,7 @@ from xarray import Dataset
 from shipcosim.report.run.bands import Band, bands_of, distance_bands
 from shipcosim.report.run.derived import ERRORS, FROM_EXPECTED, FROM_REFERENCE, desired
 from shipcosim.report.run.roles import Roles
-from shipcosim.report.run.vessels import DrawnThruster, find_units, start_values
+from shipcosim.report.run.vessels import find_units, start_values
 from shipcosim.report.run.zones import Zone, angle_zones, thrust_zones
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.display import is_constant
@@ -219,7 +219,18 @@ def _thrusters(shown: Dataset, roles: Roles) -> list[Panel]:
             )
             for panel in _panel(shown, f"Thrust, {unit.name}", lines)
         ]
-    panels += _azimuths(shown, units)
+    # Angle of each thruster that turns or is commanded to, with the sectors that it is not given.
+    for unit in units:
+        lines = [
+            Line(unit.azimuth_command, "commanded", palette.COMMAND, "dot"),
+            Line(unit.azimuth, "delivered", palette.SHIP),
+        ]
+        panels += [
+            replace(
+                panel, zones=angle_zones(shown, [line.signal for line in panel.lines], unit.sectors)
+            )
+            for panel in _panel(shown, f"Azimuth, {unit.name}", lines)
+        ]
     # Shaft speeds of azimuths and other thrusters differ in size: a panel for each group.
     turning = [unit for unit in roles.thrusters if roles.signal(unit, "azimuth")]
     for units in (turning, [unit for unit in roles.thrusters if unit not in turning]):
@@ -237,27 +248,6 @@ def _thrusters(shown: Dataset, roles: Roles) -> list[Panel]:
         for c, signal in roles.flagged(what).items()
     }
     return panels + _panel(shown, "At a limit, failed", _coloured(states), states=True)
-
-
-def _azimuths(shown: Dataset, units: Sequence[DrawnThruster]) -> list[Panel]:
-    """Angles of all thrusters in one panel if their sectors agree, else one panel each."""
-    # Only thrusters that turn, or are commanded to.
-    turning = [unit for unit in units if unit.azimuth in shown or unit.azimuth_command in shown]
-    # Sectors can be shaded in a common panel only if they are the same.
-    are_equal = len({unit.sectors for unit in turning}) < 2
-    groups = (
-        [("Azimuth", turning)]
-        if are_equal
-        else [(f"Azimuth, {unit.name}", [unit]) for unit in turning]
-    )
-    return [
-        replace(
-            panel,
-            zones=angle_zones(shown, [line.signal for line in panel.lines], members[0].sectors),
-        )
-        for title, members in groups
-        for panel in _panel(shown, title, _angles(members))
-    ]
 
 
 def _allocation(shown: Dataset, roles: Roles) -> list[Panel]:
@@ -280,15 +270,6 @@ def _allocation(shown: Dataset, roles: Roles) -> list[Panel]:
     return panels + _panel(
         shown, "Time of an allocation", _coloured(dict.fromkeys(times, "by the clock"))
     )
-
-
-def _angles(units: Sequence[DrawnThruster]) -> list[Line]:
-    lines = []
-    for k, unit in enumerate(units):
-        colour = palette.in_turn(k)
-        lines.append(Line(unit.azimuth_command, f"{unit.name} commanded", colour, "dot"))
-        lines.append(Line(unit.azimuth, unit.name, colour))
-    return lines
 
 
 def _environment(shown: Dataset, roles: Roles) -> list[Panel]:

@@ -17,7 +17,7 @@ from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import (
     FigurePage,
     KeyFigure,
-    facts_of,
+    known_facts,
 )
 
 KEY_FEATURES = {
@@ -32,7 +32,7 @@ def render(study: SeaTrialStudy, facts: dict[str, str]) -> str:
     circles = any(trial.kind == "turning circle" for trial in study.trials)
     page = FigurePage(
         title="Sea trials",
-        facts=facts_of(facts | {"Trials": trials(study)}),
+        facts=known_facts(facts | {"Trials": trials(study)}),
         outcome=outcome(study),
         key_figures=_key_figures(study),
         figures=(track_figure(study, *motions_of(study)),) if circles else (),

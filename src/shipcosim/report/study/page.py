@@ -40,15 +40,6 @@ VIEWS: Mapping[str, Callable[[StudyTables, View], Figure]] = {
 }
 
 
-@dataclass(frozen=True)
-class ErrorOfRuns:
-    """An error of some runs, and the first of these runs."""
-
-    text: str
-    count: int
-    runs: Sequence[int]
-
-
 class Choice(NamedTuple):
     """A column that readers filter by level: name, title, and each level with its text."""
 
@@ -72,7 +63,8 @@ class StudyPage(Page):
     quantities, summary : Table
     thinned : tuple of int, optional
         How many runs the page holds of how many, where it does not hold all.
-    errors : sequence of ErrorOfRuns
+    errors : sequence of (str, sequence of int)
+        Messages, and the runs that have them.
     choices : sequence of Choice
         Columns that are filtered by level.
     text : str
@@ -86,7 +78,7 @@ class StudyPage(Page):
     quantities: Table
     summary: Table
     thinned: tuple[int, int] | None
-    errors: Sequence[ErrorOfRuns]
+    errors: Sequence[tuple[str, Sequence[int]]]
     choices: Sequence[Choice]
     text: str
 
@@ -111,9 +103,6 @@ def page_of(tables: StudyTables) -> StudyPage:
     drawn = (*plots, *(view.distance for view in tracks))
     # As many runs as the page has room for.
     rows = _kept_rows(tables, list(runs.values()))
-    errors = [
-        ErrorOfRuns(text, len(numbers), numbers[:20]) for text, numbers in words.errors(tables)
-    ]
     return StudyPage(
         title=str(tables.study.get("description") or tables.name),
         facts=words.facts(tables),
@@ -126,7 +115,7 @@ def page_of(tables: StudyTables) -> StudyPage:
         quantities=words.quantities_table(runs),
         summary=summary_table(summary),
         thinned=(len(rows), len(tables.runs)) if len(rows) < len(tables.runs) else None,
-        errors=errors[: words.MOST_ERRORS],
+        errors=words.errors(tables)[: words.MOST_ERRORS],
         choices=_choices(runs),
         text=words.study_text(tables.about),
     )

@@ -161,13 +161,11 @@ def is_failed(tables: StudyTables) -> NDArray:
 
 def errors(tables: StudyTables) -> Sequence[tuple[str, Sequence[int]]]:
     """Error messages with their runs, the most frequent first."""
-    by_message: dict[str, list[int]] = {}
-    # Runs with the same message form one entry.
     failed = tables.runs[is_failed(tables)]
-    for number, error in zip(failed["run"], failed["error"] if len(failed) else (), strict=True):
-        by_message.setdefault(str(error), []).append(int(number))
-    ordered = sorted(by_message.items(), key=lambda entry: -len(entry[1]))
-    return tuple((text, numbers) for text, numbers in ordered)
+    if failed.empty:
+        return ()
+    by_message = failed.groupby("error", sort=False)["run"].agg(list)
+    return sorted(by_message.items(), key=lambda entry: -len(entry[1]))
 
 
 def study_text(about: Mapping[str, Any]) -> str:

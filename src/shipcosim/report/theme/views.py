@@ -1,6 +1,6 @@
 """Records that all page templates fill in: texts and figures without any HTML."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -18,14 +18,9 @@ class Fact(NamedTuple):
     text: str
 
 
-def facts_of(texts: Mapping[str, str]) -> Sequence[Fact]:
-    """Facts from texts by their names."""
-    return [Fact(name, text) for name, text in texts.items()]
-
-
-def known_facts(facts: Iterable[tuple[str, str]]) -> Sequence[Fact]:
-    """Facts from names and texts; those without a text are left out."""
-    return [Fact(name, text) for name, text in facts if text]
+def known_facts(texts: Mapping[str, str]) -> Sequence[Fact]:
+    """Facts from texts by their names; those without a text are left out."""
+    return [Fact(name, text) for name, text in texts.items() if text]
 
 
 class KeyFigure(NamedTuple):

@@ -72,7 +72,7 @@ def test_every_section_draws_its_curves(untouched):
     assert "ship − reference" in panels["East error [m]"]
     assert panels["Yaw moment [kN·m]"] == ["wind", "drift", "hull", "thrusters", "commanded"]
     assert panels["Thrust, tunnel [kN]"] == ["commanded", "delivered"]
-    assert panels["Azimuth [deg]"] == ["port commanded", "port", "starboard commanded", "starboard"]
+    assert panels["Azimuth, port [deg]"] == ["commanded", "delivered"]
     assert panels["Shaft speed, port, starboard [rpm]"] == ["port", "starboard"]
     assert panels["Shaft speed, tunnel [rpm]"] == ["tunnel"]
     assert panels["Power [kW]"] == ["port", "starboard", "tunnel"]
