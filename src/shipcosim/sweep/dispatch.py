@@ -23,8 +23,8 @@ ENDS = 2
 ENDED = "Its worker process ended, more than once: the run crashes it, or needs more memory than there is."
 
 
-def rows_of(plan: Plan, numbers: Iterator[int], workers: Workers) -> Iterator[list[Row]]:
-    """Rows of finished runs, in any order.
+class Dispatch:
+    """Runs handed to workers in chunks.
 
     Parameters
     ----------
@@ -33,16 +33,8 @@ def rows_of(plan: Plan, numbers: Iterator[int], workers: Workers) -> Iterator[li
         Of the runs.
     workers : Workers
         Who runs them.
-
-    Raises
-    ------
-    ShipcosimError
-        If workers end whatever they do, or something is wrong with all runs.
     """
-    return _Dispatch(plan, numbers, workers).rows()
 
-
-class _Dispatch:
     def __init__(self, plan: Plan, numbers: Iterator[int], workers: Workers):
         self._plan = plan
         self._numbers = numbers
@@ -57,7 +49,13 @@ class _Dispatch:
 
     # Wait for any chunk, hand out its rows, and fill up again: workers never wait for each other.
     def rows(self) -> Iterator[list[Row]]:
-        """See `rows_of`."""
+        """Rows of finished runs, in any order.
+
+        Raises
+        ------
+        ShipcosimError
+            If workers end whatever they do, or something is wrong with all runs.
+        """
         while self._fill():
             done = self._waited(FIRST_COMPLETED)
             # A pool breaks as a whole: if one process ends, all chunks under way are lost too.

@@ -11,7 +11,7 @@ import numpy as np
 
 from shipcosim.errors import error_at
 from shipcosim.series import write_file
-from shipcosim.sweep.dispatch import rows_of
+from shipcosim.sweep.dispatch import Dispatch
 from shipcosim.sweep.indices import has_indices, indices_of
 from shipcosim.sweep.plan import Plan
 from shipcosim.sweep.storage import Store, check_installed
@@ -185,7 +185,7 @@ def _run(
             if not len(now):
                 continue
             workers = workers or make()
-            for rows in rows_of(plan, map(int, now), workers):
+            for rows in Dispatch(plan, map(int, now), workers).rows():
                 store.add(rows)
                 if progress is not None:
                     progress(int(store.done.sum()), len(plan))

@@ -185,7 +185,8 @@ def main() -> None:
             simulated = SimulatedCluster(n, run, given.first, costs)
             running.wait = simulated.wait
             done = sum(
-                len(rows) for rows in running.rows_of(plan, iter(range(len(plan))), simulated)
+                len(rows)
+                for rows in running.Dispatch(plan, iter(range(len(plan))), simulated).rows()
             )
             assert done == len(plan)
             shares = [

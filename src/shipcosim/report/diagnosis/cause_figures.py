@@ -1,4 +1,4 @@
-"""Figures of the causes: evidence, course, unmodelled errors, whiteness of innovations."""
+"""Evidence of the causes, their course, unmodelled errors, whiteness of innovations."""
 
 from collections.abc import Mapping
 
@@ -11,9 +11,9 @@ from shipcosim.diagnose.inference.thresholds import ENOUGH, UNMODELLED
 from shipcosim.report.diagnosis.estimates import shown_unit
 from shipcosim.report.diagnosis.words import course_of, title, title_of
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.figures import TIME, limit, line, rounded, shade
+from shipcosim.report.theme.figures import TIME, line, rounded, shade
 from shipcosim.report.theme.numbers import finite
-from shipcosim.report.theme.views import Figure, PlotlyDict
+from shipcosim.report.theme.views import Figure, Table
 
 CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw rate")
 COLOURS = (palette.BLUE, palette.SKY, palette.PURPLE, palette.GREEN, palette.OLIVE, palette.ORANGE)
@@ -29,47 +29,14 @@ UNMODELLED_KINDS = {
 }
 
 
-def evidence_figure(evidence: Evidence) -> Figure:
-    """Gain in log-evidence of each set of causes over none."""
-    # The best sets, the best one on top; the chosen one in colour.
-    sets = evidence.sets[:MOST_SETS][::-1]
-    names = [
-        "\n+ ".join(title(cause, component) for cause, component in cause_set.causes)
-        for cause_set in sets
-    ]
-    colours = [palette.BLUE if cause_set.is_chosen else palette.FAINT for cause_set in sets]
-    bars = _bars(names, [cause_set.gain for cause_set in sets], colours) | {
-        "hovertemplate": "%{y}: %{x:.1f} nats",
-        "text": [f"{cause_set.gain:.1f}" for cause_set in sets],
-        "textposition": "auto",
-    }
-    note = (
-        f"Log-evidence over the ship without a cause, in nats: {ENOUGH:g} more (dotted) mean {np.exp(ENOUGH):.0f} "
-        "times likelier. More causes have to pay for themselves. Blue is the set that the verdict rests on."
-    )
-    # Room for a line for each cause of a set.
-    height = 90 + (12 + 16 * max([1, *(len(cause_set.causes) for cause_set in sets)])) * max(
-        len(sets), 2
-    )
-    axes = {
-        "xaxis": {"title": {"text": "nats"}, "rangemode": "tozero"},
-        "yaxis": {"automargin": True},
-    }
-    layout = {"shapes": [limit(ENOUGH)], **axes}
-    return Figure("Evidence of the best sets of causes", "nats", (bars,), layout, note, height)
-
-
-def _bars(names: list[str], gains: list[float], colours: list[str]) -> PlotlyDict:
-    """Gains as horizontal bars; losses have no bar."""
-    return {
-        "type": "bar",
-        "orientation": "h",
-        "y": names,
-        "x": rounded([max(gain, 0.0) for gain in gains], 4),
-        "marker": {"color": colours},
-        "named": False,
-        "showlegend": False,
-    }
+def evidence_table(evidence: Evidence) -> Table:
+    """Gain in log-evidence of the best sets of causes over none, the best first."""
+    rows = []
+    for cause_set in evidence.sets[:MOST_SETS]:
+        names = " + ".join(title(cause, component) for cause, component in cause_set.causes)
+        rests = "the verdict rests on it" if cause_set.is_chosen else ""
+        rows.append((names, f"{cause_set.gain:.1f}", rests))
+    return Table(rows, ("Set of causes", f"Nats, {ENOUGH:g} are clear", ""))
 
 
 def course_figures(course: CourseFound) -> tuple[Figure, ...]:
@@ -105,29 +72,15 @@ def course_figures(course: CourseFound) -> tuple[Figure, ...]:
     return tuple(figures)
 
 
-def unmodelled_figure(unmodelled: Mapping[str, float]) -> Figure:
+def unmodelled_table(unmodelled: Mapping[str, float]) -> Table:
     """Gain of errors that no cause describes, in addition to the chosen causes."""
-    # Above the threshold something unknown acts: these bars are coloured.
-    names = [UNMODELLED_KINDS.get(kind, kind) for kind in unmodelled]
-    gains = list(unmodelled.values())
-    colours = [palette.VERMILLION if gain > UNMODELLED else palette.FAINT for gain in gains]
-    bars = _bars(names, gains, colours) | {
-        "hovertemplate": "%{x:.1f} nats",
-        "text": ["none" if gain <= 0.0 else f"{gain:.1f}" for gain in gains],
-        "textposition": "outside",
-    }
-    axes = {
-        "xaxis": {
-            "title": {"text": "nats"},
-            "range": [0.0, 1.15 * max(UNMODELLED, *gains)],
-        },
-        "yaxis": {"automargin": True},
-    }
-    note = "Beyond the dotted line something acts that no known cause explains: the verdict is then unknown."
-    layout = {"shapes": [limit(UNMODELLED)], **axes}
-    return Figure(
-        "Errors without a name", "nats", (bars,), layout, note, height=90 + 34 * len(names)
-    )
+    rows = []
+    for kind, gain in unmodelled.items():
+        # Above the threshold something unknown acts.
+        acts = "it acts: the verdict is unknown" if gain > UNMODELLED else ""
+        size = "none" if gain <= 0.0 else f"{gain:.1f}"
+        rows.append((UNMODELLED_KINDS.get(kind, kind), size, acts))
+    return Table(rows, ("Errors without a name", f"Nats, at most {UNMODELLED:g}", ""))
 
 
 def whiteness_figures(evidence: Evidence) -> tuple[Figure, ...]:

@@ -8,8 +8,8 @@ from shipcosim.diagnose.finding import Candidate
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.cause_figures import (
     course_figures,
-    evidence_figure,
-    unmodelled_figure,
+    evidence_table,
+    unmodelled_table,
     whiteness_figures,
 )
 from shipcosim.report.diagnosis.form_section import FormSection, form_section
@@ -44,7 +44,9 @@ class CauseSection:
         Its size over time.
     estimates, gains : Table
         Of the named causes: their parameters; what they gain, beside what healthy ships show.
-    figures, unmodelled, whiteness : tuple of Figure
+    sets, unmodelled : Table
+        Evidence of sets of causes, and of errors that none describes.
+    whiteness : tuple of Figure
     rivals, others : Table
         Causes that this log cannot tell apart, and other candidates.
     is_unknown : bool
@@ -70,8 +72,8 @@ class CauseSection:
     course: str = ""
     sizes: tuple[Figure, ...] = ()
     gains: Table = Table(())
-    figures: tuple[Figure, ...] = ()
-    unmodelled: tuple[Figure, ...] = ()
+    sets: Table = Table(())
+    unmodelled: Table = Table(())
     whiteness: tuple[Figure, ...] = ()
 
 
@@ -103,14 +105,13 @@ def cause_section(diagnosis: Diagnosis, evidence: Evidence | None) -> CauseSecti
     )
     if evidence is None:
         return section
-    figures = [evidence_figure(evidence)] if evidence.sets else []
     return replace(
         section,
         course="" if evidence.course is None else course_of(evidence.course.finding),
         sizes=() if evidence.course is None else course_figures(evidence.course),
         gains=_gains(evidence),
-        figures=tuple(figures),
-        unmodelled=(unmodelled_figure(evidence.unmodelled),) if evidence.unmodelled else (),
+        sets=evidence_table(evidence),
+        unmodelled=unmodelled_table(evidence.unmodelled),
         whiteness=whiteness_figures(evidence),
     )
 

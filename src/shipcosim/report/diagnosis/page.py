@@ -35,9 +35,9 @@ def render(diagnosis: Diagnosis) -> str:
     extension = extension_section(diagnosis)
     gain = gain_section(diagnosis)
     # All figures in the order in which the page draws them.
-    causes = (*cause.sizes, *cause.figures, *cause.unmodelled, *cause.whiteness)
+    causes = (*cause.sizes, *cause.whiteness)
     tracks = _track_figures(diagnosis)
-    figures = (*tracks, *log.figures, *error.figures, *error.forces, *causes, *gain.figures)
+    figures = (*tracks, *log.figures, *error.forces, *causes, *gain.figures)
     step = [Fact("Step", f"{diagnosis.log.step:g} s")] if diagnosis.log else []
     is_extended = extension.state == "extended"
     page = ScenePage(

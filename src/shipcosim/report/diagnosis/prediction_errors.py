@@ -10,9 +10,9 @@ from shipcosim.diagnose.validation.summary import ConditionErrors, PredictionErr
 from shipcosim.report.diagnosis import by_log
 from shipcosim.report.diagnosis.force_figures import force_figures
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.figures import TIME, bars, line
+from shipcosim.report.theme.figures import TIME, line
 from shipcosim.report.theme.numbers import percent, plain
-from shipcosim.report.theme.views import Figure, Figures, Table
+from shipcosim.report.theme.views import Figure, Table
 
 MODELS = {
     "plain": ("plain model", palette.VERMILLION),
@@ -39,9 +39,8 @@ class ErrorSection:
     ----------
     found : str
         The result in a few words.
-    figures : tuple of Figure
-        Errors; empty if there was too little data for predictions.
     errors : Table
+        Empty if there was too little data for predictions.
     has_floor : bool
         Whether the noise floor is shown too.
     forces : tuple of Figure
@@ -49,7 +48,6 @@ class ErrorSection:
     """
 
     found: str
-    figures: Figures
     errors: Table
     has_floor: bool
     forces: tuple[Figure, ...]
@@ -59,13 +57,12 @@ def error_section(diagnosis: Diagnosis) -> ErrorSection:
     """Section 2 of the page for the template."""
     if isinstance(diagnosis, JointDiagnosis):
         table = by_log.error_table(diagnosis.errors)
-        return ErrorSection(by_log.error_after(diagnosis), (), table, False, ())
+        return ErrorSection(by_log.error_after(diagnosis), table, False, ())
     # Errors of the model as it was; the noise floor only where it is known.
     errors = diagnosis.predictions
     models = models_to_show(("plain", "floor"), diagnosis)
     return ErrorSection(
         found=by_log.error_after(diagnosis),
-        figures=() if errors is None else tuple(error_figures(errors.overall, models)),
         errors=Table(()) if errors is None else error_table(errors, models),
         has_floor="floor" in models,
         forces=() if diagnosis.force is None else tuple(force_figures(diagnosis.force)),
@@ -79,46 +76,29 @@ def models_to_show(models: Sequence[str], diagnosis: Diagnosis) -> list[str]:
     ]
 
 
-def error_figures(overall: ConditionErrors, models: Sequence[str]) -> list[Figure]:
-    """Root mean square errors over the horizon, for position and heading."""
-    figures = []
-    horizons = overall.rms["horizon"].values
-    # A group of bars for each horizon, one bar for each model.
-    for channel in ("position", "heading"):
-        title, unit = CHANNELS[channel]
-        traces = []
-        for model in models:
-            name, colour = MODELS[model]
-            sizes = overall.rms[channel].sel(model=model).values
-            traces.append(bars(name, [f"{h:.0f} s" for h in horizons], sizes, colour, unit))
-        layout = {
-            "barmode": "group",
-            "xaxis": {"type": "category"},
-            "yaxis": {"rangemode": "tozero"},
-        }
-        figures.append(Figure(f"{title} error after 10, 30, 60 s", unit, tuple(traces), layout))
-    return figures
-
-
-def _last(errors: ConditionErrors, channel: str, model: str) -> float:
-    """Root mean square error at the longest horizon."""
-    return float(errors.rms[channel].sel(model=model).isel(horizon=-1))
+def _error(errors: ConditionErrors, channel: str, model: str, horizon: int = -1) -> float:
+    """Root mean square error at a horizon, by default the longest."""
+    return float(errors.rms[channel].sel(model=model).isel(horizon=horizon))
 
 
 def error_table(errors: PredictionErrors, models: Sequence[str] = ("plain", "floor")) -> Table:
-    """Root mean square errors at the longest horizon, by regime and channel.
+    """Root mean square errors by horizon, and at the longest by regime; for each channel.
 
     Each cell shows the models' errors, the last as the floor.
     """
-    head = ("", "Segments", *(f"{title} [{unit}]" for title, unit in CHANNELS.values()))
+    head = ("", "After", "Segments", *(f"{title} [{unit}]" for title, unit in CHANNELS.values()))
+    horizons = errors.overall.rms["horizon"].values
+    # All predictions together at each horizon, then by what the ship did.
+    groups = [(errors.overall, k) for k in range(len(horizons))]
+    groups += [(regime, -1) for regime in errors.by_regime]
     rows = []
-    # All predictions together, then by what the ship did.
-    for condition in (errors.overall, *errors.by_regime):
+    for condition, k in groups:
         cells = [
-            " / ".join(plain(_last(condition, channel, model), 2) for model in models)
+            " / ".join(plain(_error(condition, channel, model, k), 2) for model in models)
             for channel in CHANNELS
         ]
-        rows.append((condition.condition, str(condition.predictions), *cells))
+        name = condition.condition
+        rows.append((name, f"{horizons[k]:g} s", str(condition.predictions), *cells))
     return Table(rows, head)
 
 
@@ -133,7 +113,7 @@ def condition_table(errors: PredictionErrors) -> Table:
     groups |= {HELD[condition.condition]: condition for condition in errors.held_out}
     rows = []
     for name, group in groups.items():
-        cells = [plain(_last(group, "position", model), 2) for model in MODELS]
+        cells = [plain(_error(group, "position", model), 2) for model in MODELS]
         rows.append((name, str(group.predictions), *cells, removed(group.gain)))
     return Table(rows, head)
 

@@ -44,6 +44,11 @@ class Panel:
     states: bool = False
     zones: Sequence[Zone] = ()
 
+    @property
+    def signals(self) -> list[str | None]:
+        """Signals of its curves."""
+        return [line.signal for line in self.lines]
+
 
 @dataclass(frozen=True)
 class Section:
@@ -145,6 +150,17 @@ def _panel(
     return [Panel(title, shown[there[0].signal].attrs["units"], there, bands, states)]
 
 
+def _commanded(
+    shown: Dataset, title: str, command: str | None, delivered: str | None
+) -> list[Panel]:
+    """List with the panel of a command and what comes of it."""
+    lines = [
+        Line(command, "commanded", palette.COMMAND, "dot"),
+        Line(delivered, "delivered", palette.SHIP),
+    ]
+    return _panel(shown, title, lines)
+
+
 def _coloured(labels: Mapping[str | None, str]) -> list[Line]:
     """Lines of equal rank, each in its colour; `labels` maps signals to labels."""
     return [Line(s, label, palette.in_turn(k)) for k, (s, label) in enumerate(labels.items())]
@@ -209,28 +225,12 @@ def _thrusters(shown: Dataset, roles: Roles) -> list[Panel]:
     # Thrust of each thruster, with the zones beyond its limits.
     units = find_units(shown.data_vars, start_values(shown))
     for unit in units:
-        lines = [
-            Line(unit.thrust_command, "commanded", palette.COMMAND, "dot"),
-            Line(unit.thrust, "delivered", palette.SHIP),
-        ]
-        panels += [
-            replace(
-                panel, zones=thrust_zones(shown, [line.signal for line in panel.lines], unit.limits)
-            )
-            for panel in _panel(shown, f"Thrust, {unit.name}", lines)
-        ]
+        thrust = _commanded(shown, f"Thrust, {unit.name}", unit.thrust_command, unit.thrust)
+        panels += [replace(p, zones=thrust_zones(shown, p.signals, unit.limits)) for p in thrust]
     # Angle of each thruster that turns or is commanded to, with the sectors that it is not given.
     for unit in units:
-        lines = [
-            Line(unit.azimuth_command, "commanded", palette.COMMAND, "dot"),
-            Line(unit.azimuth, "delivered", palette.SHIP),
-        ]
-        panels += [
-            replace(
-                panel, zones=angle_zones(shown, [line.signal for line in panel.lines], unit.sectors)
-            )
-            for panel in _panel(shown, f"Azimuth, {unit.name}", lines)
-        ]
+        angle = _commanded(shown, f"Azimuth, {unit.name}", unit.azimuth_command, unit.azimuth)
+        panels += [replace(p, zones=angle_zones(shown, p.signals, unit.sectors)) for p in angle]
     # Shaft speeds of azimuths and other thrusters differ in size: a panel for each group.
     turning = [unit for unit in roles.thrusters if roles.signal(unit, "azimuth")]
     for units in (turning, [unit for unit in roles.thrusters if unit not in turning]):

@@ -1,6 +1,5 @@
-"""Pieces of figures that several pages draw: lines, bars, limits, axes; for plotly."""
+"""Pieces of figures that several pages draw: lines, bands, axes; for plotly."""
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -116,20 +115,6 @@ def band(x: ArrayLike, low: ArrayLike, high: ArrayLike, colour: str) -> list[Plo
     return edges
 
 
-def bars(
-    name: str, categories: Sequence[str], sizes: ArrayLike, colour: str, unit: str
-) -> PlotlyDict:
-    """Upright bars, one for each category."""
-    return {
-        "type": "bar",
-        "name": name,
-        "x": list(categories),
-        "y": rounded(sizes, 3),
-        "marker": {"color": colour},
-        "hovertemplate": f"%{{y:.3~g}} {unit}",
-    }
-
-
 def polar_curve(
     name: str,
     degrees: ArrayLike,
@@ -178,9 +163,3 @@ def shade(
         if ends is None:
             made[f"{axis}ref"] = "paper"
     return made | {"layer": "below", "fillcolor": colour, "line": {"width": 0}}
-
-
-def limit(x: float) -> PlotlyDict:
-    """A dotted upright line across the figure."""
-    look = {"color": palette.VERMILLION, "dash": "dot", "width": 1.5}
-    return {"type": "line", "x0": x, "x1": x, "y0": 0, "y1": 1, "yref": "paper", "line": look}
