@@ -86,7 +86,7 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
         event for factor_levels in factors for level in factor_levels for event in level.events
     ]
     measures, problems = measures_of(study, scenario, system, happening, planned)
-    problems = [*levels.problems, *problems, *_of_summaries(study), *_of_fork(study, scenario)]
+    problems = [*levels.problems, *problems, *_of_names(study), *_of_fork(study, scenario)]
     problems += _of_replaced(study, factors, samples)
     problems += [problem for problem in check_scenario(scenario, system) if problem.is_error]
     raise_errors(problems)
@@ -249,29 +249,23 @@ def _of_replaced(
         replaced_by |= dict.fromkeys(in_all, name)
 
 
-def _of_summaries(study: Study) -> Iterator[Problem]:
-    """Problems of summaries that name unknown quantities or factors."""
+def _of_names(study: Study) -> Iterator[Problem]:
+    """Problems of summaries and objectives that name unknown quantities or factors."""
     quantities = [quantity.name for quantity in study.quantity]
-    factors = [factor.name for factor in study.factor] + (
-        ["sample"] if study.sample or study.tune else []
-    )
+    factors = [factor.name for factor in study.factor]
+    factors += ["sample"] if study.sample or study.tune else []
+    # Where a name stands, what it means, and the names that there are.
+    places: list[tuple[Keys, str, str, list[str]]] = []
     for number, summary in enumerate(study.summary):
-        if summary.quantity not in quantities:
-            yield problem_of(
-                study,
-                ("summary", number, "quantity"),
-                f"There is no quantity '{summary.quantity}'.",
-                suggestion(summary.quantity, quantities),
-            )
-        for key, names in (
-            ("over", summary.over),
-            ("along", [summary.along] if summary.along else []),
-        ):
-            for name in names:
-                if name not in factors:
-                    yield problem_of(
-                        study,
-                        ("summary", number, key),
-                        f"There is no factor '{name}'.",
-                        suggestion(name, factors),
-                    )
+        keys = ("summary", number)
+        places.append(((*keys, "quantity"), "quantity", summary.quantity, quantities))
+        places += [((*keys, "over"), "factor", name, factors) for name in summary.over]
+        if summary.along:
+            places.append(((*keys, "along"), "factor", summary.along, factors))
+    for number, objective in enumerate(study.tune.objective if study.tune else ()):
+        keys = ("tune", "objective", number, "quantity")
+        places.append((keys, "quantity", objective.quantity, quantities))
+    for keys, kind, name, names in places:
+        if name not in names:
+            message = f"There is no {kind} '{name}'."
+            yield problem_of(study, keys, message, suggestion(name, names))

@@ -182,6 +182,16 @@ REDUCTIONS = (
 _NEEDS = {"at": "time", "percentile": "percentile", "time_beyond": "limit", "share_beyond": "limit"}
 
 
+def _check_argument(part: Part, key: str, needs: dict[str, str]) -> None:
+    """Raise ValueError unless a part has the argument that the value of its key needs, and no other."""
+    value = getattr(part, key)
+    for name in dict.fromkeys(needs.values()):
+        is_needed = needs.get(value) == name
+        if is_needed != (getattr(part, name) is not None):
+            verb = "needs" if is_needed else "does not use"
+            raise ValueError(f'{key} = "{value}" {verb} {name}.')
+
+
 class Quantity(Part):
     """A number or a verdict that is kept of a run."""
 
@@ -246,13 +256,7 @@ class Quantity(Part):
             return self
         if self.reduce is None:
             raise ValueError(f"reduce is missing. It is one of {', '.join(REDUCTIONS)}.")
-        # Each reduction needs its own argument and no other.
-        for name in dict.fromkeys(_NEEDS.values()):
-            is_needed = _NEEDS.get(self.reduce) == name
-            if is_needed != (getattr(self, name) is not None):
-                raise ValueError(
-                    f'reduce = "{self.reduce}" {"needs" if is_needed else "does not use"} {name}.'
-                )
+        _check_argument(self, "reduce", _NEEDS)
         if self.since is not None and (self.reduce != "time_beyond" or self.during):
             raise ValueError('since belongs to reduce = "time_beyond", without during.')
         if len(self.signal) > 1 and self.near is None:
@@ -294,11 +298,7 @@ class Summary(Part):
 
     @model_validator(mode="after")
     def _is_one(self) -> Summary:
-        wanted = {"percentile": "percentile", "last_held": "along"}
-        for statistic, name in wanted.items():
-            if (self.statistic == statistic) != (getattr(self, name) is not None):
-                verb = "needs" if self.statistic == statistic else "does not use"
-                raise ValueError(f'statistic = "{self.statistic}" {verb} {name}.')
+        _check_argument(self, "statistic", {"percentile": "percentile", "last_held": "along"})
         if self.statistic != "last_held" and (self.share, self.none) != (None, None):
             raise ValueError('share and none belong to statistic = "last_held".')
         return self

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from shipcosim.errors import imported, suggestion
+from shipcosim.errors import imported
 from shipcosim.scenario import units_of
 from shipcosim.sweep.levels import Levels
 from shipcosim.sweep.plan import Plan
@@ -45,15 +45,6 @@ def ranges_of(study: Study, levels: Levels, system: System) -> Samples | None:
         import optuna
     made = [_range(study, levels, system, key, bounds) for key, bounds in study.tune.of.items()]
     usable = [bounds for bounds in made if bounds is not None]
-    names = [quantity.name for quantity in study.quantity]
-    # Objectives are quantities of the study.
-    for number, objective in enumerate(study.tune.objective):
-        if objective.quantity not in names:
-            keys = ("tune", "objective", number, "quantity")
-            message = f"There is no quantity '{objective.quantity}'."
-            levels.problems.append(
-                problem_of(study, keys, message, suggestion(objective.quantity, names))
-            )
     if len(usable) < len(made):
         return None
     columns, bounds = zip(*usable, strict=True)

@@ -12,7 +12,7 @@ from shipcosim.report.diagnosis.estimates import shown_unit
 from shipcosim.report.diagnosis.words import course_of, title, title_of
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import TIME, line, rounded, shade
-from shipcosim.report.theme.numbers import finite
+from shipcosim.report.theme.numbers import finite, signed
 from shipcosim.report.theme.views import Figure, Table
 
 CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw rate")
@@ -35,7 +35,7 @@ def evidence_table(evidence: Evidence) -> Table:
     for cause_set in evidence.sets[:MOST_SETS]:
         names = " + ".join(title(cause, component) for cause, component in cause_set.causes)
         rests = "the verdict rests on it" if cause_set.is_chosen else ""
-        rows.append((names, f"{cause_set.gain:.1f}", rests))
+        rows.append((names, signed(cause_set.gain), rests))
     return Table(rows, ("Set of causes", f"Nats, {ENOUGH:g} are clear", ""))
 
 
