@@ -127,7 +127,7 @@ def test_a_scheduler_that_keeps_what_is_to_be_done_but_has_no_worker_is_left(mon
     cluster.check = check
     plan = SimpleNamespace(run=lambda number: number)
     with pytest.raises(ShipcosimError, match="answers no more: it has had no worker for 0.05 s"):
-        list(dispatch.rows_of(plan, iter(range(3)), cluster))
+        list(dispatch.Dispatch(plan, iter(range(3)), cluster).rows())
     assert len(checks) > 20
 
 

@@ -40,7 +40,7 @@ def test_python_shows_the_same_page_and_a_card(project):
     found = shipcosim.sweep("levels", out="out", engine="fmpy", workers=1)
     page = (project / "out/report.html").read_text(encoding="utf-8")
     assert found.page().html == page
-    assert "12 runs" in repr(found) and "distribution" in found._card().picture
+    assert "12 runs" in repr(found)
 
 
 def test_run_is_simulated_again_by_its_number_and_the_page_leads_to_it(project):

@@ -1,8 +1,8 @@
 """A search of a study: the same trials however it is run, a known front, failures, and margins of the DP loop."""
 
-from html import unescape
 import json
 from dataclasses import replace
+from html import unescape
 
 import numpy as np
 import pandas
