@@ -153,7 +153,7 @@ def _panel(
 def _commanded(
     shown: Dataset, title: str, command: str | None, delivered: str | None
 ) -> list[Panel]:
-    """List with the panel of a command and what comes of it."""
+    """List with the panel of a command and its answer."""
     lines = [
         Line(command, "commanded", palette.COMMAND, "dot"),
         Line(delivered, "delivered", palette.SHIP),
