@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 from xarray import Dataset
 
 from shipcosim.angles import wrap_series
@@ -132,10 +133,8 @@ def lay_over(tables: tuple[Dataset, Dataset], names: tuple[str, str]) -> Pair:
     # Both in the units of the first, interpolated to the common times; no value beyond a run's ends.
     roles, first = shown_table(tables[0], ())
     second = shown_table(tables[1], ())[1]
-    first, second = (
-        shown.assign_coords(time=np.round(clock, 9)).interp(time=common)
-        for shown, clock in ((first, times[0]), (second, times[1] + shift))
-    )
+    first = _on(first, times[0], common)
+    second = _on(second, times[1] + shift, common)
     return Pair(names, tables, (first, _like(second, first)), roles, shift)
 
 
@@ -187,6 +186,16 @@ def _covered(pair: Pair) -> tuple[float, float, bool]:
     start = max(ends[0][0], ends[1][0])
     end = min(ends[0][1], ends[1][1])
     return float(start), float(end), bool(np.allclose(ends[0], ends[1]))
+
+
+def _on(shown: Dataset, clock: NDArray, time: NDArray) -> Dataset:
+    """Interpolate a table from its times to others; a time may be there twice, as at an event. [s]"""
+    clock = np.round(clock, 9)
+    columns = {}
+    for name, v in shown.data_vars.items():
+        values = np.interp(time, clock, v.values, left=np.nan, right=np.nan)
+        columns[name] = ("time", values, v.attrs)
+    return xr.Dataset(columns, {"time": time})
 
 
 def _like(shown: Dataset, other: Dataset) -> Dataset:

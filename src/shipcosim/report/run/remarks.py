@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 
 import numpy as np
-from pandas import DataFrame, to_timedelta
 from xarray import Dataset
 
 from shipcosim.errors import shortened
@@ -116,26 +115,32 @@ def _alarms(shown: Dataset, roles: Roles) -> list[str]:
 
 def _lost_hold(shown: Dataset, roles: Roles) -> list[str]:
     """Remark where thrust is at its limit and the error still grows: the ship cannot hold."""
+    # Flags of everything at its limit, and the start of every stretch of STRETCH seconds.
     limits = {c: shown[s].values > 0.5 for c, s in roles.flagged("saturated").items() if s in shown}
-    if not limits or FROM_REFERENCE not in shown:
-        return []
-    # Over the stretch before each row: how long each component is at its limit, and how the error grows.
     time = shown["time"].values
+    starts = np.flatnonzero(time <= time[-1] - STRETCH)
+    if not limits or FROM_REFERENCE not in shown or not len(starts):
+        return []
+    # Last row of each stretch.
+    ends = np.searchsorted(time, time[starts] + STRETCH, side="right") - 1
     error = shown[FROM_REFERENCE].values
-    stretch = {"window": f"{STRETCH:g}s", "closed": "both"}
-    table = DataFrame(limits | {FROM_REFERENCE: error}, to_timedelta(time, unit="s")).astype(float)
-    shares = table[list(limits)].rolling(**stretch).mean()
-    growth = table[FROM_REFERENCE].rolling(**stretch).apply(lambda e: e[-1] - e[0], raw=True)
-    lost = (growth > GROWTH) & (shares.max(axis=1) > AT_LIMIT) & (time >= time[0] + STRETCH)
+    # The ship loses her position if the error grows while a component is at its limit.
+    shares = {}
+    for component, flags in limits.items():
+        # Cumulative count: the share of any stretch is then one difference.
+        count = np.concatenate([[0.0], np.cumsum(flags)])
+        shares[component] = (count[ends + 1] - count[starts]) / (ends + 1 - starts)
+    lost = (error[ends] - error[starts] > GROWTH) & (
+        np.max(list(shares.values()), axis=0) > AT_LIMIT
+    )
     if not lost.any():
         return []
     # Report the first such stretch: which components, from when on, and how far.
-    end = int(np.argmax(lost))
-    limited = [component for component in limits if shares[component].iloc[end] > AT_LIMIT]
+    k = int(np.argmax(lost))
+    limited = [component for component, share in shares.items() if share[k] > AT_LIMIT]
     drift = "She cannot hold" if error[-1] > GROWTH else "She is driven off for a while"
-    start = np.searchsorted(time, time[end] - STRETCH)
-    begin = start + np.argmax(limits[limited[0]][start:])
+    begin = starts[k] + np.argmax(limits[limited[0]][starts[k] :])
     return [
         f"{drift}: from {time[begin]:g} s on the thrust is at its limit ({', '.join(limited)}). The position error "
-        f"grows to {error[end]:.1f} m within a minute, and to {np.nanmax(error):.1f} m at most."
+        f"grows to {error[ends[k]]:.1f} m within a minute, and to {np.nanmax(error):.1f} m at most."
     ]

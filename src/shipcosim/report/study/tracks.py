@@ -110,7 +110,8 @@ def _read(tables: StudyTables) -> _Tracks:
             "No tracks were kept: the study has no [tracks] with signals of north, east and heading."
         )
     # A row for each run, a column for each time; evenly fewer times, first and last included.
-    table = of_runs.pivot(index="run", columns="time", values=names[:3]).reindex(runs)
+    once = of_runs.drop_duplicates(["run", "time"], keep="last")
+    table = once.pivot(index="run", columns="time", values=names[:3]).reindex(runs)
     time = table[names[0]].columns.to_numpy(float)
     kept = evenly(len(time), MOST_TIMES)
     north, east, *headings = (table[name].to_numpy(float) for name in names[:3])

@@ -104,6 +104,13 @@ def test_runs_without_a_common_time_start_together_and_the_page_says_so(browse, 
     assert [hull["position"][0] for hull in hulls] == pytest.approx([20.0, 520.0], abs=0.02)
 
 
+def test_a_time_may_be_there_twice_as_at_an_event():
+    times = np.array([0.0, 1.0, 1.0, 2.0])
+    tables = [make_table(times, [("a.x", times + off, "m", "")]) for off in (0.0, 0.5)]
+    (one,) = differences(lay_over(tuple(tables), ("a", "b")))
+    assert (one.rms, one.largest) == (0.5, 0.5)
+
+
 def test_start_values_that_differ_are_listed(browse, tmp_path):
     tables = boat(**{"bow.gain": 1.0, "bow.time": 2.0}), boat(**{"bow.gain": 1.5, "bow.time": 2.0})
     write_comparison(tables, ("a", "b"), tmp_path / "report.html")
