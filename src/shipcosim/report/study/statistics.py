@@ -69,7 +69,7 @@ def explained(values: ArrayLike, by: ArrayLike, are_levels: bool) -> float:
     """
     # Rows where both are known.
     table = DataFrame({"value": np.asarray(values, float), "cause": np.asarray(by, float)})
-    table = table[np.isfinite(table).all(axis=1)]
+    table = table.loc[np.isfinite(table.to_numpy()).all(axis=1)]
     value = table["value"]
     # Groups: levels, or bins by rank, which have equal size whatever the distribution.
     groups = table["cause"]
@@ -79,7 +79,7 @@ def explained(values: ArrayLike, by: ArrayLike, are_levels: bool) -> float:
     count = groups.nunique()
     left = len(table) - count
     # Too few runs or groups: no statement.
-    if count < 2 or left < 2 or not np.ptp(value):
+    if count < 2 or left < 2 or not np.ptp(value.to_numpy()):
         return float("nan")
     # Variance within groups over total variance, both with their degrees of freedom.
     within = np.square(value - value.groupby(groups).transform("mean")).sum() / left

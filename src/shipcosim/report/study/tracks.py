@@ -69,7 +69,7 @@ def tracks_view(tables: StudyTables, view: View) -> TracksView:
     # Series of the runs that have a track.
     frame = Frame(RUNS, tables.columns(tables.runs))
     tracks = _read(tables)
-    has_track = np.isfinite(tracks.north).any(axis=1)
+    has_track = np.asarray(np.isfinite(tracks.north).any(axis=1))
     series = []
     for group in series_of(frame, view.series or [], []):
         rows = group.rows[has_track[group.rows]]
@@ -104,7 +104,7 @@ def _read(tables: StudyTables) -> _Tracks:
     # Signals north, east and heading as the study names them.
     names = [str(name) for name in (tables.study.get("tracks") or {}).get("signals", ())]
     runs = tables.runs["run"]
-    of_runs = None if tables.tracks is None else tables.tracks[tables.tracks["run"].isin(runs)]
+    of_runs = None if tables.tracks is None else tables.tracks.loc[tables.tracks["run"].isin(runs)]
     if of_runs is None or of_runs.empty or len(names) < 2:
         raise Lacking(
             "No tracks were kept: the study has no [tracks] with signals of north, east and heading."

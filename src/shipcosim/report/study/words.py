@@ -164,8 +164,9 @@ def errors(tables: StudyTables) -> Sequence[tuple[str, Sequence[int]]]:
     failed = tables.runs[is_failed(tables)]
     if failed.empty:
         return ()
-    by_message = failed.groupby("error", sort=False)["run"].agg(list)
-    return sorted(by_message.items(), key=lambda entry: -len(entry[1]))
+    groups = failed.groupby("error", sort=False)["run"]
+    by_runs = [(str(message), runs.tolist()) for message, runs in groups]
+    return sorted(by_runs, key=lambda entry: -len(entry[1]))
 
 
 def study_text(about: Mapping[str, Any]) -> str:
