@@ -5,7 +5,9 @@ import pytest
 from own_runs import own_run
 
 import shipcosim as sc
-from shipcosim.diagnose.pipeline import find_causes, read_measurements
+from shipcosim.diagnose.inference.fitting import fitted
+from shipcosim.diagnose.inference.screening import screened
+from shipcosim.diagnose.pipeline import find_causes, problem_of, read_measurements
 from shipcosim.errors import ShipcosimError
 
 SIZES = ["--length", "60 m", "--breadth", "14 m", "--draught", "4.5 m"]
@@ -16,6 +18,15 @@ def test_a_run_without_sensors_agrees_with_the_system_that_made_it(tmp_path, mon
     monkeypatch.chdir(tmp_path)
     own_run(tmp_path, "azimuths", SIZES)
     assert find_causes("run/result.nc", sc.read("tern_open").checked()).verdict == "consistent"
+
+
+def test_what_waves_do_on_a_turn_is_noise_and_no_cause(tmp_path):
+    """The noise to start from is too small for it, and a scale of the velocity looked 3,000 nats likelier than none."""
+    sc.run("allocation/heading_change_optimal", until=250.0, out=tmp_path)
+    read = read_measurements(tmp_path / "result.nc", sc.read("gunnerus_open").checked())
+    problem = problem_of(read).problem
+    gains = {cause.label: gain for gain, cause, _ in screened(problem, fitted(problem))}
+    assert gains["velocity_scale"] < 10.0
 
 
 def test_a_run_of_screws_that_are_commanded_by_force_has_their_speed(tmp_path, monkeypatch):

@@ -9,8 +9,9 @@ import xarray
 from shipcosim.diagnose.hypotheses.catalogue import Cause, Hypothesis, hypotheses_of, parameters_of
 from shipcosim.diagnose.inference.channel_noise import most_white
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted, prepared
-from shipcosim.diagnose.inference.innovations import Noise
+from shipcosim.diagnose.inference.innovations import Noise, inner_products
 from shipcosim.diagnose.inference.noise import first_noise, tuned
+from shipcosim.diagnose.inference.parts import explained
 from shipcosim.diagnose.inference.screening import screened
 from shipcosim.diagnose.inference.thresholds import (
     GUST_FACTOR,
@@ -70,7 +71,9 @@ def identification_problem(
     # again.
     start = first_noise(record, ship.length) if noise is None else noise
     problem = prepared(IdentificationProblem(record, ship, wanted, start, motion))
-    return problem if noise is not None else prepared(replace(problem, noise=tuned_noise(problem)))
+    return (
+        problem if noise is not None else prepared(replace(problem, noise=likeliest_noise(problem)))
+    )
 
 
 def as_logged(ship: ShipModel, repaired: xarray.Dataset) -> ShipModel:
@@ -112,10 +115,26 @@ def unidentifiable(
     ]
 
 
-def tuned_noise(problem: IdentificationProblem, fit: Fit | None = None) -> Noise:
-    """Noise of maximum likelihood beside a fit, or beside the cause that explains most at first sight."""
+def likeliest_noise(problem: IdentificationProblem) -> Noise:
+    """Noise of maximum likelihood beside the cause that explains most at first sight, or beside none if that is likelier.
+
+    Noise that was tuned without a large cause would absorb its effect. But beside noise that is yet too small a cause
+    may only look large: on a run in waves a scale of the velocity, which makes each jolt look larger.
+    """
+    fits = dict.fromkeys([fitted(problem), beside_likeliest(problem)])
+    noises = [(tuned_noise(problem, fit), fit) for fit in fits]
+
+    def likelihood(pair):
+        noise, fit = pair
+        left = explained(fit.linear, fit.left)
+        return float(inner_products(left, noise, problem.record).free)
+
+    return max(noises, key=likelihood)[0]
+
+
+def tuned_noise(problem: IdentificationProblem, fit: Fit) -> Noise:
+    """Noise of maximum likelihood beside a fit."""
     # Bounds on random walk and channel noise stop the noise from explaining what a cause should.
-    fit = fit or beside_likeliest(problem)
     axes = np.array([1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.length])
     most = MOST_WALK * axes
     most *= 1.0 if problem.record.wind is not None else GUST_FACTOR

@@ -72,10 +72,9 @@ def ship_model_of(system: System) -> ShipModel:
 
 
 def _vessel(system: System) -> Component:
-    """The only component with the parameters of a hull; a predictor has them too, but nothing loads it."""
-    vessels = [c for c in system.components.values() if _holds(c, HullParameters)]
-    if len(vessels) > 1:
-        vessels = [c for c in vessels if _loading(system, c.name)] or vessels
+    """The only component with the parameters of a hull; a predictor has them too, but no inputs for loads."""
+    hulls = [c for c in system.components.values() if _holds(c, HullParameters)]
+    vessels = [c for c in hulls if "tau_X_1" in c.variables] or hulls
     if len(vessels) != 1:
         shown = ", ".join(f"{name} ({c.fmu.model_name})" for name, c in system.components.items())
         raise error_at(

@@ -22,7 +22,7 @@ from shipcosim.models.propulsion.tunnel import TunnelParameters
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
-from shipcosim.ssp import new, read, with_values
+from shipcosim.ssp import new, read, read_system, with_values
 
 WRONG = {
     "port.thrust_loss": 0.2,
@@ -406,3 +406,14 @@ def test_a_thruster_of_an_earlier_version_is_learnt_and_a_neutral_number_that_it
     model = ship_model_of(old)
     assert list(model.third_party) == ["port"]
     assert model.get("tunnel.speed_loss") == 0.0 and model.get("tunnel.x") == 14.48
+
+
+@pytest.mark.parametrize(
+    "file",
+    sorted((twin.ROOT / "ssp").glob("*/SystemStructure.ssd")),
+    ids=lambda file: file.parent.name,
+)
+def test_every_system_has_one_ship(file):
+    """A predictor has the parameters of a hull too, and inputs of loads that others know of."""
+    system = read_system(file.parent, fmus=[twin.build_stale(twin.ROOT)])
+    assert ship_model_of(system).vessel == "vessel"
