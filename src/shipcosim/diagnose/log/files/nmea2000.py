@@ -73,7 +73,8 @@ def tables_of_messages(path: Path) -> dict[str, LogColumns]:
             if fields is None:
                 unread[pgn] += 1
             else:
-                by_pgn.setdefault(pgn, []).append((time, source, _columns(fields, is_si)))
+                row = time, source, _columns(fields, is_si)
+                by_pgn.setdefault(pgn, []).append(row)
         except Exception:  # a field of any type and size can stand in a damaged message
             damaged += bool(line.strip()) and not line.startswith("#")
     if not by_pgn:

@@ -13,6 +13,7 @@ from shipcosim.diagnose.log.names.guesses import (
     EXACT,
     GUESS,
     SURE,
+    UNUSED,
     Guess,
     Thrusters,
     guesses_of,
@@ -309,7 +310,8 @@ def _of_one_kind(chosen, log):
     def drop(roles, why):
         for role in roles:
             if role in chosen:
-                left.append(chosen.pop(role).refused(why.replace("_", " ")))
+                guess = chosen.pop(role).refused(why.replace("_", " "))
+                left.append(replace(guess, channel=UNUSED))
 
     def how_poor(pair):
         columns = [log.values[chosen[role].column] for role in pair]
