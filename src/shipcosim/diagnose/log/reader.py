@@ -27,7 +27,15 @@ from shipcosim.diagnose.log.roles import NAVIGATION, OVER_EARTH, role_of
 from shipcosim.diagnose.log.thresholds import LATEST, SHORTEST_STEP
 from shipcosim.diagnose.log.values import LARGEST, WrongUnit, values_of
 from shipcosim.diagnose.numerics import finite, usual_rise
-from shipcosim.errors import Problem, ShipcosimError, counted, error_at, reading, shortened
+from shipcosim.errors import (
+    Problem,
+    ShipcosimError,
+    counted,
+    error_at,
+    raise_errors,
+    reading,
+    shortened,
+)
 from shipcosim.series import make_table
 
 if TYPE_CHECKING:
@@ -82,13 +90,10 @@ def read_log(
     given = read_channels(channels) if isinstance(channels, (str, os.PathLike)) else channels
     form = given.form if given else FileLayout()
     columns, file = _source_of(log, form)
-    proposal = None
-    if given is None or not given.channels:
-        proposal = propose(columns, thrusters, form)
-        mapping = _sure(columns, proposal)
-    else:
-        mapping = given.channels
     is_asked = given is not None and bool(given.channels)
+    proposal = None if is_asked else propose(columns, thrusters, form)
+    mapping = proposal.channels() if proposal else given.channels
+    _check_channels(columns, mapping, proposal)
     # Convert each channel to the unit of its role, and keep what is stated and what is not used.
     signals, remarks = _signals(columns, mapping, form, is_asked)
     stated = {name: _stated(channel, name, columns) for name, channel in mapping.items()}
@@ -152,9 +157,7 @@ def columns_of(log: str | os.PathLike, form: FileLayout | None = None) -> LogCol
             return without_missing(spread(read_file(path, form), form))
         tables = {name: columns_of(file, form) for name, file in files.items()}
         times = {
-            name: next(
-                (g.channel for g in propose(table, form=form).used if g.role == "time"), None
-            )
+            name: propose(table, form=form).channels(guessed=True).get("time")
             for name, table in tables.items()
         }
         return joined(path, tables, times)
@@ -194,23 +197,20 @@ def _stated(channel: Channel, name: str, columns: LogColumns) -> str:
     return unit_for(stated, role.unit) if stated and role else stated
 
 
-def _sure(columns: LogColumns, proposal: Proposal) -> dict[str, Channel]:
-    """Channels by unambiguous names; an error with a proposal if these are not enough."""
-    mapping = proposal.channels()
+def _check_channels(columns: LogColumns, mapping: dict[str, Channel], proposal: Proposal | None):
+    """Raise ShipcosimError where channels are not enough for a log, or one of a proposal stands there twice."""
     source = columns.source
-    doubled = [
-        name
-        for name in columns.doubled
-        if any(name in channel.columns for channel in mapping.values())
-    ]
+    taken = {name for channel in mapping.values() for name in channel.columns}
     problems = [
-        Problem(f"{source}, column '{name}'", "is there twice.", _WHICH) for name in doubled
+        Problem(f"{source}, column '{name}'", "is there twice.", _WHICH)
+        for name in columns.doubled
+        if name in taken and proposal
     ]
     help_ = f"Say in a channel file which column is what: `shipcosim channels {source} --out channels.toml` proposes one."
     # Without a time, or with nothing but a time, there is no log.
     if "time" not in mapping:
-        guess = next((g for g in proposal.used if g.role == "time"), None)
         message = f"has no column 'time', only {_shown(columns)}."
+        guess = next((g for g in (proposal.used if proposal else ()) if g.role == "time"), None)
         if guess:
             message = f"'{guess.column}' may be the time, but {guess.why}."
         # A column of that name may hold what is no time.
@@ -225,9 +225,7 @@ def _sure(columns: LogColumns, proposal: Proposal) -> dict[str, Channel]:
         problems.append(
             Problem(source, f"no column but time has a role: {_shown(columns)}.", help_)
         )
-    if problems:
-        raise ShipcosimError(problems)
-    return mapping
+    raise_errors(problems)
 
 
 _WHICH = 'Rename one, or name it in a channel file; the second is "NAME (2)".'
@@ -241,8 +239,6 @@ def _signals(columns, mapping, form, is_asked):
     problems = []
     signals = {}
     remarks = []
-    if "time" not in mapping:
-        problems.append(Problem(columns.source, f"has no column 'time', only {_shown(columns)}."))
     for name, channel in mapping.items():
         try:
             values, unit, more = values_of(channel, name, columns, form)
@@ -256,15 +252,7 @@ def _signals(columns, mapping, form, is_asked):
             problems += [
                 Problem(f"{columns.source}, {name}", p.found, p.remedy) for p in error.problems
             ]
-    if not problems and len(mapping) < 2:
-        remedy = (
-            "Name them by roles, or say in a channel file which is what: --channels channels.toml."
-        )
-        problems = [
-            Problem(columns.source, f"no column but time has a role: {_shown(columns)}.", remedy)
-        ]
-    if problems:
-        raise ShipcosimError(problems)
+    raise_errors(problems)
     return signals, remarks
 
 
@@ -345,7 +333,6 @@ def _over_the_earth(signals):
         return [
             "Velocities over the earth are not used: they become surge and sway by a heading, and there is none."
         ]
-    heading = np.radians(signals["heading"][0])
     # Velocity as a complex number north + i east, from components or from speed and course.
     if {"north_velocity", "east_velocity"} <= set(given):
         velocity = given["north_velocity"] + 1j * given["east_velocity"]
@@ -358,8 +345,8 @@ def _over_the_earth(signals):
         of = "speed and course over ground"
     else:
         return []
-    # Turn into body axes: w = v exp(-i heading).
-    body = velocity * np.exp(-1j * heading)
+    # Turn into body axes.
+    body = velocity * np.exp(-1j * np.radians(signals["heading"][0]))
     signals["surge"], signals["sway"] = (body.real, "m/s"), (body.imag, "m/s")
     return [f"Surge and sway come from {of} and the heading."]
 
@@ -415,16 +402,16 @@ def _without_value(source, signals):
 
 def _proposal_text(proposal):
     """Remarks on columns with other names than their roles, and on unused columns with the reason."""
-    named = [g for g in proposal.used if g.rank < 2]
     used = proposal.channels()
+    guesses = [guess for guess in proposal.used if guess.is_guess]
+    sure = [guess for guess in proposal.used if not guess.is_guess]
     other = [
         f"{g.role} from '{g.column}'{_guess_text(g, used[g.role].unit)}"
-        for g in named
+        for g in sure
         if g.column != g.role or g.notes
     ]
     if other:
         yield f"Columns used: {'; '.join(other)}."
-    guesses = [guess for guess in proposal.used if guess.rank == 2]
     for guess in guesses:
         yield f"Column '{guess.column}' is not used: it may be {guess.role}, but {guess.why}."
     if guesses:
@@ -439,13 +426,9 @@ def _proposal_text(proposal):
 
 def _not_named(unused):
     """Columns that a channel file does not name."""
-    return (
-        [
-            f"Columns that the channel file does not name are not used: {shortened(unused, MOST_NAMED)}."
-        ]
-        if unused
-        else []
-    )
+    if unused:
+        shown = shortened(unused, MOST_NAMED)
+        yield f"Columns that the channel file does not name are not used: {shown}."
 
 
 def _guess_text(guess, unit):

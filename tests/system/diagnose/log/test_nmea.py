@@ -107,7 +107,7 @@ def test_damaged_sentences_are_left_out_and_counted(read):
     )
     lines[48] = sentence("HEHDT", "123.4", "T", wrong=True)
     log = read(lines)
-    assert "2 sentences do not fit checksum or form, the first in line 31" in said(log)
+    assert "2 sentences with a wrong checksum or form, the first in line 31" in said(log)
     assert not (np.abs(log["heading"].values - 123.4) < 1.0).any()
 
 
@@ -262,7 +262,7 @@ def test_what_is_not_read_is_counted(read):
     ]
     log = read(lines)
     assert "Sentences not read: AIVDM (1), GPGSV (1), PSIMSNS (1)" in said(log)
-    assert "1 line that is no sentence left out, the first is line 364." in said(log)
+    assert "1 line without a sentence, the first in line 364: left out." in said(log)
 
 
 def test_sentences_without_any_time_are_refused_with_what_would_do(read):

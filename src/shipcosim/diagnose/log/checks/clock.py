@@ -47,7 +47,9 @@ _FORGOTTEN = 37.0  # nats: what is left after them is lost in rounding
 class _Side:
     """One comparison, of positions or of headings: its motion, filter and whitened rest (n, a).
 
-    Until a row the filter has `forgotten` so many nats of what was before the first one.
+    `scale`: (n * a,) whitened way of the whole log, by which a scale error of the velocity is projected out; less than
+    of length 1 by the prior of that error. Until a row the filter has `forgotten` so many nats of what was before the
+    first one.
     """
 
     motion: Motion
@@ -90,25 +92,24 @@ class _Side:
 
     def match(self, columns):
         """Match of columns with the rest, beside the scale of the whole log, (k,)."""
-        # Project out a scale error of the velocity in the
-        # whole log, by the regularised least-squares solution.
-        scale = self.scale.ravel()
         rest = self.rest.ravel()
-        shared = columns.with_series(scale) / self._scale_energy()
-        return (columns.with_series(rest) - shared * (scale @ rest)) / self.rough
+        shared = columns.with_series(self.scale)
+        return (columns.with_series(rest) - shared * (self.scale @ rest)) / self.rough
 
     def gram(self, columns):
         """Gram matrix of columns, beside the scale of the whole log, (k, k)."""
-        shared = columns.with_series(self.scale.ravel())
-        return (columns.products() - np.outer(shared, shared) / self._scale_energy()) / self.rough
+        shared = columns.with_series(self.scale)
+        return (columns.products() - np.outer(shared, shared)) / self.rough
 
     def energy(self, columns):
         """Diagonal of the Gram matrix, (k,)."""
-        shared = columns.with_series(self.scale.ravel())
-        return (columns.squares() - shared**2 / self._scale_energy()) / self.rough
+        return (columns.squares() - columns.with_series(self.scale) ** 2) / self.rough
 
-    def _scale_energy(self):
-        return float(np.sum(self.scale**2)) + 1.0 / SCALE_SLAB[self.rest.shape[1]] ** 2
+    def alone(self, first, last):
+        """Rate error of a segment by this comparison alone, its standard deviation, and its whitened column."""
+        column = self.column([first], [last])
+        energy = max(float(self.energy(column)[0]), 1e-9)
+        return float(self.match(column)[0]) / energy, energy**-0.5, column
 
 
 @dataclass(frozen=True)
@@ -179,14 +180,16 @@ def _side(motion):
     # A filter of gain K forgets a factor 1 - K in each row; the sum counts it in nats.
     forgotten = np.cumsum(-np.log(np.maximum(1.0 - whitener.gains, np.exp(-_FORGOTTEN))))
     steps = np.diff(way, axis=0, prepend=way[:1])
-    return _Side(motion, whitener, rest, whitener(way), steps, whiteness(rest), forgotten)
+    # Regularised least squares of a scale error of the velocity in the whole log.
+    scale = whitener(way).ravel()
+    scale /= np.sqrt(np.sum(scale**2) + SCALE_SLAB[rest.shape[1]] ** -2)
+    return _Side(motion, whitener, rest, scale, steps, whiteness(rest), forgotten)
 
 
 def _explained(side, segment):
     """The side without what the segment explains."""
     # Least-squares estimate of the rate error, subtracted from the residuals.
-    column = side.column([segment.first], [segment.last])
-    value = side.match(column)[0] / max(side.energy(column)[0], 1e-9)
+    value, _, column = side.alone(segment.first, segment.last)
     return replace(side, rest=side.rest - value * column.dense().reshape(side.rest.shape))
 
 
@@ -249,18 +252,15 @@ def _refined(sides, first, last, cost):
                 time < last if end == 0 else time > first
             )  # rows may be so far apart that the other end is near
             places = time[near & right][::stride]
-            firsts, lasts = (
-                (places, np.full_like(places, last))
-                if end == 0
-                else (np.full_like(places, first), places)
-            )
-            nats = evidence_of_rate(*_joint(sides, firsts, lasts))[0]
+            ends = [np.full_like(places, first), np.full_like(places, last)]
+            ends[end] = places
+            nats = evidence_of_rate(*_joint(sides, *ends))[0]
             # The coarse search takes the best place, the fine one the median of the posterior.
             place = float(places[np.argmax(nats)]) if stride > 1 else _middle(places, nats)
             first, last = (place, last) if end == 0 else (first, place)
     # Final estimate from both comparisons jointly, and from each alone.
     nats, value, std = (float(x[0]) for x in evidence_of_rate(*_joint(sides, [first], [last])))
-    apart = tuple(_alone(side, first, last) for side in sides)
+    apart = tuple(side.alone(first, last)[:2] for side in sides)
     return _Segment(first, last, nats - cost, value, std, apart)
 
 
@@ -274,12 +274,6 @@ def _joint(sides, firsts, lasts):
     columns = [side.column(firsts, lasts) for side in sides]
     energy = sum(side.energy(c) for side, c in zip(sides, columns, strict=True))
     return sum(side.match(c) for side, c in zip(sides, columns, strict=True)), energy
-
-
-def _alone(side, first, last):
-    column = side.column([first], [last])
-    energy = max(float(side.energy(column)[0]), 1e-9)
-    return float(side.match(column)[0]) / energy, energy**-0.5
 
 
 def _is_said_by_both(segment):

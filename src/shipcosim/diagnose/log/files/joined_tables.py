@@ -95,35 +95,35 @@ def _kind(table, channel):
 
 
 def _below_each_other(path, tables, clocks):
-    first = next(iter(tables))
-    lengths = [len(table.values[clocks[name][0]]) for name, table in tables.items()]
-    ends = np.cumsum(lengths)
-    values = {}
+    import pandas
+
+    common = clocks[next(iter(tables))]
     units = {}
-    # The columns of time stand in all rows.
-    for i, clock in enumerate(clocks[first]):
-        parts = [table.values[clocks[name][i]] for name, table in tables.items()]
-        values[clock] = np.concatenate(parts)
-        units[clock] = tables[first].units[clock]
-    # Any other column stands in the rows of its table, and is empty elsewhere.
+    frames = []
     names = [column for table in tables.values() for column in table.values]
-    for (name, table), end, count in zip(tables.items(), ends, lengths, strict=True):
-        for column, cells in table.values.items():
-            if column in clocks[name]:
-                continue
-            label = f"{name}.{column}" if _needs_table(name, column, names) else column
+    for name, table in tables.items():
+        # The columns of time stand in all rows; any other one in the rows of its table, and is empty elsewhere.
+        labels = dict(zip(clocks[name], common, strict=True))
+        for column in table.values.keys() - labels.keys():
+            labels[column] = f"{name}.{column}" if _needs_table(name, column, names) else column
             if len(table.values) == 2 and column.lower() == "value":
-                label = name  # a file for each signal
-            is_text = cells.dtype.kind not in "fiub"
-            values[label] = np.full(
-                ends[-1], None if is_text else np.nan, object if is_text else float
-            )
-            values[label][end - count : end] = cells
-            units[label] = table.units[column]
+                labels[column] = name  # a file for each signal
+        frames.append(pandas.DataFrame(table.values).rename(columns=labels))
+        units = {labels[column]: unit for column, unit in table.units.items()} | units
+    whole = pandas.concat(frames, ignore_index=True)
+    order = [*common, *(column for column in whole if column not in common)]
+    values = {column: _cells(whole[column]) for column in order}
     remarks = [f"Tables joined by time: {', '.join(tables)}."]
     remarks += [f"{name}: {remark}" for name, table in tables.items() for remark in table.remarks]
     doubled = tuple(column for table in tables.values() for column in table.doubled)
     return LogColumns(str(path), values, units, tuple(remarks), doubled, joined=True)
+
+
+def _cells(column):
+    """A column of pandas as an array: None for texts that are not there."""
+    if column.dtype.kind != "O":
+        return column.to_numpy(float if column.dtype.kind in "fiub" else None)
+    return column.where(column.notna(), None).to_numpy(object)
 
 
 def _needs_table(name, column, names):

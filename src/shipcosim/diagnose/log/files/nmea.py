@@ -11,8 +11,10 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from datetime import date
-from functools import partial
+from functools import partial, reduce
+from operator import xor
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,7 +26,7 @@ from shipcosim.diagnose.log.files.times import (
     seconds_of,
     seconds_of_clock,
 )
-from shipcosim.errors import error_at
+from shipcosim.errors import counted, error_at
 
 _SENTENCE = re.compile(
     r"(?P<before>[^$!]*)[$!](?P<body>[A-Z][A-Z0-9]{3,7},[^*\r\n\"]*)(?:\*(?P<sum>[0-9A-Fa-f]{2}))?(?P<after>.*)"
@@ -110,12 +112,20 @@ _UNITS = {
 }
 
 
+class _Sentence(NamedTuple):
+    """A sentence that was read: its line, its kind such as GPGGA, its values, and the time that stands around it."""
+
+    line: int
+    kind: str
+    values: Values
+    stamp: str
+
+
 @dataclass
 class _Read:
-    """Sentences that were read, by their lines, and what was not."""
+    """Sentences that were read, the lines of damaged and of other ones, and how many of each kind are not read."""
 
-    sentences: list[tuple[int, str, Values]] = field(default_factory=list)
-    stamps: dict[int, str] = field(default_factory=dict)
+    sentences: list[_Sentence] = field(default_factory=list)
     damaged: list[int] = field(default_factory=list)
     others: list[int] = field(default_factory=list)
     unread: Counter[str] = field(default_factory=Counter)
@@ -199,10 +209,9 @@ def _read(lines: list[str]) -> _Read:
         else:
             try:
                 of_kind = _NAMED_BY_FIELDS.get(kind, partial(_values_of, kind))
-                read.sentences.append((number, fields[0], of_kind(fields)))
                 stamp = _STAMP.search(f"{match['before']} {match['after']}")
                 text = stamp[0] if stamp else match["before"].strip(" ,;|\t\"'")
-                read.stamps[number] = text
+                read.sentences.append(_Sentence(number, fields[0], of_kind(fields), text))
             except (ValueError, IndexError, KeyError):
                 if any(fields[1:]):
                     read.damaged.append(number)
@@ -211,28 +220,26 @@ def _read(lines: list[str]) -> _Read:
 
 def _checksum(body: str) -> int:
     # The checksum is the exclusive or of all characters between $ and *.
-    checksum = 0
-    for char in body.encode("latin-1", "replace"):
-        checksum ^= char
-    return checksum
+    return reduce(xor, body.encode("latin-1", "replace"))
 
 
 def _left_out(read: _Read) -> list[str]:
     """What was left out."""
     remarks = []
-    if lines := read.damaged:
-        what = (
-            f"{len(lines)} sentence{'s do' if len(lines) > 1 else ' does'} not fit checksum or form"
-        )
-        remarks.append(f"{what}, the first in line {lines[0] + 1}: left out.")
-    if lines := read.others:
-        what = f"{len(lines)} line{'s that are' if len(lines) > 1 else ' that is'} no sentence"
-        remarks.append(f"{what} left out, the first is line {lines[0] + 1}.")
+    lefts = (
+        ("sentence", "with a wrong checksum or form", read.damaged),
+        ("line", "without a sentence", read.others),
+    )
+    for what, why, lines in lefts:
+        if lines:
+            remarks.append(
+                f"{counted(len(lines), what)} {why}, the first in line {lines[0] + 1}: left out."
+            )
     if read.unread:
         remarks.append(
             f"Sentences not read: {', '.join(f'{kind} ({n})' for kind, n in sorted(read.unread.items()))}."
         )
-    winds = sum(kind.endswith("MWV") and not values for _, kind, values in read.sentences)
+    winds = sum(s.kind.endswith("MWV") and not s.values for s in read.sentences)
     if winds:
         remarks.append(f"{winds} MWV without a valid wind relative to the ship left out.")
     return remarks
@@ -241,37 +248,30 @@ def _left_out(read: _Read) -> list[str]:
 def _times(source: str, read: _Read) -> tuple[np.ndarray, list[str]]:
     """Time of each sentence that was read, NaN where it is not known, and remarks. [s]"""
     # Stamps before the sentences are the time of reception, if nearly all sentences have one.
-    stamped = [read.stamps[number] for number, *_ in read.sentences]
-    if sum(map(bool, stamped)) > _ENOUGH * len(stamped):
-        texts = np.array([stamp or None for stamp in stamped], object)
+    sentences = read.sentences
+    stamps = [sentence.stamp or None for sentence in sentences]
+    if stamps.count(None) < (1.0 - _ENOUGH) * len(stamps):
         try:
-            numbers = np.array([np.nan if text is None else float(text) for text in texts])
-            numbers /= EPOCHS[epoch_unit(numbers) or "s"]
-            return numbers, ["Times are those that stand before the sentences."]
+            times = np.array([float(stamp or "nan") for stamp in stamps])
+            times, remarks = times / EPOCHS[epoch_unit(times) or "s"], []
         except ValueError:
-            pass
-        if message := seconds_of(texts):
-            return message[0], ["Times are those that stand before the sentences.", *message[1]]
+            times, remarks = seconds_of(np.array(stamps, object)) or (None, [])
+        if times is not None:
+            return times, ["Times are those that stand before the sentences.", *remarks]
     # Else the clock times within sentences, interpolated by line number for those without.
-    timed = [(k, values) for k, (_, _, values) in enumerate(read.sentences) if "clock" in values]
+    timed = [sentence for sentence in sentences if "clock" in sentence.values]
     if len(timed) < 2:
         message = "holds sentences of NMEA, and none of GGA, RMC, GLL and ZDA says the time."
         remedy = "Log one of them too, or the time of reception before each sentence."
         raise error_at(source, message, remedy)
-    rows = np.array([k for k, _ in timed])
-    seconds, remarks = _with_dates(timed)
-    line = np.array([number for number, *_ in read.sentences], float)
-    times = np.interp(line, line[rows], seconds, left=np.nan, right=np.nan)
-    for k, (_, kind, _) in enumerate(read.sentences):
-        if kind.endswith("VTG") and (before := np.searchsorted(rows, k)):
+    lines = [sentence.line for sentence in timed]
+    seconds, remarks = _with_dates([sentence.values for sentence in timed])
+    times = np.interp([s.line for s in sentences], lines, seconds, left=np.nan, right=np.nan)
+    for k, sentence in enumerate(sentences):
+        before = np.searchsorted(lines, sentence.line)
+        if sentence.kind.endswith("VTG") and before:
             times[k] = seconds[before - 1]  # of the fix that the same receiver has just given
-    without = sorted(
-        {
-            kind
-            for k, (_, kind, _) in enumerate(read.sentences)
-            if "clock" not in read.sentences[k][2]
-        }
-    )
+    without = sorted({s.kind for s in sentences if "clock" not in s.values})
     if without:
         remarks.append(
             f"{', '.join(without)} have no time: it lies between those of the sentences around."
@@ -279,19 +279,19 @@ def _times(source: str, read: _Read) -> tuple[np.ndarray, list[str]]:
     return times, remarks
 
 
-def _with_dates(timed: list[tuple[int, Values]]) -> tuple[np.ndarray, list[str]]:
+def _with_dates(timed: list[Values]) -> tuple[np.ndarray, list[str]]:
     """Continuous times from times of day: past midnight, and over whole days if sentences have a date. [s]"""
     # Clock times go on past midnight; dates then show whole days that were not logged.
-    seconds, remarks = seconds_of_clock(np.array([values["clock"] for _, values in timed]))
-    dated = np.array([k for k, (_, values) in enumerate(timed) if "date" in values], int)
+    clocks = np.array([values["clock"] for values in timed])
+    seconds, remarks = seconds_of_clock(clocks)
+    days = np.array([values.get("date", np.nan) for values in timed])
+    dated = np.flatnonzero(np.isfinite(days))
     if not len(dated):
         return seconds, remarks
-    days = np.array([timed[k][1]["date"] for k in dated])
-    clocks = np.array([timed[k][1]["clock"] for k in dated])
     # Whole days that are missing at each dated sentence,
     # and at the others by the nearest date in time.
-    lacking = np.round((DAY * (days - days[0]) + clocks - seconds[dated]) / DAY) * DAY
-    every = np.arange(len(timed))
+    lacking = np.round((DAY * (days - days[dated[0]]) + clocks - seconds) / DAY)[dated] * DAY
+    every = np.arange(len(days))
     before = np.maximum(np.searchsorted(dated, every, "right") - 1, 0)
     after = np.minimum(np.searchsorted(dated, every), len(dated) - 1)
     apart = [np.abs(seconds - seconds[dated[side]]) for side in (before, after)]
@@ -310,27 +310,24 @@ def _channels(
     """Times and values of each channel by one source, and which channels a source gives."""
     # Sort the values by channel and kind of sentence.
     by_channel: dict[str, dict[str, list[tuple[float, float]]]] = {}
-    for (_, kind, values), time in zip(read.sentences, times, strict=True):
-        for name, value in values.items():
-            if name in _UNITS and np.isfinite(value) and np.isfinite(time):
-                by_channel.setdefault(name, {}).setdefault(kind, []).append((float(time), value))
-    order = list(_KINDS)
+    for sentence, time in zip(read.sentences, times, strict=True):
+        for name, value in sentence.values.items():
+            if np.isfinite(value) and np.isfinite(time):
+                of_kinds = by_channel.setdefault(name, {})
+                of_kinds.setdefault(sentence.kind, []).append((float(time), value))
     channels = {}
     used = {}
-    for name in _UNITS:
-        if name not in by_channel:
-            continue
+    for name in filter(by_channel.__contains__, _UNITS):
         # Of the sources with nearly the most values take the preferred one.
-        most = max(map(len, by_channel[name].values()))
-        enough = {
-            kind: pairs for kind, pairs in by_channel[name].items() if len(pairs) >= _ENOUGH * most
-        }
+        sources = by_channel[name]
+        enough = _ENOUGH * max(map(len, sources.values()))
         kind = min(
-            enough, key=lambda sentence: (order.index(sentence[-3:]), -len(enough[sentence]))
+            (kind for kind, pairs in sources.items() if len(pairs) >= enough),
+            key=lambda kind: (_KINDS.index(kind[-3:]), -len(sources[kind])),
         )
-        moments, values = np.array(enough[kind]).T
+        moments, values = np.array(sources[kind]).T
         moments, first = np.unique(moments, return_index=True)
         channels[name] = moments, values[first]
-        others = sorted(set(by_channel[name]) - {kind})
+        others = sorted(sources.keys() - {kind})
         used.setdefault(kind + (f" (not {', '.join(others)})" if others else ""), []).append(name)
     return channels, used

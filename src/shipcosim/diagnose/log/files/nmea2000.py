@@ -23,7 +23,7 @@ from shipcosim.errors import error_at
 _STAMP = r"(?P<day>\d{4}-\d\d-\d\d)[-TZ ](?P<clock>\d\d:\d\d:\d\d(?:[.,]\d+)?)Z?"
 _RAW = re.compile(
     _STAMP
-    + r",\d+,(?P<pgn>\d+),(?P<source>\d+),\d+,\d+,(?P<bytes>[0-9a-fA-F]{2}(?:,[0-9a-fA-F]{2})*)\s*"
+    + r",\d+,(?P<pgn>\d+),(?P<source>\d+),\d+,\d+,(?P<fields>[0-9a-fA-F]{2}(?:,[0-9a-fA-F]{2})*)\s*"
 )
 _TOLD = re.compile(
     _STAMP + r"\s+\d+\s+(?P<source>\d+)\s+\d+\s+(?P<pgn>\d+)\s+[^:]+:\s*(?P<fields>.*)"
@@ -65,20 +65,11 @@ def tables_of_messages(path: Path) -> dict[str, LogColumns]:
     in_si = None
     for line in text_of(path)[0].splitlines():
         try:
-            if found_text := _TOLD.fullmatch(line):
-                message = _of_text(found_text)
-                is_si = " rad" in line
-            elif not line.startswith("{"):
-                message = _raw(line)
-                is_si = True
-            elif '"pgn"' in line:
-                message = _read(json.loads(line))
-                is_si = in_si
-            else:
+            if line.startswith("{") and '"pgn"' not in line:
                 # The first line of JSON says the units: std has degrees, si radians.
                 in_si = {"si": True, "std": False}.get(json.loads(line).get("units"))
                 continue
-            pgn, time, source, fields = message
+            pgn, time, source, fields, is_si = _message(line, in_si)
             if fields is None:
                 unread[pgn] += 1
             else:
@@ -99,25 +90,31 @@ def tables_of_messages(path: Path) -> dict[str, LogColumns]:
     }
 
 
-def _seconds(stamp):
-    match = re.fullmatch(_STAMP, stamp)
-    if match is None:
-        raise ValueError(stamp)
-    moment = np.datetime64(f"{match['day']}T{match['clock'].replace(',', '.')}", "ns")
-    return float(moment.astype("int64")) * 1e-9
-
-
-def _raw(line):
-    """PGN, time, source and fields of a line of bytes; None for fields that are not read."""
-    match = _RAW.fullmatch(line)
-    if match is None:
-        raise ValueError(line)
-    pgn = int(match["pgn"])
-    time = _seconds(f"{match['day']}T{match['clock']}")
+def _message(line, in_si):
+    """PGN, time, source and fields of a line, None for fields that are not read; and whether these are in SI units."""
+    if line.startswith("{"):
+        message = json.loads(line)
+        when = re.fullmatch(_STAMP, message["timestamp"])
+        source = message.get("src", 0)
+        content = message.get("fields")
+    else:
+        message = when = _RAW.fullmatch(line) or _TOLD.fullmatch(line)
+        source = message["source"]
+        content = message["fields"]
+        in_si = message.re is _RAW or " rad" in line
+    moment = np.datetime64(f"{when['day']}T{when['clock'].replace(',', '.')}", "ns")
+    pgn = int(message["pgn"])
     if pgn not in _RAW_FIELDS:
-        return pgn, time, int(match["source"]), None
+        content = None
+    elif isinstance(content, str):
+        content = _of_bytes(pgn, content) if message.re is _RAW else _of_text(content)
+    return pgn, float(moment.astype("int64")) * 1e-9, int(source), content, in_si
+
+
+def _of_bytes(pgn, text):
+    """Fields of a message of bytes such as ``ff,6c,42``."""
     form, places = _RAW_FIELDS[pgn]
-    content = bytes.fromhex(match["bytes"].replace(",", ""))
+    content = bytes.fromhex(text.replace(",", ""))
     values = struct.unpack(form, content[: struct.calcsize(form)])
     codes = form.replace("x", "")[1:]
     fields = {}
@@ -127,26 +124,16 @@ def _raw(line):
             fields[name] = size.get(values[place] & (7 if size is _WINDS else 3), "unknown")
         elif values[place] != _NOTHING[codes[place]]:
             fields[name] = size * values[place]
-    return pgn, time, int(match["source"]), fields
+    return fields
 
 
-def _read(message):
-    """PGN, time, source and fields of a message in JSON."""
-    pgn = int(message["pgn"])
-    fields = message["fields"] if pgn in _RAW_FIELDS else None
-    return pgn, _seconds(message["timestamp"]), int(message.get("src", 0)), fields
-
-
-def _of_text(match):
-    """PGN, time, source and fields of a line of text: ``Heading = 45.0 deg; Reference = True``."""
-    pgn = int(match["pgn"])
-    pairs = [part.split("=") for part in match["fields"].split(";") if part.count("=") == 1]
+def _of_text(text):
+    """Fields of a line of text: ``Heading = 45.0 deg; Reference = True``."""
     fields = {}
-    for name, text in pairs:
-        number = re.fullmatch(r"\s*([+-]?\d+(?:\.\d+)?)(?:\s+(?:deg|rad)?(?:m?/s)?)?\s*", text)
-        fields[name.strip()] = float(number[1]) if number else text.strip()
-    time = _seconds(f"{match['day']}T{match['clock']}")
-    return pgn, time, int(match["source"]), fields if pgn in _RAW_FIELDS else None
+    for name, value in (part.split("=") for part in text.split(";") if part.count("=") == 1):
+        number = re.fullmatch(r"\s*([+-]?\d+(?:\.\d+)?)(?:\s+(?:deg|rad)?(?:m?/s)?)?\s*", value)
+        fields[name.strip()] = float(number[1]) if number else value.strip()
+    return fields
 
 
 def _columns(fields, in_si):

@@ -43,7 +43,7 @@ def time_of(
     # A stamp in two columns is the most precise. Otherwise take the
     # best usable guess, or any column of texts that are stamps.
     if pair := _seconds_and_nanoseconds(log):
-        return pair, [replace(g, role="", why=f"'{pair.column}' is the time") for g in guesses]
+        return pair, [guess.refused(f"'{pair.column}' is the time") for guess in guesses]
     usable = [clock for guess in guesses if (clock := _usable(guess, log, form))]
     if not usable:
         usable = [clock for name in log.values if (clock := _stamps(name, log, form))]
@@ -58,7 +58,7 @@ def time_of(
     best = usable[0] if usable else None
     rest = [g for g in guesses if best is None or g.column not in best.channel.columns]
     why = f"'{best.column}' is the time" if best else "it cannot be read as times"
-    return best, [replace(guess, role="", why=why) for guess in rest]
+    return best, [guess.refused(why) for guess in rest]
 
 
 def _seconds_and_nanoseconds(log):

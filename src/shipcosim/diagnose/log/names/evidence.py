@@ -21,23 +21,22 @@ _CLEARER = 4.0  # times that of the best, which another frame leaves. Assumed.
 _BESIDE = 60.0  # deg, by which a course may be off the bow throughout
 
 
-def unit_of_speed(
-    time: np.ndarray, north: np.ndarray, east: np.ndarray, speed: np.ndarray
-) -> str | None:
+def unit_of_speed(time: np.ndarray, way: np.ndarray, speed: np.ndarray) -> str | None:
     """Unit of a speed, from the distance between positions; None if they do not determine it.
 
     Parameters
     ----------
-    time, north, east : (n,) array
-        [s, m, m]
+    time : (n,) array
+        [s]
+    way : (n,) complex array
+        Position, north + i east. [m]
     speed : (n,) array
         In the unknown unit.
     """
     # Rows in which all channels have values; the distance made in k rows is the reference.
-    rows = _all_known(time, north, east, speed)
-    t = time[rows]
-    way = (north + 1j * east)[rows]
-    return _unit_by(t, speed[rows], lambda k: np.abs(way[k:] - way[:-k]), _SPEEDS)
+    rows = _all_known(time, way, speed)
+    way = way[rows]
+    return _unit_by(time[rows], speed[rows], lambda k: np.abs(way[k:] - way[:-k]), _SPEEDS)
 
 
 def unit_of_rate(time: np.ndarray, heading: np.ndarray, rate: np.ndarray) -> str | None:
@@ -100,40 +99,36 @@ def _without_leaps(x, y):
 
 
 def frame_of_angle(
-    time: np.ndarray,
-    north: np.ndarray,
-    east: np.ndarray,
-    readings: dict[Any, np.ndarray],
-    drift: np.ndarray | None = None,
+    position: np.ndarray, readings: dict[Any, np.ndarray], drift: np.ndarray | float = 0.0
 ) -> Any:
     """The only reading of a heading that agrees with the course; None if there are none or several.
 
     Parameters
     ----------
-    time, north, east : (n,) array
-        [s, m, m]
+    position : (n,) complex array
+        North + i east. [m]
     readings : dict of (n,) array
         Headings, by what they are called. [deg]
-    drift : (n,) array, optional
-        Direction of the velocity against the bow, where that is known; else ahead is assumed. [rad]
+    drift : (n,) array or float
+        Direction of the velocity against the bow. [rad]
 
     Examples
     --------
     >>> t = np.arange(300.0)
     >>> heading = 90 * np.sin(t / 40)
     >>> way = np.cumsum(np.exp(1j * np.radians(heading)))
-    >>> frame_of_angle(t, way.real, way.imag, {"NED": heading, "ENU": 90 - heading})
+    >>> frame_of_angle(way, {"NED": heading, "ENU": 90 - heading})
     'NED'
     """
     clear = []
     unclear = []
     for name, heading in readings.items():
         # Direction in which the craft should go under this reading.
-        course = np.radians(heading) + (0.0 if drift is None else drift)
-        rows = _all_known(time, north, east, course)
-        way = (north + 1j * east)[rows]
+        course = np.radians(heading) + drift
+        rows = _all_known(position, course)
+        way = position[rows]
         bow = np.exp(1j * course[rows])
-        best = 0.0 + 0.0j
+        best = 0.0j
         # Mean direction of the way made against it, weighted by distance.
         # Its length is near 1 if the reading follows the course.
         for k in _SPANS:
@@ -145,13 +140,13 @@ def frame_of_angle(
             mean = (moved * np.conj(middle)).sum() / total if total > 0.0 else 0.0
             best = max(best, complex(mean), key=abs)
         # The angle must be small too, apart from drift.
-        is_clear = abs(best) > _CLEAR and abs(np.degrees(np.angle(best))) < _BESIDE
-        (clear if is_clear else unclear).append((name, abs(best), abs(np.degrees(np.angle(best)))))
+        is_beside = abs(np.degrees(np.angle(best))) >= _BESIDE
+        if abs(best) > _CLEAR and not is_beside:
+            clear.append(name)
+        elif abs(best) >= _UNCLEAR and not is_beside:
+            unclear.append(name)
     # Accept a reading only if it alone is clear, and all others clearly fail.
-    others_out = all(
-        length < _UNCLEAR or other_length > _BESIDE for _, length, other_length in unclear
-    )
-    return clear[0][0] if len(clear) == 1 and others_out else None
+    return clear[0] if len(clear) == 1 and not unclear else None
 
 
 def frame_of_velocity(time: np.ndarray, way: np.ndarray, readings: dict[Any, np.ndarray]) -> Any:

@@ -66,6 +66,10 @@ class Guess:
         """Guess for this column with other settings of its channel and other changes."""
         return replace(self, channel=self.channel.model_copy(update=settings), **more)
 
+    def refused(self, why: str) -> Guess:
+        """Guess that this column is not used."""
+        return replace(self, role="", why=why)
+
     @property
     def is_guess(self) -> bool:
         """Whether a channel file has to confirm it."""

@@ -31,6 +31,7 @@ from shipcosim.diagnose.numerics import finite
 
 _DIRECTIONS = set("direction rotation sign ahead forward sense reverse rev astern backward".split())
 """Words of a column that holds the direction of a shaft."""
+_HEMISPHERES = {"hemisphere", "hemi", "ns", "ew", "hem"}
 _OF_A_SHAFT = set("rpm thrust speed shaft propeller thruster feedback".split())
 _POSITIONS = (("north", "east"), ("latitude", "longitude"))
 _PAIRS = (
@@ -98,8 +99,8 @@ def propose(
     clock, others = time_of([g for g in every if g.role == "time"], log, form)
     chosen |= {"time": clock} if clock else {}
     left += others
-    left = _with_quaternion(chosen, log, left)
-    left = _with_hemispheres(chosen, log, left)
+    _with_quaternion(chosen, log)
+    _with_hemispheres(chosen, log)
     _with_directions(chosen, log)
     _with_its_pair(chosen, left)
     # Conventions and values settle what names leave open.
@@ -171,37 +172,31 @@ def _chosen(guesses):
                 if guess in commands
                 else f"'{best.column}' is the {role}"
             )
-            left.append(replace(guess, role="", why=why))
+            left.append(guess.refused(why))
     return chosen, left
 
 
-def _with_quaternion(chosen, log, left):
+def _with_quaternion(chosen, log):
     """A heading from the four columns of an attitude, where there is no other."""
     if "heading" in chosen and chosen["heading"].rank < GUESS:
-        # Columns that share a prefix and end in the components of a quaternion.
-        return left
-    ends = {"w": "w", "x": "x", "y": "y", "z": "z", "0": "w", "1": "x", "2": "y", "3": "z"}
+        return
+    # Columns that share a prefix and end in the components of a quaternion.
+    ends = dict(zip("wxyz0123", "wxyzwxyz", strict=True))
+    named = {"q", "quaternion", "quat", "orientation", "attitude", "qw", "qx"}
     groups: dict[tuple, dict[str, str]] = {}
-    for column in log.values:
-        words = words_of(column)
-        last = words[-1] if words else ""
-        before = words[:-1]
-        if len(words) == 1 and len(last) == 2 and last[0] == "q" and last[1] in "wxyz":
-            before = ("q",)
+    for column, cells in log.values.items():
+        *before, last = words_of(column) or ("",)
+        if not before and len(last) == 2 and last[0] == "q":
+            before = ["q"]
             last = last[1]
-        if last in ends and (
-            set(before) & {"q", "quaternion", "quat", "orientation", "attitude", "qw", "qx"}
-        ):
-            groups.setdefault(before, {})[ends[last]] = column
-    for parts in groups.values():
-        if set(parts) == set("wxyz") and all(
-            log.values[c].dtype.kind == "f" for c in parts.values()
-        ):
-            channel = Channel(quaternion=(parts["w"], parts["x"], parts["y"], parts["z"]))
-            why = "of a quaternion; it may be of another frame (ENU)"
-            chosen["heading"] = Guess(parts["w"], "heading", channel, GUESS, why)
-            return [guess for guess in left if guess.column not in parts.values()]
-    return left
+        if last in ends and named & set(before) and cells.dtype.kind == "f":
+            groups.setdefault(tuple(before), {})[ends[last]] = column
+    whole = [parts for parts in groups.values() if len(parts) == 4]
+    if whole:
+        parts = whole[0]
+        channel = Channel(quaternion=(parts["w"], parts["x"], parts["y"], parts["z"]))
+        why = "of a quaternion; it may be of another frame (ENU)"
+        chosen["heading"] = Guess(parts["w"], "heading", channel, GUESS, why)
 
 
 def _by_convention_of_ros(chosen, log):
@@ -232,7 +227,7 @@ def _by_convention_of_ros(chosen, log):
             turned(role, "assumed positive to port", sign=-1, **unit)
 
 
-def _with_hemispheres(chosen, log, left):
+def _with_hemispheres(chosen, log):
     """Numbers with the columns of N and S, E and W, or port and starboard that stand behind them."""
     order = list(log.values)
     for role in [role for role in chosen if sides_of(role)]:
@@ -246,26 +241,20 @@ def _with_hemispheres(chosen, log, left):
         if minutes and guess.rank != EXACT and guess.column not in minutes:
             why = f"its minutes may stand in '{minutes[0]}'"
             guess = chosen[role] = replace(guess, rank=GUESS, why=why)
+        # The side stands behind the number; of a position also in a column that is named so.
+        named = [n for n in order if _HEMISPHERES & set(words_of(n))]
         after = order[order.index(guess.column) + 1 :][:1]
-        named = [
-            name
-            for name in order
-            if set(words_of(name)) & {"hemisphere", "hemi", "ns", "ew", "hem"}
-        ]
-        if role not in LARGEST:
-            named, after = (), [name for name in after if name not in named]
-        for name in (*after, *named):
+        is_position = role in LARGEST
+        for name in [*after, *named] if is_position else [n for n in after if n not in named]:
             cells = log.values[name]
             if cells.dtype.kind == "f" or are_codes(cells):
                 continue
             signs = hemisphere_signs(cells, role)
             # An A alone behind a number may mean that it is active.
             if signs is not None and (1.0 in signs or "F" not in sides_of(role)):
-                notes = () if role in LARGEST else (f"its side stands in '{name}'",)
+                notes = () if is_position else (f"its side stands in '{name}'",)
                 chosen[role] = guess.read_as({"hemisphere": name}, notes=(*guess.notes, *notes))
-                left = [other for other in left if other.column != name]
                 break
-    return left
 
 
 def _with_directions(chosen, log):
@@ -314,11 +303,6 @@ def _thruster_words(name):
     return set(words_of(name)) - _DIRECTIONS - _OF_A_SHAFT
 
 
-def _never_changes(guess, log):
-    values = log.values[guess.column]
-    return values.dtype.kind == "f" and len(np.unique(finite(values))) < 2
-
-
 def _of_one_kind(chosen, log):
     """Takes away what is there twice in another form, or without its other half; these guesses, with why."""
     left = []
@@ -326,19 +310,21 @@ def _of_one_kind(chosen, log):
     def drop(roles, why):
         for role in roles:
             if role in chosen:
-                why = why.replace("_", " ")
-                left.append(replace(chosen.pop(role), role="", channel=UNUSED, why=why))
+                guess = chosen.pop(role).refused(why.replace("_", " "))
+                left.append(replace(guess, channel=UNUSED))
 
     def how_poor(pair):
-        is_dead = all(_never_changes(chosen[role], log) for role in pair)
-        return is_dead, max(chosen[role].rank for role in pair) == GUESS
+        columns = [log.values[chosen[role].column] for role in pair]
+        is_dead = all(
+            cells.dtype.kind == "f" and len(np.unique(finite(cells))) < 2 for cells in columns
+        )
+        return is_dead, any(chosen[role].is_guess for role in pair)
 
     # Pairs need both of their roles.
     for pair in _PAIRS:
-        there = [role for role in pair if role in chosen]
-        if len(there) == 1:
-            other = next(role for role in pair if role not in there)
-            drop(there, f"it is {there[0]}, and no column is {other}")
+        for role, other in (pair, pair[::-1]):
+            if other not in chosen:
+                drop([role], f"it is {role}, and no column is {other}")
     # Of two positions keep one that changes, then the surer one: x and y may count from a fixed latitude.
     whole = sorted((pair for pair in _POSITIONS if pair[0] in chosen), key=how_poor)
     if len(whole) == 2:

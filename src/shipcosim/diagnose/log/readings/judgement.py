@@ -150,8 +150,10 @@ def _score(combination, evidence) -> tuple[float, tuple[float, float]]:
     # Deviations of the factors from what the combination
     # predicts, with a wide prior where a factor is free.
     slabs = {change.slab.of: change.slab.std for change in combination if change.slab}
-    off = [_off_position(relation, reading, slabs), _off_rate(rate, reading, slabs)]
+    offs = []
     if relation is not None:
+        off = relation.factor.real - reading.factor.real
+        offs.append((off, relation.std[0], SCALE_TOLERANCE, slabs.get("velocity")))
         score += (
             relation.evidence
             + _angle(relation, reading)
@@ -161,12 +163,14 @@ def _score(combination, evidence) -> tuple[float, tuple[float, float]]:
         # Whether heading and yaw rate go the same way, as evidence.
         agrees = (math.cos(rate.factor.imag) > 0.0) == (reading.rate_factor > 0.0)
         score += rate.evidence if agrees else 0.0
+        off = rate.factor.real - math.log(abs(reading.rate_factor))
+        offs.append((off, rate.std[0], RATE_TOLERANCE, slabs.get("rate")))
     # Usual speeds and time steps tell units apart that no relation between channels does.
     score += _usual(evidence.speed, abs(reading.velocity), USUAL_SPEED) + _usual(
         evidence.step, reading.time, USUAL_STEP
     )
     # A free clock rate is integrated out, as it scales both relations.
-    factors, clock = _factors([factor for factor in off if factor], slabs.get("time"))
+    factors, clock = _factors(offs, slabs.get("time"))
     return score + factors - cost, (reading.time * math.exp(clock[0]), reading.time * clock[1])
 
 
@@ -184,9 +188,7 @@ def _angle(relation, reading):
     # A free angle has the density of a uniform prior over all directions.
     if "angle" in reading.free:
         return -math.log(2.0 * math.pi)
-    return _log_density(np.array([off_angle(relation, reading)]), relation.std[1], ANGLE_TOLERANCE)[
-        0
-    ]
+    return float(_log_density(off_angle(relation, reading), relation.std[1], ANGLE_TOLERANCE))
 
 
 def _ahead(relation, reading, courses):
@@ -203,11 +205,7 @@ def _ahead(relation, reading, courses):
     # Mixture: most craft go ahead, some astern, the rest
     # in any direction; relative to the uniform density.
     shares = [
-        share
-        * 2.0
-        * math.pi
-        * math.exp(-0.5 * (off / spread) ** 2)
-        / (spread * math.sqrt(2.0 * math.pi))
+        share * 2.0 * math.pi * math.exp(_log_normal(off, spread))
         for share, off in ((GOES_AHEAD, cmath.phase(course)), (GOES_ASTERN, cmath.phase(-course)))
     ]
     return math.log(sum(shares) + 1.0 - GOES_AHEAD - GOES_ASTERN)
@@ -218,34 +216,11 @@ def off_angle(relation: Relation, reading: LogInterpretation) -> float:
     return math.remainder(relation.factor.imag - reading.factor.imag, 2.0 * math.pi)
 
 
-def _off_position(relation, reading, slabs):
-    """How far the size of the factor is from what a reading predicts: (value, density of the rest)."""
-    if relation is None:
-        return None
-    return (
-        relation.factor.real - reading.factor.real,
-        relation.std[0],
-        SCALE_TOLERANCE,
-        slabs.get("velocity"),
-    )
-
-
-def _off_rate(rate, reading, slabs):
-    if rate is None:
-        return None
-    return (
-        rate.factor.real - math.log(abs(reading.rate_factor)),
-        rate.std[0],
-        RATE_TOLERANCE,
-        slabs.get("rate"),
-    )
-
-
 def _factors(offs, slab):
     """Log-density of the factors found, and the logarithm of the clock's rate with its deviation where it is free."""
     # Without a free clock the densities of the factors multiply.
     if slab is None or not offs:
-        return sum(_one_factor(*off)[0] for off in offs), (0.0, 0.0)
+        return float(sum(_one_factor(*off) for off in offs)), (0.0, 0.0)
     # The clock rate adds the same logarithm to all factors. Its estimate is their weighted mean.
     stds = np.array([np.hypot(std, tolerance[0]) for _, std, tolerance, _ in offs])
     weights = stds**-2 / np.sum(stds**-2)
@@ -254,8 +229,7 @@ def _factors(offs, slab):
     # Integrate the joint density over the clock rate on
     # a grid about this estimate; its prior is normal.
     at = centre + 2.0 * max(stds) * GRID
-    log = sum(_one_factor(value - at, std, tolerance, free) for value, std, tolerance, free in offs)
-    log = log - 0.5 * (at / slab) ** 2 - math.log(slab * math.sqrt(2.0 * math.pi))
+    log = sum(_one_factor(value - at, *others) for value, *others in offs) + _log_normal(at, slab)
     # Sum on the grid relative to the largest value, against underflow.
     top = float(log.max())
     return top + math.log(float(np.sum(np.exp(log - top))) * (at[1] - at[0])), (centre, spread)
@@ -264,19 +238,16 @@ def _factors(offs, slab):
 def _one_factor(value, std, tolerance, free):
     # A free factor has the wide normal density of its
     # prior instead of the tolerance of instruments.
-    value = np.atleast_1d(value)
-    if free is not None:
-        return -0.5 * (value / free) ** 2 - math.log(free * math.sqrt(2.0 * math.pi))
-    return _log_density(value, std, tolerance)
+    return _log_density(value, std, tolerance) if free is None else _log_normal(value, free)
+
+
+def _log_normal(value, std):
+    """Logarithm of the normal density about zero."""
+    return -0.5 * (value / std) ** 2 - math.log(std * math.sqrt(2.0 * math.pi))
 
 
 def _log_density(value, std, tolerance):
     """Log-density of a deviation: measured uncertainty and the spread of instruments, of which a few differ more."""
     # Measured uncertainty and both tolerances of instruments: a mixture of two normal densities.
-    near = math.hypot(std, tolerance[0])
-    far = math.hypot(std, tolerance[1])
-    densities = [
-        share * np.exp(-0.5 * (value / width) ** 2) / (width * math.sqrt(2.0 * math.pi))
-        for share, width in ((1.0 - FAR_SHARE, near), (FAR_SHARE, far))
-    ]
-    return np.log(sum(densities) + 1e-300)
+    near, far = (np.exp(_log_normal(value, math.hypot(std, width))) for width in tolerance)
+    return np.log((1.0 - FAR_SHARE) * near + FAR_SHARE * far + 1e-300)
