@@ -91,8 +91,12 @@ def read_log(
     form = given.form if given else FileLayout()
     columns, file = _source_of(log, form)
     is_asked = given is not None and bool(given.channels)
-    proposal = None if is_asked else propose(columns, thrusters, form)
-    mapping = proposal.channels() if proposal else given.channels
+    proposal = None
+    if given is not None and given.channels:
+        mapping = given.channels
+    else:
+        proposal = propose(columns, thrusters, form)
+        mapping = proposal.channels()
     _check_channels(columns, mapping, proposal)
     # Convert each channel to the unit of its role, and keep what is stated and what is not used.
     signals, remarks = _signals(columns, mapping, form, is_asked)

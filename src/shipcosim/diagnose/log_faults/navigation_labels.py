@@ -108,7 +108,19 @@ def relabelled(
     # Units change the density of the data; correct for the
     # factors of the faults at hand and of the candidates.
     less = sum(_density(fault, problem) for fault in labelled)
-    return [Relabelled((*others, fault), _density(fault, problem) - less) for fault in tried]
+    return [
+        Relabelled((*_not_answered(others, fault), fault), _density(fault, problem) - less)
+        for fault in tried
+    ]
+
+
+def _not_answered(faults: Sequence[Finding], label: Finding) -> list[Finding]:
+    """Faults without the open ones for which this label was among the readings, of all rows or of a part."""
+    return [
+        fault
+        for fault in faults
+        if not fault.alternatives or label.note not in (fault.note, *fault.alternatives)
+    ]
 
 
 def _judged(problem):

@@ -24,6 +24,23 @@ def test_another_label_than_was_found_first_is_taken():
     ]
 
 
+def test_a_label_that_position_and_velocity_left_open_is_answered():
+    """East was mirrored, or surge and sway swapped, or another part is: her answer tells, and nothing stays open."""
+    healthy = twin.logs()["healthy"]
+    log = healthy.assign(east=("time", -healthy["east"].values, healthy["east"].attrs))
+    east = finding_of(negative("east"), 0.25)
+    still = replace(finding_of(negative("yaw_rate"), 0.3), mislabel=None, alternatives=("another",))
+    left_open = replace(east, mislabel=None, alternatives=("surge and sway are swapped",))
+    swap = next(
+        label
+        for label in POSITION_LABELS
+        if label.channels == ("surge", "sway") and label.scale is None
+    )
+    faults = [left_open, still, finding_of(swap, 1.0)]
+    better, *_ = relabelled(log, faults, twin.ready(healthy))
+    assert better.faults == (still, finding_of(negative("east"), better.faults[-1].probability))
+
+
 def test_what_was_found_rightly_stays():
     healthy = twin.logs()["healthy"]
     log = healthy.assign(east=("time", -healthy["east"].values, healthy["east"].attrs))

@@ -92,6 +92,7 @@ def tables_of_messages(path: Path) -> dict[str, LogColumns]:
 
 def _message(line, in_si):
     """PGN, time, source and fields of a line, None for fields that are not read; and whether these are in SI units."""
+    is_raw = False
     if line.startswith("{"):
         message = json.loads(line)
         when = re.fullmatch(_STAMP, message["timestamp"])
@@ -99,15 +100,20 @@ def _message(line, in_si):
         content = message.get("fields")
     else:
         message = when = _RAW.fullmatch(line) or _TOLD.fullmatch(line)
+        if message is None:
+            raise ValueError(line)
+        is_raw = message.re is _RAW
         source = message["source"]
         content = message["fields"]
-        in_si = message.re is _RAW or " rad" in line
+        in_si = is_raw or " rad" in line
+    if when is None:
+        raise ValueError(line)
     moment = np.datetime64(f"{when['day']}T{when['clock'].replace(',', '.')}", "ns")
     pgn = int(message["pgn"])
     if pgn not in _RAW_FIELDS:
         content = None
     elif isinstance(content, str):
-        content = _of_bytes(pgn, content) if message.re is _RAW else _of_text(content)
+        content = _of_bytes(pgn, content) if is_raw else _of_text(content)
     return pgn, float(moment.astype("int64")) * 1e-9, int(source), content, in_si
 
 

@@ -298,9 +298,10 @@ def _settle_velocity(channels):
     """Frame of two components of a velocity whose names do not state it, by the positions and the heading."""
     chosen = channels.chosen
     pair = next((p for p in _VELOCITIES if all(role in chosen for role in p)), None)
-    heading = channels.values("heading")
-    is_known = heading is not None and channels.way is not None
-    if pair is None or not is_known or not channels.are_sure("heading", *_PLACES):
+    heading, way = channels.values("heading"), channels.way
+    if pair is None or heading is None or way is None:
+        return
+    if not channels.are_sure("heading", *_PLACES):
         return
     guesses = [chosen[role] for role in pair]
     if any(guess.rank < GUESS for guess in guesses):
@@ -314,7 +315,7 @@ def _settle_velocity(channels):
         ("north_velocity", "east_velocity", 1): first + 1j * second,
         ("east_velocity", "north_velocity", 1): second + 1j * first,
     }
-    roles = frame_of_velocity(channels.time, channels.way, readings)
+    roles = frame_of_velocity(channels.time, way, readings)
     if roles is None:
         return
     for role in pair:
