@@ -410,7 +410,6 @@ def test_unusable_data_is_refused_and_leaves_nothing(
             ["log.csv", "--system", "gunnerus_opn"],
             ["gunnerus_opn:", "no such system", "Did you mean 'gunnerus_open'?"],
         ),
-        (["log.csv", "--system", "gunnerus_dp"], ["ssp/gunnerus_dp:", "exactly one vessel"]),
         (["log.csv", "--system", "log.csv"], ["log.csv:"]),
         (["log.csv", "--out", "log.csv"], ["log.csv", "is a file, not a folder", "--out"]),
     ],

@@ -417,3 +417,12 @@ def test_every_system_has_one_ship(file):
     """A predictor has the parameters of a hull too, and inputs of loads that others know of."""
     system = read_system(file.parent, fmus=[twin.build_stale(twin.ROOT)])
     assert ship_model_of(system).vessel == "vessel"
+
+
+@pytest.mark.parametrize("ships", [0, 2])
+def test_a_system_without_a_ship_or_with_two_is_refused(ships):
+    components = dict(twin.system().components)
+    vessel = components.pop("vessel")
+    components |= {f"ship {k}": replace(vessel, name=f"ship {k}") for k in range(ships)}
+    with pytest.raises(ShipcosimError, match=f"{ships} components with.*exactly one vessel"):
+        ship_model_of(replace(twin.system(), components=components))
