@@ -85,17 +85,6 @@ class SetEvidence:
 
 
 @dataclass(frozen=True)
-class SizeEstimate:
-    """A parameter of a cause in units of its typical size off neutral, with its standard deviation."""
-
-    cause: str
-    component: str | None
-    parameter: str
-    size: float
-    std: float
-
-
-@dataclass(frozen=True)
 class CauseGain:
     """Log-evidence that a cause gains, and on simulated healthy logs; None where that was not computed. [nats]"""
 
@@ -113,10 +102,8 @@ class Evidence:
     ----------
     sets : tuple of SetEvidence
         Best first, without the empty set.
-    sizes : tuple of SizeEstimate
-        Of the set that the verdict rests on.
     gains : tuple of CauseGain
-        Of the same.
+        Of the set that the verdict rests on.
     unmodelled : dict of str to float
         Gain of unmodelled errors beside it, by kind. [nats]
     whiteness : dict of str to (LAGS, 6) array
@@ -130,7 +117,6 @@ class Evidence:
     """
 
     sets: tuple[SetEvidence, ...]
-    sizes: tuple[SizeEstimate, ...]
     gains: tuple[CauseGain, ...]
     unmodelled: dict[str, float]
     whiteness: dict[str, np.ndarray]
@@ -158,7 +144,6 @@ def evidence_of(log: JudgedLog) -> Evidence:
             for other in log.fits
             if other.hypotheses
         ),
-        tuple(_sizes(fit)),
         tuple(
             CauseGain(s.cause, s.component, gained(s, fit, log.fits), log.null_gains.get(s.label))
             for s in fit.hypotheses
@@ -169,15 +154,6 @@ def evidence_of(log: JudgedLog) -> Evidence:
         problem.record.time.size,
         log.explained.course,
     )
-
-
-def _sizes(fit):
-    for hypothesis in fit.hypotheses:
-        for parameter in hypothesis.parameters:
-            path = parameter.path
-            size = (fit.values[path] - parameter.neutral) / parameter.typical
-            std = fit.std[path] / parameter.typical
-            yield SizeEstimate(hypothesis.cause, hypothesis.component, parameter.name, size, std)
 
 
 def whiteness(problem: IdentificationProblem, fit: Fit, as_it_is: bool = False) -> np.ndarray:

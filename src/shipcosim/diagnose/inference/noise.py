@@ -6,7 +6,6 @@ import numpy as np
 
 from shipcosim.diagnose.inference.innovations import Noise, log_likelihoods, oscillation
 from shipcosim.diagnose.inference.linearisation import Linear
-from shipcosim.diagnose.inference.parts import InParts, explained
 from shipcosim.diagnose.numerics import noise_by_differences, normal_size
 from shipcosim.diagnose.ship.inputs import Record
 
@@ -65,9 +64,8 @@ def first_noise(record: Record, length: float) -> Noise:
 
 def tuned(
     noise: Noise,
-    linear: Linear | InParts,
+    left: Linear,
     record: Record,
-    theta: np.ndarray,
     *,
     most_walk: np.ndarray,
     most_white: np.ndarray | float = np.inf,
@@ -81,10 +79,9 @@ def tuned(
     ----------
     noise : Noise
         To start from.
-    linear : Linear or InParts
+    left : Linear
+        What of the log is not explained, without columns.
     record : Record
-    theta : (p,) array
-        What explains the log, in units of its columns; taken out first.
     most_walk : (3,) array
         No unexplained force may walk faster, or it would swallow every cause.
     most_white : (6,) array, optional
@@ -97,7 +94,6 @@ def tuned(
     -------
     Noise
     """
-    left = explained(linear, theta).whole()
     noise = _begun(noise, left, record)
     # Newton's method in the logarithms of the levels, one diagonal Hessian entry each: all steps up
     # and down are evaluated in one call.

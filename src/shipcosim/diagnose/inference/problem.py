@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
+from operator import itemgetter
 
 import numpy as np
 import xarray
@@ -10,6 +11,7 @@ from shipcosim.diagnose.hypotheses.catalogue import Cause, Hypothesis, hypothese
 from shipcosim.diagnose.inference.channel_noise import most_white
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted, prepared
 from shipcosim.diagnose.inference.innovations import Noise, inner_products
+from shipcosim.diagnose.inference.linearisation import Linear
 from shipcosim.diagnose.inference.noise import first_noise, tuned
 from shipcosim.diagnose.inference.parts import explained
 from shipcosim.diagnose.inference.screening import screened
@@ -71,9 +73,9 @@ def identification_problem(
     # again.
     start = first_noise(record, ship.length) if noise is None else noise
     problem = prepared(IdentificationProblem(record, ship, wanted, start, motion))
-    return (
-        problem if noise is not None else prepared(replace(problem, noise=likeliest_noise(problem)))
-    )
+    if noise is not None:
+        return problem
+    return prepared(replace(problem, noise=likeliest_noise(problem)))
 
 
 def as_logged(ship: ShipModel, repaired: xarray.Dataset) -> ShipModel:
@@ -121,19 +123,22 @@ def likeliest_noise(problem: IdentificationProblem) -> Noise:
     Noise that was tuned without a large cause would absorb its effect. But beside noise that is yet too small a cause
     may only look large: on a run in waves a scale of the velocity, which makes each jolt look larger.
     """
-    fits = dict.fromkeys([fitted(problem), beside_likeliest(problem)])
-    noises = [(tuned_noise(problem, fit), fit) for fit in fits]
-
-    def likelihood(pair):
-        noise, fit = pair
-        left = explained(fit.linear, fit.left)
-        return float(inner_products(left, noise, problem.record).free)
-
-    return max(noises, key=likelihood)[0]
+    tried = []
+    for fit in dict.fromkeys([fitted(problem), beside_likeliest(problem)]):
+        # What a fit leaves is linearised once, to tune the noise and to weigh it.
+        left = explained(fit.linear, fit.left).whole()
+        noise = _tuned(problem, left)
+        tried.append((float(inner_products(left, noise, problem.record).free), noise))
+    return max(tried, key=itemgetter(0))[1]
 
 
 def tuned_noise(problem: IdentificationProblem, fit: Fit) -> Noise:
     """Noise of maximum likelihood beside a fit."""
+    return _tuned(problem, explained(fit.linear, fit.left).whole())
+
+
+def _tuned(problem: IdentificationProblem, left: Linear) -> Noise:
+    """Noise under which what is left of a log is likeliest."""
     # Bounds on random walk and channel noise stop the noise from explaining what a cause should.
     axes = np.array([1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.length])
     most = MOST_WALK * axes
@@ -141,9 +146,8 @@ def tuned_noise(problem: IdentificationProblem, fit: Fit) -> Noise:
     white = np.maximum(most_white(problem.record), problem.noise.white)
     return tuned(
         problem.noise,
-        fit.linear,
+        left,
         problem.record,
-        fit.left,
         most_walk=most,
         most_white=white,
         least_white=LEAST_WHITE,

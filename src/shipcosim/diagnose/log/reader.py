@@ -90,7 +90,6 @@ def read_log(
     given = read_channels(channels) if isinstance(channels, (str, os.PathLike)) else channels
     form = given.form if given else FileLayout()
     columns, file = _source_of(log, form)
-    is_asked = given is not None and bool(given.channels)
     proposal = None
     if given is not None and given.channels:
         mapping = given.channels
@@ -99,7 +98,7 @@ def read_log(
         mapping = proposal.channels()
     _check_channels(columns, mapping, proposal)
     # Convert each channel to the unit of its role, and keep what is stated and what is not used.
-    signals, remarks = _signals(columns, mapping, form, is_asked)
+    signals, remarks = _signals(columns, mapping, form, is_asked=proposal is None)
     stated = {name: _stated(channel, name, columns) for name, channel in mapping.items()}
     used = {name for channel in mapping.values() for name in channel.columns}
     unused = [name for name in columns.values if name not in used and not _is_unnamed(name)]

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from shipcosim.diagnose.craft.learned import LearnedCraft
 from shipcosim.diagnose.experiment.design import ExperimentDesign
-from shipcosim.diagnose.explanation.summary import CauseGain, LoadForm, SizeEstimate
+from shipcosim.diagnose.explanation.summary import CauseGain, LoadForm
 from shipcosim.diagnose.finding import Candidate, Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, read_faults
 from shipcosim.diagnose.hypotheses.cause import Cause
@@ -34,7 +34,7 @@ def title(cause: str, component: str | None = None) -> str:
     return capitalised(text) + (f" of {component}" if component else "")
 
 
-def title_of(cause: Finding | Candidate | SizeEstimate | CauseGain) -> str:
+def title_of(cause: Finding | Candidate | CauseGain) -> str:
     """Name of a cause at its place for readers."""
     return title(cause.cause, cause.component)
 

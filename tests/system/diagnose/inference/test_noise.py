@@ -56,7 +56,7 @@ def test_levels_that_were_planted_are_found_from_either_side(problem, off):
     """361 rows leave some 4 % in a level of white noise, and hardly say how fast an unexplained force walks."""
     record, linear = problem
     start = Noise(off * TRUTH.white, off * TRUTH.jolt, off * TRUTH.walk, off * TRUTH.wave)
-    found = tuned(start, linear, record, np.zeros(0), most_walk=NO_LIMIT, rounds=8)
+    found = tuned(start, linear, record, most_walk=NO_LIMIT, rounds=8)
     np.testing.assert_allclose(found.white[:3], TRUTH.white[:3], rtol=0.12)
     whole = [
         np.hypot(noise.white[3:], noise.wave) for noise in (found, TRUTH)
@@ -72,14 +72,14 @@ def test_levels_that_were_planted_are_found_from_either_side(problem, off):
 def test_an_unexplained_force_is_kept_from_swallowing_causes(problem):
     record, linear = problem
     most = np.array([2e-4, 2e-4, 1e-5])
-    found = tuned(TRUTH, linear, record, np.zeros(0), most_walk=most)
+    found = tuned(TRUTH, linear, record, most_walk=most)
     assert (found.walk <= most).all()
 
 
 def test_no_channel_and_no_acceleration_is_less_noisy_than_the_least(problem):
     record, linear = problem
     least = dict(least_white=2.0 * TRUTH.white, least_jolt=2.0 * TRUTH.jolt)
-    found = tuned(TRUTH, linear, record, np.zeros(0), most_walk=NO_LIMIT, **least)
+    found = tuned(TRUTH, linear, record, most_walk=NO_LIMIT, **least)
     assert (found.white >= 2.0 * TRUTH.white).all() and (found.jolt >= 2.0 * TRUTH.jolt).all()
 
 
