@@ -35,6 +35,7 @@ from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.smoothing import froude_time
 from shipcosim.diagnose.ship.stretches import in_stretches
 from shipcosim.diagnose.ship.surrogate_building import with_surrogates
+from shipcosim.diagnose.ship.thrusters import largest_loads
 
 NOT_SHOWN = "The craft is not learned: her motion does not show what her thrusters did."
 LEARNED = (
@@ -159,7 +160,8 @@ def _compared(log: CheckedLog) -> ComparedLog:
     most = RESOLVED * froude_time(ship.length)
     message = f"Rows {step:.3g} s apart do not show this ship's answers: no cause is named. {most:.2g} s would."
     too_slow = (message,) if step > most else ()
-    unknown = _unknown_thrusters(log.repaired, ship)
+    unlogged = _unlogged(log.repaired, ship)
+    unknown = (_no_cause_without(unlogged),) if unlogged else ()
     # Rows that are too few, or too far apart, show no forces.
     if too_slow or measured.usable.sum() < FEWEST_USABLE:
         return _stage(log, LogComparison(errors, (), obstacles=too_slow + unknown))
@@ -167,10 +169,15 @@ def _compared(log: CheckedLog) -> ComparedLog:
     commanded = commanded_by(record, measured, ship)
     axes = axes_of(measured, commanded, ship)
     over_none = errors_over_none(record, measured, errors)
-    # Unlogged thrusters make every cause uncertain; only large missing forces are reported.
-    if unknown:
-        missing = tuple(missing_loads(axes, commanded, measured, ship, over_none))
-        large = tuple(load.discrepancy for load in missing if load.is_large)
+    # Unlogged thrusters make every cause uncertain; what is beyond their power is reported.
+    if unlogged:
+        power = largest_loads(ship, unlogged)
+        missing = tuple(
+            load
+            for load in missing_loads(axes, commanded, measured, ship, over_none)
+            if load.is_large and load.missing > power[load.axis]
+        )
+        large = tuple(load.discrepancy for load in missing)
         return _stage(log, LogComparison(errors, large, obstacles=unknown, missing=missing))
     # Labels first, as gains and ratio depend on them.
     labels = read_labels(record, measured, axes, ship)
@@ -305,19 +312,23 @@ def _taught_by(
     return learn(usable) if len(usable) == len(logs) else None
 
 
-def _unknown_thrusters(repaired: xarray.Dataset, ship: ShipModel) -> tuple[str, ...]:
-    """Remarks on thrusters that a log lacks."""
-    remarks = []
-    for name in ship.thrusters:
-        lacking = [
-            f"{name}_{kind}" for kind in ship.drives(name) if f"{name}_{kind}" not in repaired
-        ]
-        if lacking:
-            remarks.append(
-                f"No {' and '.join(lacking)} in the log: what '{name}' does to the ship is not known, and no cause is"
-                " named. Log it; if it stood still, give a column of zeros."
-            )
-    return tuple(remarks)
+def _unlogged(repaired: xarray.Dataset, ship: ShipModel) -> dict[str, list[str]]:
+    """Channels of its thrusters that a log lacks, by thruster."""
+    lacking = {
+        name: [f"{name}_{kind}" for kind in ship.drives(name) if f"{name}_{kind}" not in repaired]
+        for name in ship.thrusters
+    }
+    return {name: channels for name, channels in lacking.items() if channels}
+
+
+def _no_cause_without(unlogged: Mapping[str, Sequence[str]]) -> str:
+    """Why a log without channels of thrusters shows no cause."""
+    channels = ", ".join(name for lacking in unlogged.values() for name in lacking)
+    thrusters = " and ".join(f"'{name}'" for name in unlogged)
+    return (
+        f"No {channels} in the log. How {thrusters} pushed the ship is not known, so no cause is named. Log what is "
+        "missing; of a thruster that stood still, give columns of zeros."
+    )
 
 
 def _stage(log: CheckedLog, comparison: LogComparison) -> ComparedLog:

@@ -160,7 +160,10 @@ def _left_by_rows(record: Record) -> np.ndarray:
 
     Its velocities have no noise in which that would not show.
     """
-    noise = normal_size(noise_by_differences(record.measured[..., 3:], 3, axis=-2), axis=-2)
+    velocities = record.measured[..., 3:]
+    if np.isnan(velocities).all(axis=-2).any():
+        return np.zeros(3)
+    noise = normal_size(noise_by_differences(velocities, 3, axis=-2), axis=-2)
     if not np.all(noise < LEAST_WHITE[3:]):
         return np.zeros(3)
     motion = first_motion(record)

@@ -1,6 +1,6 @@
 """Thrusters: loads of our own FMUs by logged speed and direction, and each thruster as a DP controller knows it."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -80,6 +80,37 @@ def dp_thruster_of(model: ShipModel, name: str) -> DpThruster:
     # Tunnel thrusters push to starboard.
     thrust = 3600.0 * unit.thrust_coefficient
     return DpThruster(unit.x, 0.0, 0.5 * np.pi, False, False, thrust, thrust, unit.rpm_max / 60.0)
+
+
+def largest_loads(model: ShipModel, names: Iterable[str]) -> dict[str, float]:
+    """The most that thrusters together can push the ship at rest; without limit with one of a third-party FMU.
+
+    Parameters
+    ----------
+    model : ShipModel
+    names : iterable of str
+        Thrusters.
+
+    Returns
+    -------
+    dict of str to float
+        Of `surge`, `sway` and `yaw`. [N, N, N.m]
+    """
+    most = np.zeros(3)
+    for name in names:
+        if name in model.third_party:
+            return dict.fromkeys(("surge", "sway", "yaw"), np.inf)
+        unit = dp_thruster_of(model, name)
+        thrust = max(unit.ahead, unit.astern) * unit.most**2
+        # One that turns can push anywhere, a fixed one along its axis.
+        along, across = (1.0, 1.0) if unit.turns else np.abs([np.cos(unit.axis), np.sin(unit.axis)])
+        lever = (
+            np.hypot(unit.x, unit.y)
+            if unit.turns
+            else abs(unit.x * np.sin(unit.axis) - unit.y * np.cos(unit.axis))
+        )
+        most += thrust * np.array([along, across, lever])
+    return dict(zip(("surge", "sway", "yaw"), map(float, most), strict=True))
 
 
 def thruster_loads(
