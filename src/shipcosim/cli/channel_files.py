@@ -67,7 +67,10 @@ def proposed(
     ship = ship_model_of(Reading().system(system or SYSTEM_OF_LOGS, "system"))
     thrusters = {name: ship.drives(name) for name in ship.thrusters}
     proposal = propose(columns, thrusters, given)
-    if run_channels := channels_of_run(list(columns.values), ship.vessel, ship.thrusters):
+    run_channels = channels_of_run(
+        list(columns.values), ship.vessel, ship.thrusters, ship.thrust_signals
+    )
+    if run_channels:
         used = tuple(
             Guess(channel.column, role, channel, SURE) for role, channel in run_channels.items()
         )

@@ -235,7 +235,7 @@ def read_measurements(
         # Where a thruster's neighbour is, the ship knows by itself.
         paths = [path for path in ship.numbers if ".neighbour_" not in path]
         numbers = {path: ship.get(path) for path in paths}
-        log = run_as_log(log, ship.vessel, ship.thrusters, numbers)
+        log = run_as_log(log, ship.vessel, ship.thrusters, numbers, ship.thrust_signals)
     drives = {name: ship.drives(name) for name in ship.thrusters}
     return ReadLog(read_log(log, channels, drives), ship, read_catalogue(causes))
 

@@ -9,8 +9,9 @@ from diagnose import twin
 import shipcosim as sc
 from shipcosim.diagnose.extension.extend import extend
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
-from shipcosim.diagnose.log.runs import other_numbers, run_as_log
+from shipcosim.diagnose.log.runs import channels_of_run, other_numbers, run_as_log
 from shipcosim.diagnose.replays import replay_log
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.validation.tracks import errors_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.series import make_table, write_table
@@ -72,6 +73,17 @@ def test_a_thruster_that_is_told_its_force_is_driven_by_it_and_by_no_speed(run):
     force = run.rename(propeller_rpm="propeller_thrust").drop_vars("propeller_azimuth")
     log = run_as_log(force, "vessel", ["propeller"])
     assert "propeller_thrust" in log and "propeller_rpm" not in log
+
+
+def test_a_thruster_whose_force_an_allocator_commands_is_driven_by_that():
+    """Own runs of a ship with propellers that do not turn were refused: no log had what they follow."""
+    system = read_system(ROOT / "ssp" / "osv_dp", fmus=[twin.build_stale(ROOT)])
+    ship = ship_model_of(system)
+    assert {ship.drives(name) for name in ship.thrusters} == {("thrust",)}
+    signals = ["time", "vessel.x", "vessel.y", "vessel.psi", "stern_1.thrust"]
+    signals += ship.thrust_signals.values()
+    channels = channels_of_run(signals, "vessel", ship.thrusters, ship.thrust_signals)
+    assert channels["stern_1_thrust"].column == "allocator.thrust_cmd_3"
 
 
 def test_the_velocity_is_along_the_heading_that_waves_turn(run):

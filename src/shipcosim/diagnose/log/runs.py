@@ -44,6 +44,7 @@ def run_as_log(
     ship: str,
     thrusters: Collection[str],
     numbers: Mapping[str, Any] = MappingProxyType({}),
+    thrust_signals: Mapping[str, str] = MappingProxyType({}),
 ) -> LogSource:
     """A log by roles of the table of a run; any other log as it is.
 
@@ -61,6 +62,8 @@ def run_as_log(
     numbers : mapping of str to float
         Of the ship, ``component.name``: the attribute ``run_remarks`` of the table names those that the run had
         otherwise.
+    thrust_signals : mapping of str to str
+        Signals that command the thrust of thrusters which follow that, by thruster.
 
     Returns
     -------
@@ -86,7 +89,7 @@ def run_as_log(
         columns = read_columns(log)
         signals, units = ({name: pair[i] for name, pair in columns.items()} for i in (0, 1))
         file = {"source": str(log), "sha256": hashlib.sha256(Path(log).read_bytes()).hexdigest()}
-    channels = channels_of_run(signals, ship, thrusters)
+    channels = channels_of_run(signals, ship, thrusters, thrust_signals)
     if not channels:
         return log
     if missing := [role for role in _NEEDED if role not in channels]:
@@ -157,7 +160,10 @@ def other_numbers(log: LogSource, numbers: Mapping[str, Any]) -> list[str]:
 
 
 def channels_of_run(
-    signals: Collection[str], ship: str, thrusters: Collection[str]
+    signals: Collection[str],
+    ship: str,
+    thrusters: Collection[str],
+    thrust_signals: Mapping[str, str] = MappingProxyType({}),
 ) -> dict[str, Channel]:
     """Channels of the table of a run, by role; none where it is another table.
 
@@ -169,14 +175,17 @@ def channels_of_run(
         Name of the ship's component.
     thrusters : collection of str
         Names of those of her thrusters.
+    thrust_signals : mapping of str to str
+        As of `run_as_log`.
     """
     if not _is_run(signals):
         return {}
     named = {"time": "time"} | {role: f"{ship}.{output}" for role, (output, _) in _SHIP.items()}
     for name in thrusters:
-        # A thruster whose force is an input of the system is driven by that, and not by the speed of a shaft.
-        thrust = f"{name}_thrust"
-        speed = {thrust: thrust} if thrust in signals else {f"{name}_rpm": f"{name}.rpm"}
+        # A thruster whose force is commanded is driven by that, and not by the speed of a shaft.
+        role = f"{name}_thrust"
+        thrust = role if role in signals else thrust_signals.get(name)
+        speed = {role: thrust} if thrust in signals else {f"{name}_rpm": f"{name}.rpm"}
         named |= speed | {f"{name}_azimuth": f"{name}.azimuth"}
     return {role: _channel(role, signal) for role, signal in named.items() if signal in signals}
 

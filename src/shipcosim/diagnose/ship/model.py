@@ -144,6 +144,13 @@ class ShipModel:
         return [name for name in self.parts if self.drives(name)]
 
     @property
+    def thrust_signals(self) -> dict[str, str]:
+        """Signals of a run that command the thrust of thrusters which follow that, by thruster."""
+        return {
+            name: fmu.thrust_signal for name, fmu in self.third_party.items() if fmu.thrust_signal
+        }
+
+    @property
     def azimuths(self) -> list[str]:
         """Names of the thrusters that turn."""
         return [name for name in self.parts if "azimuth" in self.drives(name)]

@@ -22,6 +22,12 @@ _UNITS = {
     "thrust": ("N", "kN"),
     "azimuth": ("rad", "deg"),
 }
+_ENDINGS = {
+    "rpm": ("rpm", "rpm_in"),
+    "thrust": ("thrust", "thrust_in", "thrust_cmd"),
+    "azimuth": ("azimuth", "azimuth_in"),
+}
+"""How names of inputs end that are such a quantity; no commanded speed: a log has the measured one."""
 _KNOWN = 0.02  # of the thrust, if no more is given (assumed)
 
 
@@ -51,6 +57,8 @@ class ThirdPartyFmu:
         Inputs that the system feeds and no log: they keep their start value.
     unclear : tuple of str
         Inputs of which more than one could be its speed, or its direction.
+    thrust_signal : str
+        Signal of a run that is its commanded thrust; empty where there is none.
     step : float or None
         Of the system. [s]
     surrogate : Surrogate or None
@@ -63,6 +71,7 @@ class ThirdPartyFmu:
     parameters: dict[str, str] = field(default_factory=dict)
     idle: tuple[str, ...] = ()
     unclear: tuple[str, ...] = ()
+    thrust_signal: str = ""
     step: float | None = None
     surrogate: Surrogate | None = None
 
@@ -138,6 +147,12 @@ def third_party_fmu_of(system: System, name: str, ship: str) -> ThirdPartyFmu:
         links += [_drive(system, kind, c) for c in named if one_source]
         unclear += [c.target[1] for c in named if not one_source]
         idle += [c.target[1] for c in candidates if c not in named]
+    # The output of another component that commands its thrust, if nothing scales it on the way.
+    commands = [
+        ".".join(c.source)
+        for c in drives.get("thrust", ())
+        if c.source[0] is not None and (c.factor, c.offset) == (1.0, 0.0)
+    ]
     # Connections from the FMU's outputs to the load on the ship.
     loads = tuple(
         (c.target[1][4], c.source[1], c.factor, c.offset)
@@ -146,7 +161,14 @@ def third_party_fmu_of(system: System, name: str, ship: str) -> ThirdPartyFmu:
     )
     step = max(filter(None, (system.experiment.step_size, component.step_size)), default=None)
     return ThirdPartyFmu(
-        component, tuple(links), loads, _parameters(component), tuple(idle), tuple(unclear), step
+        component,
+        tuple(links),
+        loads,
+        _parameters(component),
+        tuple(idle),
+        tuple(unclear),
+        commands[0] if len(commands) == 1 else "",
+        step,
     )
 
 
@@ -156,7 +178,7 @@ def _kind(system: System, connection: Connection) -> str | None:
     label = given if source is None else connection.target[1]
     # The unit decides, and the name must agree with it. Without a unit only a speed is recognised.
     unit = _unit(system, connection)
-    named = next((kind for kind in DRIVES if label.endswith(kind)), None)
+    named = next((kind for kind, ends in _ENDINGS.items() if label.endswith(ends)), None)
     if unit in (None, "", "1"):
         return "rpm" if named == "rpm" else None
     kind = next((kind for kind, units in _UNITS.items() if unit in units), None)

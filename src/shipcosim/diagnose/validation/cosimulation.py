@@ -16,7 +16,7 @@ from shipcosim.diagnose.ship.third_party_fmu import DRIVES, drives_of
 from shipcosim.diagnose.validation.gain import Comparison, Predictor
 from shipcosim.diagnose.validation.split import HORIZONS, in_rows
 from shipcosim.diagnose.validation.thresholds import INPUT_DELAY, MOST, STEP, WEATHER_RATE
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 from shipcosim.models.core.motion import Motion
 from shipcosim.options import CountProgress
 from shipcosim.series import make_table
@@ -257,7 +257,7 @@ def driving_table(
     model = predictor.model
     columns = []
     states = {}
-    problems = []
+    unfed = []
     # Each thruster: a series for every input that the system feeds, a constant where it never
     # changes.
     for name, (speed, direction) in record.units.items():
@@ -275,12 +275,10 @@ def driving_table(
             ):
                 states[f"{name}.{variable}"] = values[0]
             else:
-                message = f"no input of the system feeds '{name}.{variable}', which the log has."
-                problems.append(
-                    Problem(system.file, message, "Connect an input of the system to it.")
-                )
-    if problems:
-        raise ShipcosimError(problems)
+                unfed.append(f"{name}.{variable}")
+    if unfed:
+        message = f"no input of the system feeds {', '.join(unfed)}, which the log has."
+        raise error_at(system.file, message, "Connect an input of the system to each.")
     weather, calm = _weather(system, model.vessel, record)
     columns = columns + weather
     last = record.time[-1] + record.step

@@ -168,12 +168,13 @@ def test_wind_over_ground_meets_the_moving_ship_as_logged(ship_model, log):
     assert np.allclose(direction, later.wind_from)
 
 
-def test_a_thruster_that_no_input_feeds_is_named(system, ship_model, log):
+def test_thrusters_that_no_input_feeds_are_named_together(system, ship_model, log):
     fewer = replace(
         system,
-        connections=tuple(c for c in system.connections if c.target != ("tunnel", "rpm_in")),
+        connections=tuple(c for c in system.connections if c.target[1] != "rpm_in"),
     )
-    with pytest.raises(ShipcosimError, match="tunnel"):
+    everyone = "feeds port.rpm_in, starboard.rpm_in, tunnel.rpm_in, which"
+    with pytest.raises(ShipcosimError, match=everyone):
         driving_table(fewer, predictor(log, ship_model), 0.1)
 
 
