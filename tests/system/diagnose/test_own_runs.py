@@ -29,6 +29,16 @@ def test_what_waves_do_on_a_turn_is_noise_and_no_cause(tmp_path):
     assert gains["velocity_scale"] < 10.0
 
 
+def test_wind_that_ship_and_log_call_wrong_in_different_parts_is_right(tmp_path):
+    """Gusts at both ends of a part looked like another label, and her answer put that elsewhere."""
+    sc.run("prediction/drift_prediction", out=tmp_path)
+    found = find_causes(tmp_path / "result.nc", sc.read("gunnerus_open").checked())
+    assert [finding.cause for finding in found.findings] == ["current"]
+    current = found.findings[0].parameters
+    assert current["north"].estimate == pytest.approx(0.3 * np.cos(np.radians(200.0)), abs=0.03)
+    assert current["east"].estimate == pytest.approx(0.3 * np.sin(np.radians(200.0)), abs=0.03)
+
+
 def test_a_run_of_screws_that_are_commanded_by_force_has_their_speed(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     thrust = own_run(tmp_path, "screws", SIZES, minutes=1.0)["port.thrust"]

@@ -145,7 +145,8 @@ def with_right_wind(identification: Identification) -> Identification:
 def _with_right_wind_label(identification, place):
     """The log with one fault of the wind's labels, by its place among the faults, settled.
 
-    One that the log alone told of throughout, and the ship's answer of nearly nowhere, is none.
+    One that the log alone told of throughout, and the ship's answer of nearly nowhere, is none; nor is one that she
+    puts elsewhere than the log.
     """
     # Log with all faults corrected but this one.
     before = identification.faults[:place]
@@ -159,12 +160,23 @@ def _with_right_wind_label(identification, place):
     shrunk = fault.segments and not identification.faults[place].segments
     about = right.problem
     logged = record_of(as_logged.repaired, about.model)
-    if shrunk and likelihood(about, about.record) <= likelihood(about, logged) + PART_GAIN:
+    is_weak = shrunk and likelihood(about, about.record) <= likelihood(about, logged) + PART_GAIN
+    if is_weak or _is_elsewhere(fault, identification.faults[place]):
         problem = identification_problem(
             as_logged.repaired, identification.ship, identification.causes
         )
         return replace(as_logged, faults=(*before, *after), problem=problem)
     return replace(right, faults=(*before, fault, *after))
+
+
+def _is_elsewhere(fault, first):
+    """Whether the parts of the log in which two findings of one fault see it have less than half in common."""
+    if not (fault.segments and first.segments):
+        return False
+    ((start, end),) = fault.segments
+    ((first_start, first_end),) = first.segments
+    common = min(end, first_end) - max(start, first_start)
+    return common < 0.5 * max(end - start, first_end - first_start)
 
 
 def _likeliest_direction(as_logged, fault):
