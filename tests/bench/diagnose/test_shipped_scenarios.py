@@ -12,10 +12,6 @@ import pytest
 import shipcosim as sc
 
 SCENARIOS = Path(__file__).resolve().parents[3] / "scenarios"
-WRONG = {
-    "prediction/drift_prediction": "wind over ground for 60 s, at 99 %: gusts go with the drifting ship by chance"
-}
-"""Scenarios that are named wrongly today, and how."""
 
 
 def weather(name):
@@ -29,8 +25,7 @@ def weather(name):
 def scenarios():
     files = sorted(SCENARIOS.rglob("*.toml"))
     names = [file.relative_to(SCENARIOS).with_suffix("").as_posix() for file in files]
-    marks = {name: [pytest.mark.xfail(reason=why, strict=True)] for name, why in WRONG.items()}
-    return [pytest.param(n, marks=marks.get(n, [])) for n in names if weather(n) is not None]
+    return [name for name in names if weather(name) is not None]
 
 
 @pytest.mark.parametrize("name", scenarios())
