@@ -102,8 +102,10 @@ def test_the_folder_of_a_run_stands_for_its_table(run, tmp_path):
 
 
 def test_a_run_of_a_ship_with_other_thrusters_is_refused(run):
-    with pytest.raises(ShipcosimError, match="another ship: her thrusters are propeller"):
-        run_as_log(run, "vessel", ["left", "right"])
+    made_it = run.assign_attrs(system="tanker_dp")
+    right = "another ship: her thrusters are propeller.*--system tanker_dp"
+    with pytest.raises(ShipcosimError, match=right):
+        run_as_log(made_it, "vessel", ["left", "right"])
 
 
 def test_numbers_that_a_run_had_and_the_ship_has_not_are_named(run):

@@ -95,13 +95,13 @@ def run_as_log(
     if missing := [role for role in _NEEDED if role not in channels]:
         there = sorted({name.rpartition(".")[0] for name in signals if "." in name})
         message = f"this is the table of a run, and it has no {', '.join(_SHIP[role][0] for role in missing)} of '{ship}'."
-        remedy = f"Its components: {', '.join(there)}. Name the system that made it: --system SSP."
+        remedy = f"Its components: {', '.join(there)}. {_name_system(log)}"
         raise error_at(file.get("source", "log"), message, remedy)
     if others := _thrusters_of_another_ship(signals, thrusters):
         message = (
             f"this is the table of a run of another ship: her thrusters are {', '.join(others)}."
         )
-        remedy = f"Those of the system are {', '.join(thrusters)}. Name the system that made it: --system SSP."
+        remedy = f"Those of the system are {', '.join(thrusters)}. {_name_system(log)}"
         raise error_at(file.get("source", "log"), message, remedy)
     # Inputs of the system that are named as roles go before what its components show.
     inputs = {
@@ -140,13 +140,7 @@ def other_numbers(log: LogSource, numbers: Mapping[str, Any]) -> list[str]:
     numbers : mapping of str to float
         Of the ship, ``component.name``.
     """
-    written = None
-    if isinstance(log, xarray.Dataset):
-        written = log.attrs.get("start_values")
-    elif Path(log).suffix == ".nc":
-        with reading(log), h5py.File(log) as file:
-            written = file.attrs.get("start_values")
-    had = json.loads(written or "{}")
+    had = json.loads(_attribute(log, "start_values") or "{}")
     apart = [
         f"{path} {had[path]:g} (here {number:g})"
         for path, number in numbers.items()
@@ -157,6 +151,21 @@ def other_numbers(log: LogSource, numbers: Mapping[str, Any]) -> list[str]:
     more = f" and {len(apart) - _MOST_NUMBERS} more" if len(apart) > _MOST_NUMBERS else ""
     shown = ", ".join(apart[:_MOST_NUMBERS])
     return [f"This run had other numbers than the system that it is compared with: {shown}{more}."]
+
+
+def _name_system(log: LogSource) -> str:
+    """What to do where a run is of another system than the one that it is compared with."""
+    return f"Name the system that made it: --system {_attribute(log, 'system') or 'SSP'}."
+
+
+def _attribute(log: LogSource, name: str) -> str:
+    """An attribute of the table of a run; empty where it has none."""
+    if isinstance(log, xarray.Dataset):
+        return log.attrs.get(name, "")
+    if Path(log).suffix != ".nc":
+        return ""
+    with reading(log), h5py.File(log) as file:
+        return file.attrs.get(name, "")
 
 
 def channels_of_run(
@@ -191,12 +200,12 @@ def channels_of_run(
 
 
 def _thrusters_of_another_ship(signals: Collection[str], thrusters: Collection[str]) -> list[str]:
-    """Components of a run that push the ship by a thrust, where one of the system's thrusters is not in the run."""
+    """Components of a run that push the ship by a thrust, where the run lacks one of the system's and has others."""
     there = {name.rpartition(".")[0] for name in signals}
     if all(name in there for name in thrusters):
         return []
     pushing = [name for name in sorted(there) if {f"{name}.thrust", f"{name}.tau_X"} <= {*signals}]
-    return [name for name in pushing if name not in thrusters]
+    return pushing if any(name not in thrusters for name in pushing) else []
 
 
 def _channel(role: str, signal: str) -> Channel:
