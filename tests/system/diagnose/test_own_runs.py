@@ -29,8 +29,8 @@ def test_what_waves_do_on_a_turn_is_noise_and_no_cause(tmp_path):
     assert gains["velocity_scale"] < 10.0
 
 
-def test_wind_that_ship_and_log_call_wrong_in_different_parts_is_right(tmp_path):
-    """Gusts at both ends of a part looked like another label, and her answer put that elsewhere."""
+def test_gusts_are_no_wrong_label_of_the_wind(tmp_path):
+    """Gusts at both ends of a part looked like another label, and it was named at 0.99."""
     sc.run("prediction/drift_prediction", out=tmp_path)
     found = find_causes(tmp_path / "result.nc", sc.read("gunnerus_open").checked())
     assert [finding.cause for finding in found.findings] == ["current"]

@@ -8,6 +8,7 @@ from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.checks import examine as examining
 from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.log.checks.wind import leaps
+from shipcosim.diagnose.log.checks.wind_jumps import jumping_wind
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.repair import repaired
 
@@ -376,6 +377,19 @@ def test_the_wind_of_a_ship_that_keeps_still_jumps_where_its_label_is_wrong(faul
     finding = only(log | {role: np.where(inside(log, 300, 800), change(log), log[role])})
     assert role in finding.channels and finding.kind == "data"
     near(finding.segments, (300.0, 800.0), within=3.0)
+
+
+@pytest.mark.parametrize(("gusts", "count"), [((), 1), ((700, 900), 0)])
+def test_jumps_of_the_wind_are_larger_than_any_gust(gusts, count):
+    """She drifts; where the wind changes by her velocity, it could be wind over ground from there on: or a gust."""
+    time, random = np.arange(1200.0), np.random.default_rng(1)
+    drift = np.full(time.size, 0.6)
+    wind = 8.0 + 0.05 * random.normal(size=time.size)
+    for edge in (300, 600, *gusts):
+        wind[edge:] -= 0.6 if edge in (300, 700) else -0.6
+    still = np.zeros(time.size)
+    arrays = {"time": time, "heading": still, "wind_speed": wind + drift, "wind_from": still}
+    assert len(jumping_wind(arrays | {"surge": drift, "sway": still})) == count
 
 
 @pytest.mark.parametrize("segment", [(300.0, 700.0), (0.0, 500.0), None])

@@ -7,6 +7,7 @@ from diagnose import twin
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
+from shipcosim.diagnose.log_faults import corrections
 from shipcosim.diagnose.log_faults.corrections import with_right_wind
 from shipcosim.diagnose.log_faults.input_labels import with_label
 
@@ -63,3 +64,13 @@ def test_a_unit_of_the_wind_that_the_ship_answers_nowhere_is_no_fault():
     )
     assert right.faults == ()
     np.testing.assert_array_equal(right.repaired["wind_speed"], log["wind_speed"])
+
+
+@pytest.mark.parametrize(
+    ("part", "is_elsewhere"),
+    [((), False), ((110.0, 290.0), False), ((250.0, 450.0), True), ((400.0, 500.0), True)],
+)
+def test_a_part_that_log_and_ship_see_elsewhere_is_none(part, is_elsewhere):
+    by_log = finding_of(KNOTS, 0.9, (100.0, 300.0))
+    by_ship = finding_of(KNOTS, 0.9, part or None)
+    assert corrections._is_elsewhere(by_ship, by_log) is is_elsewhere

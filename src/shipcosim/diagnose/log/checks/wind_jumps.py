@@ -1,8 +1,8 @@
 """Wind channels that are not what they are labelled in a part of the log: at both its ends the wind jumps.
 
-A label changes between two neighbouring rows. So the wind over ground, as logged, makes one of its largest changes from
-row to row at either end of the part, and with the label undone one of usual size. What is large and usual the log's own
-changes say, whatever their distribution: gusts have no normal one.
+A label changes between two neighbouring rows. So the wind over ground, as logged, makes its two largest changes from row
+to row at the ends of the part, larger than any gust's, and with the label undone changes of usual size. What is large
+and usual the log's own changes say, whatever their distribution: gusts have no normal one.
 """
 
 import numpy as np
@@ -12,10 +12,11 @@ from shipcosim.diagnose.log.checks.kinematics import complete_rows
 from shipcosim.diagnose.log.checks.wind import ROLES
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
 from shipcosim.diagnose.log.thresholds import (
+    ABOVE_GUSTS,
     BETWEEN_JUMPS,
+    JUMPS_AT_ODDS,
     JUMPS_GAIN,
     JUMPS_TIED,
-    LARGEST_JUMPS,
     STEADINESS_LAG,
 )
 
@@ -33,22 +34,26 @@ def jumping_wind(log: dict) -> list[Finding]:
         return []
     part = {role: log[role][rows] for role in ("time", *ROLES)}
     logged = _wind(part)
+    ends = _ends(logged)
+    if ends is None:
+        return []
+    first, after = ends
+    # How much of both jumps each label explains.
     candidates = []
-    # For each label find the two jumps that undoing it explains best.
     for label in WIND_LABELS:
         undone = _wind(part | label.undo(part))
-        gain, first, last = _best_pair(logged, undone)
+        gain = _gained(logged, undone, first, after)
         if gain > JUMPS_GAIN:
-            segment = float(part["time"][first]), float(part["time"][last])
-            candidates.append((gain, label, segment, _unsteadiness(undone[first:last])))
+            candidates.append((gain, label, _unsteadiness(undone[first : after - 1])))
     if not candidates:
         return []
     # Labels that explain nearly as well are distinguished by the steadier wind over ground.
     most = max(gain for gain, *_ in candidates)
-    gain, label, segment, _ = min(
-        (entry for entry in candidates if entry[0] > most - JUMPS_TIED), key=lambda entry: entry[3]
+    gain, label, _ = min(
+        (entry for entry in candidates if entry[0] > most - JUMPS_TIED), key=lambda entry: entry[2]
     )
-    probability = float(0.99 / (1.0 + np.exp(-gain)))
+    probability = float(0.99 / (1.0 + np.exp(JUMPS_AT_ODDS - gain)))
+    segment = float(part["time"][first]), float(part["time"][after - 1])
     return [finding_of(label, probability, segment)]
 
 
@@ -63,21 +68,22 @@ def _unsteadiness(wind):
     return float(np.mean(np.abs(wind[STEADINESS_LAG:] - wind[:-STEADINESS_LAG]) ** 2))
 
 
-def _best_pair(logged: np.ndarray, undone: np.ndarray) -> tuple[float, int, int]:
-    """Gain of undoing a mislabel between two rows, less the cost of choosing them, and the first and last row."""
-    # Candidates for the ends are the rows of the largest changes.
+def _ends(logged: np.ndarray) -> tuple[int, int] | None:
+    """First row of a part and first row after it, at its largest two changes; None where other changes are as large."""
     sizes = np.abs(np.diff(logged))
-    ordered = np.sort(sizes)
-    rows = 1 + np.sort(np.argsort(-sizes)[:LARGEST_JUMPS])
-    # Change at the start of a part and at its end, as logged and with the label undone.
-    begins = _gain(sizes[rows - 1], np.abs(undone[rows] - logged[rows - 1]), ordered)
-    ends = _gain(sizes[rows - 1], np.abs(logged[rows] - undone[rows - 1]), ordered)
-    total = begins[:, None] + ends
-    # Ends must be in order and apart. The choice of both costs two logarithms of their number.
-    total[rows[None] - rows[:, None] < BETWEEN_JUMPS] = -np.inf
-    first, last = np.unravel_index(int(np.argmax(total)), total.shape)
-    gain = float(total[first, last]) - 2.0 * np.log(rows.size)
-    return gain, int(rows[first]), int(rows[last]) - 1
+    *_, third, second, largest = np.argsort(sizes)
+    first, after = sorted((1 + int(second), 1 + int(largest)))
+    stands_out = sizes[second] > ABOVE_GUSTS * sizes[third]
+    return (first, after) if stands_out and after - first >= BETWEEN_JUMPS else None
+
+
+def _gained(logged: np.ndarray, undone: np.ndarray, first: int, after: int) -> float:
+    """Gain of undoing a mislabel in the rows from `first` to the one before `after`. [nats]"""
+    ordered = np.sort(np.abs(np.diff(logged)))
+    # Change at the start of the part and at its end, as logged and with the label undone.
+    given = np.abs(logged[[first, after]] - logged[[first - 1, after - 1]])
+    ends = undone[first] - logged[first - 1], logged[after] - undone[after - 1]
+    return float(_gain(given, np.abs(ends), ordered).sum())
 
 
 def _gain(given: np.ndarray, otherwise: np.ndarray, ordered: np.ndarray) -> np.ndarray:
