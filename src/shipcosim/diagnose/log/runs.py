@@ -193,7 +193,7 @@ def channels_of_run(
     for name in thrusters:
         # A thruster whose force is commanded is driven by that, and not by the speed of a shaft.
         role = f"{name}_thrust"
-        thrust = role if role in signals else thrust_signals.get(name)
+        thrust = role if role in signals else thrust_signals.get(name, "")
         speed = {role: thrust} if thrust in signals else {f"{name}_rpm": f"{name}.rpm"}
         named |= speed | {f"{name}_azimuth": f"{name}.azimuth"}
     return {role: _channel(role, signal) for role, signal in named.items() if signal in signals}

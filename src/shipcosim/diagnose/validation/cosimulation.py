@@ -278,7 +278,7 @@ def driving_table(
                 unfed.append(f"{name}.{variable}")
     if unfed:
         message = f"no input of the system feeds {', '.join(unfed)}, which the log has."
-        raise error_at(system.file, message, "Connect an input of the system to each.")
+        raise error_at(system.name, message, "Connect an input of the system to each.")
     weather, calm = _weather(system, model.vessel, record)
     columns = columns + weather
     last = record.time[-1] + record.step

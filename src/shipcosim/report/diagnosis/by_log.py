@@ -39,9 +39,12 @@ def error_table(errors: Mapping[str, LogErrors], after: str = WITH_CAUSES) -> Ta
             for label in ships:
                 by_horizon = " / ".join(plain(value, 2) for value in sizes.get(label, ()))
                 cells.append(f"{by_horizon} {unit}".replace(" °", "°") if by_horizon else "–")
-        fitted_on = _fitted_on(error) if "after" in error.position else ""
-        rows.append((log, f"{horizons} s", *cells, fitted_on))
-    return Table(rows, ("Log", "After", *head, "Numbers by"))
+        if "after" in labels:
+            cells.append(_fitted_on(error) if "after" in error.position else "")
+        rows.append((log, f"{horizons} s", *cells))
+    # Where no ship has causes, there are no numbers whose origin is to be said.
+    origin = ("Numbers by",) if "after" in labels else ()
+    return Table(rows, ("Log", "After", *head, *origin))
 
 
 def _fitted_on(errors: LogErrors) -> str:

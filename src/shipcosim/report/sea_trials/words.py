@@ -1,5 +1,6 @@
 """Texts and rows of sea trials."""
 
+import re
 from collections import Counter
 from collections.abc import Sequence
 
@@ -91,8 +92,13 @@ def held_out_table(study: SeaTrialStudy) -> Table:
             else "–"
             for _, errors in sides
         ]
-        rows.append((name, *errors))
+        rows.append((feature_text(name), *errors))
     return Table(rows, ("Feature", *(f"Fitted on circles to {side}" for side, _ in sides)))
+
+
+def feature_text(name: str) -> str:
+    """A feature as people read it: `t90` is the time to 90° of heading."""
+    return re.sub(r"\bt(\d+)$", r"time to \1°", re.sub(r"(speed at \d+)$", r"\1°", name))
 
 
 def features_table(study: SeaTrialStudy) -> Table:
@@ -106,7 +112,9 @@ def features_table(study: SeaTrialStudy) -> Table:
             repeats = f"{100.0 * spread[at]:.1f} %"
             if name == "drift":
                 repeats = f"{np.degrees(spread[at]):.1f}°"
-            rows.append((trial.name, name, *(_read(name, value) for value in values), repeats))
+            rows.append(
+                (trial.name, feature_text(name), *(_read(name, value) for value in values), repeats)
+            )
             at += 1
     return Table(rows, ("Trial", "Feature", "Measured", "As modelled", "With causes", "Repeats to"))
 
@@ -156,9 +164,11 @@ def next_steps(study: SeaTrialStudy) -> Sequence[str]:
 def _telling(study, record: Separation, pair):
     key = list(record.nats)[study.pairs.index(pair)]
     telling = record.telling[key]
+    difference = f"{abs(telling.difference):.0f} {telling.unit}"
+    spread = f"{telling.spread:.0f} {telling.unit}"
     return (
-        f"{record.nats[key]:.0f} nats; {telling.name} differs by {abs(telling.difference):.0f} {telling.unit}, "
-        f"known to {telling.spread:.0f} {telling.unit}"
+        f"{record.nats[key]:.0f} nats; {feature_text(telling.name)} differs by {difference}, "
+        f"known to {spread}"
     )
 
 
@@ -170,7 +180,7 @@ def separation_table(study: SeaTrialStudy) -> Table:
         for pair, nats in separation.nats.items():
             telling = separation.telling[pair]
             size = f"{telling.difference:+.1f} ± {telling.spread:.1f} {telling.unit}"
-            cells.append(f"{nats:.1f}: {telling.name} {size}".replace("-", "−"))
+            cells.append(f"{nats:.1f}: {feature_text(telling.name)} {size}".replace("-", "−"))
         rows.append((separation.manoeuvre, f"{separation.minutes:.0f}", *cells))
     return Table(
         rows,
