@@ -114,7 +114,7 @@ TABLES = {
         lat [degrees_north] | latitude | latitude
         lon [degrees_east] | longitude | longitude
         platform_orientation [degree] | heading | heading
-        platform_yaw_rate [degree s-1] | yaw_rate | ?yaw_rate
+        platform_yaw_rate [degree s-1] | yaw_rate | yaw_rate
         platform_speed_wrt_ground [m s-1] | speed_over_ground | speed_over_ground
         platform_course [degree] | course_over_ground | course_over_ground
         relative_platform_azimuth [degree] | wind_from |""",
@@ -245,8 +245,8 @@ TABLES = {
     ),
     "Norwegian, plain words": (
         """Tidspunkt | iso | time
-        Bredde | latitude | ?latitude
-        Lengde | longitude | ?longitude
+        Bredde | latitude | latitude
+        Lengde | longitude | longitude
         Kurs | course_over_ground |
         Fart | speed_over_ground:kn |
         Vindstyrke | wind_speed | ?wind_speed
@@ -380,9 +380,9 @@ TABLES = {
         navigation.position.latitude | latitude | latitude
         navigation.position.longitude | longitude | longitude
         navigation.speedOverGround | speed_over_ground | speed_over_ground
-        navigation.courseOverGroundTrue | course_over_ground:rad | ?course_over_ground
-        propulsion.port.revolutions | port_rpm:Hz | ?port_rpm
-        propulsion.starboard.revolutions | starboard_rpm:Hz | ?starboard_rpm""",
+        navigation.courseOverGroundTrue | course_over_ground:rad | course_over_ground
+        propulsion.port.revolutions | port_rpm:Hz | port_rpm
+        propulsion.starboard.revolutions | starboard_rpm:Hz | starboard_rpm""",
         {},
     ),
     "wind over ground named with its frame": (

@@ -268,3 +268,30 @@ def units_after_names_of_thrusters(table, folder):
 def speeds_of_engines(table, folder):
     names = {"port_rpm": "ME Port RPM", "starboard_rpm": "ME Stbd RPM"}
     return save(folder, lines(renamed(table, names)))
+
+
+@strange
+def a_gyro_that_counts_to_port(table, folder):
+    told = table | {"yaw_rate": -table["yaw_rate"]}
+    return save(folder, lines(renamed(told, {"yaw_rate": "gyro_z_dps"})))
+
+
+@strange
+def breadth_and_length_of_the_north(table, folder):
+    return in_words(table, folder, "Bredde [°]", "Lengde [°]", {"time": "Tid [s]"}, ";")
+
+
+@strange
+def a_date_and_a_clock_with_one_name(table, folder):
+    columns = {"%": stamps(table, "%Y/%m/%d"), "GPST": stamps(table, "%H:%M:%S.%f", 3)}
+    rows = lines(columns | renamed(table, {}, drop=("time",)), " ")
+    return save(folder, ["% program: post 2.4", rows[0].replace(" [", "["), *rows[1:]], "log.pos")
+
+
+@strange
+def a_true_course_beside_that_over_ground(table, folder):
+    drift = np.degrees(np.arctan2(table["sway"], table["surge"]))
+    told = {role: v for role, v in table.items() if role not in ("surge", "sway")}
+    told["COG [deg]"] = (table["heading"] + drift) % 360.0
+    told["SOG [m/s]"] = np.hypot(table["surge"], table["sway"])
+    return save(folder, lines(renamed(told, {"heading": "True course [deg]"})))

@@ -11,6 +11,9 @@ from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.dialects import cells_in, is_comment, is_figure, is_nothing, separator_of
 from shipcosim.errors import counted, error_at
 
+_DATE = re.compile(r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}")
+_CLOCK = re.compile(r"\d{1,2}:\d{2}(:\d{2}([.,]\d+)?)?")
+
 
 @dataclass(frozen=True)
 class Layout:
@@ -79,13 +82,13 @@ def layout_of(
         raise error_at(
             source, message, f"Name them in a channel file: file = {{names = [{names}, ...]}}."
         )
-    # An index column of data frames has values, but no name.
-    if (
-        separator != ","
-        and len(header) == width - 1
-        and cells_in(lines[first], separator)[0] in ("0", "1")
-    ):
-        header = ("", *header)
+    # An index column of data frames has values, but no name; a date and a clock may share one.
+    if separator != "," and len(header) == width - 1:
+        cells = cells_in(lines[first], separator)
+        if cells[0] in ("0", "1"):
+            header = ("", *header)
+        elif _DATE.fullmatch(cells[0]) and _CLOCK.fullmatch(cells[1]):
+            header = ("date", "time", *header[1:])
     rest = [i for i in above if i < at]
     between = [i for i in above if i > at and not is_comment(lines[i])]
     first = next((i for i in between if is_figure(cells_in(lines[i], separator)[0])), first)

@@ -15,7 +15,7 @@ from shipcosim.diagnose.log.rows import usable_rows
 from shipcosim.diagnose.numerics import finite
 from shipcosim.errors import error_at, suggestion
 
-_NAMES = "name topic signal channel variable tag key parameter quantity item field varname sensor message msg".split()
+_NAMES = "name topic signal channel variable var metric tag key parameter quantity item field sensor message msg".split()
 _NAMES += "label source id measurement type path kanal kanalname navn kanavn variabel canal bezeichnung description".split()
 _VALUES = "value varvalue val reading data measurement number v y wert verdi valeur valor valore payload".split()
 _UNITS = "unit units einheit enhet unité unidad".split()

@@ -24,6 +24,7 @@ _UNITS = {
     "revolutions": "Hz",
 }
 """Units of Signal K by a part of the last word of a path."""
+_GROUPS = "navigation.", "environment.", "propulsion.", "steering."  # with which its paths begin
 
 
 _PAIR = re.compile(r'([^\s=]+)=("[^"]*"|\S*)')
@@ -101,6 +102,12 @@ def _rows_of_delta(record):
             parts = value if isinstance(value, dict) else {"": value}
             for name, number in parts.items():
                 path = f"{entry['path']}.{name}".strip(".")
-                last = path.rpartition(".")[2].lower()
-                unit = next((_UNITS[part] for part in _UNITS if part in last), "")
+                unit = unit_of_path(path)
                 yield {"time": update.get("timestamp"), "path": path, "value": number, "unit": unit}
+
+
+def unit_of_path(name: str) -> str:
+    """Unit of a value of Signal K by its path, such as ``navigation.headingTrue``; empty for other names."""
+    last = name.rpartition(".")[2].lower()
+    known = (unit for part, unit in _UNITS.items() if part in last)
+    return next(known, "") if name.startswith(_GROUPS) else ""

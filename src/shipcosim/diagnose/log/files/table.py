@@ -18,7 +18,7 @@ from shipcosim.diagnose.log.files.layout import Layout, layout_of, without_labvi
 from shipcosim.diagnose.log.files.matlab import columns_of_matlab, is_matlab
 from shipcosim.diagnose.log.files.nmea import columns_of_sentences, holds_sentences
 from shipcosim.diagnose.log.files.positions import with_minutes
-from shipcosim.diagnose.log.files.records import holds_records, text_of_records
+from shipcosim.diagnose.log.files.records import holds_records, text_of_records, unit_of_path
 from shipcosim.diagnose.log.files.refused_formats import refuse_foreign
 from shipcosim.diagnose.log.files.text import text_of
 from shipcosim.diagnose.log.files.times import seconds_of_parts
@@ -159,7 +159,7 @@ def _names(layout: Layout) -> tuple[list[str], dict[str, str], tuple[str, ...]]:
         name = name if seen[name] == 1 else f"{name} ({seen[name]})"
         below = layout.units[i] if i < len(layout.units) else ""
         names.append(name)
-        units[name] = unit or below
+        units[name] = unit or below or unit_of_path(name)
     return names, units, tuple(name for name, count in seen.items() if count > 1)
 
 

@@ -36,21 +36,22 @@ def unit_of_speed(time: np.ndarray, way: np.ndarray, speed: np.ndarray) -> str |
     # Rows in which all channels have values; the distance made in k rows is the reference.
     rows = _all_known(time, way, speed)
     way = way[rows]
-    return _unit_by(time[rows], speed[rows], lambda k: np.abs(way[k:] - way[:-k]), _SPEEDS)
+    unit, _ = _unit_by(time[rows], speed[rows], lambda k: np.abs(way[k:] - way[:-k]), _SPEEDS)
+    return unit
 
 
-def unit_of_rate(time: np.ndarray, heading: np.ndarray, rate: np.ndarray) -> str | None:
-    """Unit of a yaw rate, from the heading in degrees; None if it does not determine it.
+def unit_of_rate(time: np.ndarray, heading: np.ndarray, rate: np.ndarray) -> tuple[str | None, int]:
+    """Unit of a yaw rate, from the heading in degrees, and its sign; None and 0 if it does not determine them.
 
     Examples
     --------
     >>> t = np.arange(200.0)
-    >>> unit_of_rate(t, 30.0 * np.sin(t / 20), np.radians(1.5 * np.cos(t / 20)))
-    'rad/s'
+    >>> unit_of_rate(t, 30.0 * np.sin(t / 20), -np.radians(1.5 * np.cos(t / 20)))
+    ('rad/s', -1)
     """
     rows = _all_known(time, heading, rate)
     if rows.sum() < 4 * _SPANS[0]:
-        return None
+        return None, 0
     # Unwrapped heading: its change over k rows is the reference.
     turned = np.unwrap(heading[rows], period=360.0)
     return _unit_by(time[rows], rate[rows], lambda k: turned[k:] - turned[:-k], _RATES)
@@ -62,14 +63,14 @@ def _all_known(*series):
 
 
 def _unit_by(time, rate, change, units):
-    """Unit in which the integral of a rate is the change over spans of some rows."""
+    """Unit in which the integral of a rate is the change over spans of some rows, and its sign; else None and 0."""
     steps = np.diff(time)
     if len(time) < 4 * _SPANS[0] or not (steps > 0.0).all():
-        return None
+        return None, 0
     # Integral of the reported rate by the trapezium rule.
     integral = running_sums(0.5 * (rate[1:] + rate[:-1]) * steps)
     best = 0.0
-    ratio = None
+    ratio = sign = 0.0
     # Compare changes over several spans: short ones drown in noise,
     # long ones in drift. Keep the span of highest correlation.
     for k in _SPANS:
@@ -83,11 +84,12 @@ def _unit_by(time, rate, change, units):
             best = agreement / norm
             # Ratio of the energy to the cross product: slope of the inverse regression.
             ratio = (y @ y) / agreement
-    if ratio is None:
-        return None
+            sign = np.sign(x @ y)
+    if not ratio:
+        return None, 0
     # Nearest unit on a logarithmic scale; none if the ratio fits none of them.
     unit = min(units, key=lambda name: abs(np.log(ratio / units[name])))
-    return unit if abs(np.log(ratio / units[unit])) < _FAR else None
+    return (unit, int(sign)) if abs(np.log(ratio / units[unit])) < _FAR else (None, 0)
 
 
 def _without_leaps(x, y):

@@ -103,6 +103,7 @@ def propose(
     _with_hemispheres(chosen, log)
     _with_directions(chosen, log)
     _with_its_pair(chosen, left)
+    _beside_others(chosen, log)
     # Conventions and values settle what names leave open.
     _by_convention_of_ros(chosen, log)
     settled(chosen, log, form)
@@ -127,8 +128,9 @@ def _known_together(every):
     letters = [" ".join(w for w in words_of(g.column) if w not in fillers) for g in every]
     single = {letter for letter in letters if " " not in letter}
     sure = set().union(*(group for group in ({"n", "e"}, {"u", "v", "r"}) if group <= single))
-    # With all three of vx, vy and vz autopilots write velocities over the earth.
-    over_earth = {"vx": "north_velocity", "vy": "east_velocity"} if "vz" in single else {}
+    # With all three of vx, vy and vz, or with x and y, these are mostly velocities over the earth.
+    is_earth = "vz" in single or {"x", "y"} <= single
+    over_earth = {"vx": "north_velocity", "vy": "east_velocity"} if is_earth else {}
     together = []
     for guess, letter in zip(every, letters, strict=True):
         if letter in over_earth:
@@ -296,6 +298,23 @@ def _with_its_pair(chosen, left):
     is_bare = surge and surge.why == meaning_of(("speed",)).doubt and "sway" not in chosen
     if is_bare and "course_over_ground" in chosen and "speed_over_ground" not in chosen:
         chosen["speed_over_ground"] = replace(chosen.pop("surge"), role="speed_over_ground")
+
+
+def _beside_others(chosen, log):
+    """Names with two meanings, of which another column has one: a true course, and breadth and length in the north."""
+    heading = chosen.get("heading")
+    course = chosen.get("course_over_ground")
+    if heading and "over ground" in heading.why and course and not course.is_guess:
+        values = log.values[heading.column]
+        # An order stands still mostly, and a copy of the other tells nothing.
+        is_order = np.mean(values[1:] == values[:-1]) > 0.5
+        if not is_order and not np.array_equal(values, log.values[course.column]):
+            chosen["heading"] = replace(heading, rank=SURE, why="")
+    # A ship's breadth and length do not change.
+    pair = [chosen[role] for role in LARGEST if role in chosen]
+    is_place = [guess.why in ("it may be a breadth", "it may be a length") for guess in pair]
+    if len(pair) == 2 and all(is_place) and all(len({*log.values[g.column]}) > 2 for g in pair):
+        chosen |= {guess.role: replace(guess, rank=SURE, why="") for guess in pair}
 
 
 def _thruster_words(name):

@@ -72,6 +72,11 @@ class _Channels:
         aside = self.values(second)
         return None if ahead is None or aside is None else ahead + 1j * aside
 
+    def plane_of(self, role):
+        """Directions of a role as complex numbers; None where there are none."""
+        angle = self.values(role)
+        return None if angle is None else np.exp(1j * np.radians(angle))
+
     def column(self, role):
         """Numbers as they stand in the file, NaN where there are none."""
         cells = self.log.values[self.chosen[role].column]
@@ -122,11 +127,12 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: FileLayout) -> None
     channels = _with_motion(channels)
     _settle_heading(channels)
     _settle_velocity(channels)
+    _settle_course(channels)
     _settle_time(channels)
     for role in _SPEED_ROLES:
         if channels.is_open(role):
             _settle_speed(channels, role)
-    if "yaw_rate" in chosen and not chosen["yaw_rate"].unit:
+    if "yaw_rate" in chosen:
         _settle_rate(channels)
     over_ground = chosen.get("speed_over_ground")
     stated = over_ground and (over_ground.channel.unit or over_ground.unit)
@@ -301,10 +307,8 @@ def _settle_velocity(channels):
     heading, way = channels.values("heading"), channels.way
     if pair is None or heading is None or way is None:
         return
-    if not channels.are_sure("heading", *_PLACES):
-        return
     guesses = [chosen[role] for role in pair]
-    if any(guess.rank < GUESS for guess in guesses):
+    if channels.are_sure(*pair):
         return
     # Along and across the ship, positive to starboard or to port, or over the earth.
     bow = np.exp(1j * np.radians(heading))
@@ -315,14 +319,48 @@ def _settle_velocity(channels):
         ("north_velocity", "east_velocity", 1): first + 1j * second,
         ("east_velocity", "north_velocity", 1): second + 1j * first,
     }
-    roles = frame_of_velocity(channels.time, way, readings)
+    if not all(guess.is_guess for guess in guesses):
+        readings = {roles: velocity for roles, velocity in readings.items() if roles[:2] == pair}
+    roles = frame_of_velocity(channels.time, way, readings) if len(readings) > 1 else None
     if roles is None:
         return
     for role in pair:
         del chosen[role]
+    is_sure = channels.are_sure("heading", *_PLACES)
     for guess, role, sign in zip(guesses, roles[:2], (1, roles[2]), strict=True):
         chosen[role] = replace(guess, role=role)
-        channels.settle(role, f"{role.replace('_', ' ')}, as positions say", sign=sign)
+        note = f"{role.replace('_', ' ')}, as positions say"
+        if is_sure:
+            channels.settle(role, note, sign=sign)
+        elif guess.is_guess:
+            channels.note(role, note, {"sign": sign}, why="positions and heading are not sure")
+
+
+def _settle_course(channels):
+    """What a speed and courses are whose names may mean several: the velocity must be that of the positions."""
+    bow = channels.plane_of("heading")
+    way = channels.way
+    if bow is None or way is None or not channels.are_sure(*_PLACES):
+        return
+    # A course is the heading where the ship goes beside it, as her own velocity says, and over ground where not.
+    body = channels.plane("surge", "sway")
+    guess = channels.chosen["heading"]
+    if body is not None and channels.are_sure("surge", "sway") and "over ground" in guess.why:
+        readings = {"the heading": body * bow, "over ground": np.abs(body) * bow}
+        if frame_of_velocity(channels.time, way, readings) == "the heading":
+            channels.settle("heading", "the heading, as positions and velocities say")
+    course = channels.plane_of("course_over_ground")
+    speed = channels.values("speed_over_ground")
+    pair = ("speed_over_ground", "course_over_ground")
+    if course is None or speed is None or channels.are_sure(*pair):
+        return
+    readings = {"over ground": speed * course, "ahead": speed * bow}
+    if (
+        channels.are_sure("heading")
+        and frame_of_velocity(channels.time, way, readings) == "over ground"
+    ):
+        for role in pair:
+            channels.settle(role, "over ground, as positions say")
 
 
 def _settle_time(channels):
@@ -360,13 +398,19 @@ def _settle_speed(channels, role):
 
 
 def _settle_rate(channels):
-    """Unit of a yaw rate by the heading."""
+    """Unit of a yaw rate, and to which side it is counted, by the heading."""
     heading = channels.values("heading")
-    unit = None
+    unit, sign = None, 0
     # Compare with the change of heading.
     if heading is not None and channels.time is not None:
-        unit = unit_of_rate(channels.time, heading, channels.column("yaw_rate"))
+        unit, sign = unit_of_rate(channels.time, heading, channels.column("yaw_rate"))
     guess = channels.chosen["yaw_rate"]
+    if sign and guess.is_guess and channels.are_sure("heading"):
+        side = "starboard" if sign > 0 else "port"
+        channels.settle("yaw_rate", f"positive to {side}, as the heading says", sign=sign)
+        guess = channels.chosen["yaw_rate"]
+    if guess.unit:
+        return
     if guess.rank == EXACT:
         if unit not in (None, "deg/s"):
             doubt = f"in deg/s, as its name stands for; by the heading it may be in {unit}"

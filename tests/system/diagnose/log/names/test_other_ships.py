@@ -52,7 +52,7 @@ LANGUAGES = {
     "Kääntymisnopeus [ast/min]>yaw_rate",
     "Swedish without accents": "Klockslag|Sann kurs [grader]?heading|Fart over grund [knop]>speed_over_ground|"
     "Kurs over grund [grader]>course_over_ground|BB propeller varv [rpm]>port_rpm|Relativ vind styrka [m/s]>wind_speed",
-    "Danish": "Tid|Bredde?latitude|Længde?longitude|Retvisende kurs [°]?heading|Fart over grunden [kn]>speed_over_ground|"
+    "Danish": "Tid|Bredde>latitude|Længde>longitude|Retvisende kurs [°]?heading|Fart over grunden [kn]>speed_over_ground|"
     "Kurs over grunden [°]>course_over_ground",
     "Norwegian short forms": "Kl|Rettvisende kurs [°]?heading|Fart o/grunn [kn]>speed_over_ground|"
     "Kurs o/grunn [°]>course_over_ground",
