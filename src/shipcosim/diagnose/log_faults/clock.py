@@ -49,11 +49,6 @@ class _Blocks:
     match: np.ndarray
     gram: np.ndarray
 
-    def with_run(self, first, last):
-        """Inner products of a run with every other: (k + 1, k + 1) array."""
-        sums = running_sums(self.gram[:, first:last].sum(axis=1))
-        return differences(sums)
-
 
 def clock_by_response(problem: IdentificationProblem) -> Finding | None:
     """A clock that runs wrong at one rate in a segment or two, if nothing else explains as much.
@@ -182,36 +177,33 @@ def _most_likely(blocks):
     block = blocks.edges[1] - blocks.edges[0]
     allowed = (span * block >= SHORTEST_CLOCK) & (span <= LARGEST_SHARE * count)
     cost = 2.0 * np.log(count)
-    gain = 0.0
-    runs = []
-    # Greedy search: add the run that gains most together with those that were chosen before.
-    for _ in range(MOST_SEGMENTS):
-        most = np.argmax(np.where(allowed, evidence_of_rate(match, energy)[0], -np.inf))
+    gain = value = std = 0.0
+    is_wrong = np.zeros(count, bool)
+    # Greedy search: add the run of blocks that gains most together with those that were chosen before, at a rate
+    # common to all; or take a run out of these, which leaves two segments of them.
+    for number in range(1, MOST_SEGMENTS + 1):
+        of_wrong = differences(running_sums(is_wrong))
+        sign = np.where(of_wrong > 0, -1.0, 1.0)
+        shared = differences(running_sums(blocks.gram[:, is_wrong].sum(axis=1)))
+        matches = blocks.match[is_wrong].sum() + sign * match
+        energies = blocks.gram[np.ix_(is_wrong, is_wrong)].sum() + energy + 2.0 * sign * shared
+        whole = allowed & ((of_wrong == 0) | (of_wrong == span))
+        nats, *estimates = evidence_of_rate(matches, energies)
+        most = np.argmax(np.where(whole, nats, -np.inf))
         first, last = at = np.unravel_index(most, match.shape)
-        # Rate error that is common to the runs. Both ends of each run are chosen
-        # among all edges, which costs two logarithms of their number.
-        nats, *estimate = evidence_of_rate(match[at], energy[at])
-        nats = nats - cost * (1 + len(runs))
-        if nats < gain + CLOCK_GAIN * (not runs):
+        # Both ends of each run are chosen among all edges, which costs two logarithms of their number.
+        if nats[at] - cost * number < gain + CLOCK_GAIN * (number == 1):
             break
-        gain = nats
-        runs = [*runs, at]
-        value, std = estimate
-        # Runs of one clock have a common rate: match and energy
-        # of every other run are now those of both together.
-        match = match[at] + match
-        energy = energy[at] + energy + 2.0 * blocks.with_run(*at)
-        # Further runs may not overlap this one.
-        allowed = allowed & (
-            (np.arange(count + 1)[None, :] <= first) | (np.arange(count + 1)[:, None] >= last)
-        )
-    if (
-        not runs
-        or not PLAUSIBLE_RATES[0] < 1.0 + value < PLAUSIBLE_RATES[1]
-        or abs(value) < SMALLEST_RATE
-    ):
+        gain = nats[at] - cost * number
+        value, std = (estimate[at] for estimate in estimates)
+        is_wrong[first:last] ^= True
+    if not PLAUSIBLE_RATES[0] < 1.0 + value < PLAUSIBLE_RATES[1] or abs(value) < SMALLEST_RATE:
         return 0.0, None
-    segments = tuple(sorted((float(blocks.edges[a]), float(blocks.edges[b])) for a, b in runs))
+    # Segments are where it begins to be wrong and ends.
+    places = np.flatnonzero(np.diff(np.pad(is_wrong, 1).astype(int)))
+    segments = tuple(
+        (float(blocks.edges[a]), float(blocks.edges[b])) for a, b in places.reshape(-1, 2)
+    )
     rate = {
         "rate": ParameterEstimate(
             1.0 + float(value), float(np.hypot(std, RATE_UNSURE * value)), "1"

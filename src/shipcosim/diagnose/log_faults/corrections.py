@@ -128,10 +128,10 @@ def with_right_clock(identification: Identification) -> Identification:
     clock = clock_by_response(as_logged.problem)
     if clock is None:
         return identification
-    # The motion was distorted by the wrong clock: correct it, then estimate the rate again.
+    # The motion was distorted by the wrong clock, and the noise was tuned on it: correct it, then estimate both again.
     first = _repaired(identification, (*others, clock))
     clock = with_rate(first.problem, clock, first.repaired)
-    return _repaired(identification, (*others, clock), first.problem.noise)
+    return _repaired(identification, (*others, clock))
 
 
 def with_right_wind(identification: Identification) -> Identification:
@@ -293,10 +293,10 @@ def _with_right_input(explained, plain):
     return None
 
 
-def _repaired(identification, faults, noise=None):
+def _repaired(identification, faults):
     """A repeated identification, of the log as read with some faults corrected."""
     log = _without(identification, faults)
-    problem = identification_problem(log, identification.ship, identification.causes, noise)
+    problem = identification_problem(log, identification.ship, identification.causes)
     return replace(identification, faults=tuple(faults), repaired=log, problem=problem)
 
 
