@@ -54,12 +54,15 @@ WHERE_TO = Mislabel(
 
 
 def _late(role, seconds):
-    """A thruster's channel that comes late; its last rows, of which nothing is logged, stay as they are."""
+    """A thruster's channel that comes late; rows that have no value, and the last, stay as they are.
+
+    With more rows the log would be likelier, whatever comes late.
+    """
     label = late((role,), ("the other channels",), seconds)
 
     def undo(log):
-        is_last = log["time"] + seconds > log["time"][-1]
-        return {role: np.where(is_last, log[role], label.undo(log)[role])}
+        stays = (log["time"] + seconds > log["time"][-1]) | ~np.isfinite(log[role])
+        return {role: np.where(stays, log[role], label.undo(log)[role])}
 
     return replace(label, undo=undo)
 
