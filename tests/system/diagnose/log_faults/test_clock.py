@@ -10,6 +10,7 @@ import shipcosim as sc
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.inference.fitting import prepared
 from shipcosim.diagnose.log.repair import repaired
+from shipcosim.diagnose.log.rows import inside
 from shipcosim.diagnose.log_faults import clock as timing
 from shipcosim.diagnose.log_faults.clock import clock_by_response, is_testable, with_rate
 from shipcosim.diagnose.log_faults.corrections import with_right_clock
@@ -18,10 +19,10 @@ from shipcosim.diagnose.pipeline import problem_of, read_measurements
 FIRST, LAST, RATE = 150.0, 300.0, 1.3
 
 
-def hurried(log):
-    """The log as a clock writes it that counts a second in FIRST to LAST of its own time while RATE pass."""
+def hurried(log, segments=((FIRST, LAST),)):
+    """The log as a clock writes it that counts a second in some segments of its own time while RATE pass."""
     time = log["time"].values
-    pace = np.where((time[1:] > FIRST) & (time[1:] <= LAST), RATE, 1.0)
+    pace = np.where(inside(time[1:], segments), RATE, 1.0)
     true = np.r_[0.0, np.cumsum(pace * np.diff(time))] + time[0]
     rows = true <= time[-1]
     table = {str(name): np.interp(true[rows], time, log[name].values) for name in log.data_vars}
@@ -61,6 +62,12 @@ def test_a_clock_that_is_slow_for_a_while_is_found_with_its_rate():
     right = repaired(log, [finding])
     settled = with_rate(twin.ready(right), finding, right).parameters["rate"]
     assert settled.estimate == pytest.approx(RATE, abs=0.05)
+
+
+def test_two_segments_of_a_slow_clock_are_not_taken_for_one_with_what_is_between():
+    log = hurried(twin.logs()["healthy"], ((180.0, 260.0), (325.0, 400.0)))
+    first, second = clock_by_response(twin.ready(log)).segments
+    np.testing.assert_allclose((*first, second[0]), (180.0, 260.0, 325.0), atol=15.0)
 
 
 def test_a_clock_is_testable_where_the_ship_moves_and_not_where_nothing_happens():

@@ -111,6 +111,16 @@ def test_right_channels_are_not_suspected(name):
     assert suspected_inputs(twin.logs()[name], twin.ready(twin.logs()[name])) == []
 
 
+def test_a_channel_without_values_in_a_few_rows_is_not_taken_for_late():
+    """Moved in time its rows would all have values, and each row makes a log likelier."""
+    log = twin.logs()["healthy"]
+    speed = log["tunnel_rpm"].values.copy()
+    for first in (60, 180, 181, 182, 300, 301):
+        speed[first] = np.nan
+    log = log.assign(tunnel_rpm=("time", speed))
+    assert suspected_inputs(log, twin.ready(log)) == []
+
+
 def test_thebest_run_is_the_one_of_all_runs_that_adds_up_to_most():
     gain = np.random.default_rng(0).normal(-0.1, 1.0, 80)
     runs = {(a, b): gain[a : b + 1].sum() for a in range(80) for b in range(a + 9, 80)}
