@@ -21,6 +21,8 @@ from shipcosim.diagnose.log_faults.thresholds import (
     ASPECT_CHANCE,
     CLOCK_BLOCK,
     CLOCK_GAIN,
+    END_BLOCK,
+    ENDS_TRIED,
     LARGEST_SHARE,
     MOST_BLOCKS,
     MOST_SEGMENTS,
@@ -119,8 +121,10 @@ def _weighted_mean(rates, covariance):
     return weight.sum(axis=0) @ rates / weight.sum(), weight
 
 
-def with_rate(problem: IdentificationProblem, finding: Finding, log: xarray.Dataset) -> Finding:
-    """A finding on the clock with its rate settled: the first is about a motion that the wrong clock has distorted.
+def settled_clock(
+    problem: IdentificationProblem, finding: Finding, log: xarray.Dataset
+) -> Finding:
+    """A finding on the clock, its ends and rate settled: the first are about a motion that the wrong clock has distorted.
 
     Parameters
     ----------
@@ -131,18 +135,46 @@ def with_rate(problem: IdentificationProblem, finding: Finding, log: xarray.Data
         That log.
     """
     time = problem.record.time
-    # The repaired log runs in true time, so the segments are converted to it.
-    inner = np.interp(np.ravel(finding.segments), log["logged_time"].values, log["time"].values)
-    blocks = _blocks(problem, np.r_[time[0], inner, time[-1]], problem.ship_columns(()))
-    # The blocks inside the segments, every second one, give
-    # the remaining rate error by regularised least squares.
-    odd_places = np.arange(1, len(inner), 2)
-    energy = blocks.gram[np.ix_(odd_places, odd_places)].sum()
-    _, more, _ = evidence_of_rate(blocks.match[odd_places].sum(), energy)
     rate = finding.parameters["rate"]
+    # The repaired log runs in true time, so the segments are converted to it. About each end are small blocks.
+    logged, true = log["logged_time"].values, log["time"].values
+    first_ends = np.interp(np.ravel(finding.segments), logged, true)
+    near = first_ends[:, None] + END_BLOCK * np.arange(-ENDS_TRIED, ENDS_TRIED + 1)
+    edges = np.unique(np.clip([time[0], *near.ravel(), time[-1]], time[0], time[-1]))
+    blocks = _blocks(problem, edges, problem.ship_columns(()))
+    ends = [_likeliest_end(blocks, end, i % 2, rate.estimate) for i, end in enumerate(first_ends)]
+    # What is left of the rate's error, by regularised least squares in the rows that were corrected and should be.
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    is_wrong = _is_in(middles, first_ends) & _is_in(middles, ends)
+    energy = blocks.gram[np.ix_(is_wrong, is_wrong)].sum()
+    _, more, _ = evidence_of_rate(blocks.match[is_wrong].sum(), energy)
+    ends = np.interp(ends, true, logged)
     return replace(
-        finding, parameters={"rate": replace(rate, estimate=float(rate.estimate * (1.0 + more)))}
+        finding,
+        segments=tuple((float(a), float(b)) for a, b in ends.reshape(-1, 2)),
+        parameters={"rate": replace(rate, estimate=float(rate.estimate * (1.0 + more)))},
     )
+
+
+def _is_in(time, ends):
+    """Whether times are in segments that begin and end at some times in turn."""
+    return np.searchsorted(ends, time) % 2 == 1
+
+
+def _likeliest_end(blocks, end, is_last, rate):
+    """The edge near the start, or the end, of a segment of wrong clock at which it is likeliest.
+
+    Between the two the clock goes at the rate where the segment lacks these rows, and is over-corrected by it where the
+    segment has them too much.
+    """
+    match, energy = sums_of_runs(blocks.match, blocks.gram)
+    at = int(np.searchsorted(blocks.edges, end))
+    is_before = np.arange(blocks.edges.size) < at
+    error = np.where(is_before != bool(is_last), rate, 1.0 / rate) - 1.0
+    # A sum backwards from the end has the other sign.
+    gain = error * np.where(is_before, -match[at], match[at]) - 0.5 * error**2 * energy[at]
+    is_near = np.abs(blocks.edges - end) < (ENDS_TRIED + 0.5) * END_BLOCK
+    return float(blocks.edges[np.argmax(np.where(is_near, gain, -np.inf))])
 
 
 def is_testable(problem: IdentificationProblem) -> bool:

@@ -26,7 +26,7 @@ from shipcosim.diagnose.log.mislabels import (
 )
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.log.roles import NAVIGATION
-from shipcosim.diagnose.log_faults.clock import clock_by_response, with_rate
+from shipcosim.diagnose.log_faults.clock import clock_by_response, settled_clock
 from shipcosim.diagnose.log_faults.held_inputs import held_inputs, is_contradicted
 from shipcosim.diagnose.log_faults.input_labels import (
     likelihood,
@@ -40,6 +40,7 @@ from shipcosim.diagnose.log_faults.thresholds import (
     MOST_INPUT_FAULTS,
     MOST_TRIED,
     PART_GAIN,
+    ROUNDS_OF_CLOCK,
     ROUNDS_OF_SEGMENT,
     UNIT,
 )
@@ -128,10 +129,12 @@ def with_right_clock(identification: Identification) -> Identification:
     clock = clock_by_response(as_logged.problem)
     if clock is None:
         return identification
-    # The motion was distorted by the wrong clock, and the noise was tuned on it: correct it, then estimate both again.
-    first = _repaired(identification, (*others, clock))
-    clock = with_rate(first.problem, clock, first.repaired)
-    return _repaired(identification, (*others, clock))
+    # The motion was distorted by the wrong clock, and the noise was tuned on it: correct it, then settle both again.
+    right = _repaired(identification, (*others, clock))
+    for _ in range(ROUNDS_OF_CLOCK):
+        clock = settled_clock(right.problem, clock, right.repaired)
+        right = _repaired(identification, (*others, clock))
+    return right
 
 
 def with_right_wind(identification: Identification) -> Identification:

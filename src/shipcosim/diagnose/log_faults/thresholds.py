@@ -101,6 +101,12 @@ MOTION_GAIN = 6.0
 """What way and heading by themselves must gain by a wrong clock. [nats] Logs with one gain 6.5 to 615 where it is found
 (developing, hold 9801 to 9811, work 9801 to 9806); of nine runs in swell without one that get here eight lose 1 to 11,
 one gains 5.4."""
+END_BLOCK = 2.0
+"""Blocks of which the ends of its segments are settled. [s]"""
+ENDS_TRIED = 10
+"""Blocks on either side of an end."""
+ROUNDS_OF_CLOCK = 2
+"""How often ends and rate are settled, each about the motion that those before tell of."""
 TYPICAL_RATE = 0.2
 """ρ - 1 of a wrong clock that a log should be able to show, for what it could not have shown."""
 TYPICAL_SEGMENT = 240.0

@@ -12,7 +12,7 @@ from shipcosim.diagnose.inference.fitting import prepared
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.log.rows import inside
 from shipcosim.diagnose.log_faults import clock as timing
-from shipcosim.diagnose.log_faults.clock import clock_by_response, is_testable, with_rate
+from shipcosim.diagnose.log_faults.clock import clock_by_response, is_testable, settled_clock
 from shipcosim.diagnose.log_faults.corrections import with_right_clock
 from shipcosim.diagnose.pipeline import problem_of, read_measurements
 
@@ -60,7 +60,7 @@ def test_a_clock_that_is_slow_for_a_while_is_found_with_its_rate():
     ((first, last),) = finding.segments
     assert abs(first - FIRST) < 20.0 and abs(last - LAST) < 20.0
     right = repaired(log, [finding])
-    settled = with_rate(twin.ready(right), finding, right).parameters["rate"]
+    settled = settled_clock(twin.ready(right), finding, right).parameters["rate"]
     assert settled.estimate == pytest.approx(RATE, abs=0.05)
 
 
