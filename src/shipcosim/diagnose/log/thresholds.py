@@ -30,7 +30,7 @@ NEAR_NORTH = 45.0
 NO_TURN = 15.0
 """Change of heading from row to row that can be one interpolated across north. [deg] Assumed."""
 FASTER = 5.0
-"""Over what three in four changes of a log stay below, above which it is no turn of the craft. Assumed."""
+"""Over what three in five changes of a log stay below, above which it is no turn of the craft. Assumed."""
 LEAP = 5.0
 """Way between two rows over that by the logged velocity, above which rows were lost. Assumed."""
 END_DISTANCE = 10.0

@@ -121,9 +121,7 @@ def _weighted_mean(rates, covariance):
     return weight.sum(axis=0) @ rates / weight.sum(), weight
 
 
-def settled_clock(
-    problem: IdentificationProblem, finding: Finding, log: xarray.Dataset
-) -> Finding:
+def settled_clock(problem: IdentificationProblem, finding: Finding, log: xarray.Dataset) -> Finding:
     """A finding on the clock, its ends and rate settled: the first are about a motion that the wrong clock has distorted.
 
     Parameters

@@ -46,7 +46,13 @@ def examine(log: xarray.Dataset) -> list[Finding]:
     empty = {
         role: logged[role] for role, values in table.items() if np.isnan(values).all()
     }  # not lost, but unusable
-    in_parts = gaps(table | empty)
+    # Rows that are no measurement are no gap besides.
+    lost = [segment for finding in useless for segment in finding.segments]
+    in_parts = [
+        replace(f, segments=tuple(s for s in f.segments if not _meets(s, lost)))
+        for f in gaps(table | empty)
+    ]
+    in_parts = [finding for finding in in_parts if finding.segments]
     if not any(finding.alternatives for finding in throughout):
         right = without_findings(table, in_parts)
         in_parts += _in_parts(right, _stated_units(log), labels.contradiction)
@@ -56,6 +62,11 @@ def examine(log: xarray.Dataset) -> list[Finding]:
         replace(f, segments=tuple(_as_logged(s, start, rate) for s in f.segments)) for f in in_parts
     ]
     return sorted([*useless, *throughout, *in_parts], key=lambda finding: -finding.probability)
+
+
+def _meets(segment, others):
+    """Whether a segment has a time in common with one of others."""
+    return any(segment[0] <= end and start <= segment[1] for start, end in others)
 
 
 def _unless_in_part(throughout, table, stated):

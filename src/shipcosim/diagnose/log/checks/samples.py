@@ -384,17 +384,20 @@ def wraps(log: dict) -> list[Finding]:
     fine = quantum(heading)
     # Change from row to row that is no turn of this craft, however agile she is. [deg]
     change = np.abs(wrap_series(np.diff(finite(heading))))
-    faster = max(NO_TURN, FASTER * float(np.quantile(change, 0.75))) if len(change) else NO_TURN
+    faster = max(NO_TURN, FASTER * float(np.quantile(change, 0.6))) if len(change) else NO_TURN
     full = np.where(
         np.abs(heading) <= fine, heading + 360.0, heading
     )  # 359.98 rounded is written as 0.0
-    # Try each number of samples between a row before and a row after the crossing of north.
-    for between in range(1, min(LONGEST_WRAP, len(heading) - 2) + 1):
+    # Try each number of samples between a row before and a row after the crossing of north; once more without those
+    # that were there, as one between two others looks like a turn.
+    for between in 2 * [*range(1, min(LONGEST_WRAP, len(heading) - 2) + 1)]:
         crossing = np.zeros(len(heading) - between - 1, bool)
+        turning = np.abs(wrap_series(np.diff(np.where(bad, np.nan, heading))))
         # 0 may stand for 360 at either end.
         for a, b in ((heading, heading), (full, heading), (heading, full)):
+            ends = a[: -between - 1], b[between + 1 :]
             crossing |= _long_way(
-                time, heading, a[: -between - 1], b[between + 1 :], 3.0 + 2.0 * fine, faster
+                time, heading, *ends, np.nan_to_num(turning), 3.0 + 2.0 * fine, faster
             )
         for row in np.flatnonzero(crossing):
             bad[row + 1 : row + 1 + between] = True
@@ -405,7 +408,7 @@ def wraps(log: dict) -> list[Finding]:
     return [log_fault("heading_wrap", ("heading",), note, segments)] if segments else []
 
 
-def _long_way(time, heading, a, b, tolerance, faster):
+def _long_way(time, heading, a, b, turning, tolerance, faster):
     """Where the samples between a and b, both near north and on its two sides, lie on the line through south.
 
     Some of them may be missing.
@@ -420,7 +423,6 @@ def _long_way(time, heading, a, b, tolerance, faster):
         & (np.abs(b - a) > faster * (between + 1))
     )
     # The craft must not be turning as fast as this right before and after it.
-    turning = np.nan_to_num(np.abs(wrap_series(np.diff(heading))))
     noise = np.minimum(
         np.r_[0.0, turning[: n - 1]], np.r_[turning[between + 1 :], 0.0]
     )  # before a, after b

@@ -118,13 +118,17 @@ def dropouts(values: np.ndarray, unit: str) -> np.ndarray:
         if not is_filler.any() or len(rest) < _FEWEST:
             continue
         # What the channel does otherwise: its changes from row to row, and its range.
-        usual = np.quantile(_distance(np.diff(values[rest]), unit), 0.99)
+        changes = _distance(np.diff(values[rest]), unit)
+        usual = np.quantile(changes, 0.99)
         large = _LARGE_LEAP * np.ptp(values[rest])
         # Leaps to the number and from it, the smaller of both; a log may begin or end with it.
         spans = runs(is_filler)
         place = np.searchsorted(rest, spans[:, 0])
         around = np.concatenate(([np.nan], values[rest], [np.nan]))
         leap = np.nanmin(_distance(around[[place, place + 1]] - filler, unit), axis=0)
+        # Where the rows before and after change as fast, the channel passes through the number.
+        nearby = np.pad(changes, 2)
+        leap[leap < 2.0 * np.minimum(nearby[place], nearby[place + 2])] = 0.0
         # A number that stands for no value at one place does so elsewhere. A single row may be any outlier.
         if usual > 0.0 and leap.max() > large and (filler == 0.0 or is_filler.sum() > 1):
             for first, last in spans[leap > _FAR_LEAP * usual]:

@@ -7,6 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as some
 
 from shipcosim.diagnose.log.files.cells import without_fillers
+from shipcosim.diagnose.log.files.missing import dropouts
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.errors import ShipcosimError
 
@@ -219,3 +220,14 @@ def test_headings_in_parts_of_a_degree_are_refused(tmp_path, parts, start, swing
     heading = np.mod(start + swing * np.sin(T / 30.0), 360.0) * parts
     with pytest.raises(ShipcosimError, match="is no direction: is the unit right"):
         log_of(tmp_path, {"time": T} | MOTION | {"heading": heading})
+
+
+@given(some.integers(1, 6), some.integers(10, 280))
+@EASY
+def test_a_heading_that_sweeps_through_north_twice_has_no_missing_value(between, row):
+    """Interpolated the long way round from one side of north to the other and back, with north itself between."""
+    heading = np.mod(0.3 * np.sin(T / 40.0), 360.0)
+    sweep = np.linspace(360.0, 0.0, between + 2)
+    heading[row : row + between + 2] = sweep
+    heading[row + between + 1 : row + 2 * between + 3] = sweep[::-1]
+    assert not dropouts(heading, "deg").any()
