@@ -131,13 +131,14 @@ class ComparedLog(CheckedLog):
     comparison: LogComparison
 
 
-def compared(log: CheckedLog, is_assumed: bool = False) -> ComparedLog:
+def compared(log: CheckedLog, is_assumed: bool = False, keeps_labels: bool = False) -> ComparedLog:
     """A checked log compared with the simulation: what is grossly wrong is corrected before anything else.
 
-    Sides and signs of thrusters that the motion contradicts are faults of the log; a common ratio of thrust to inertia
-    that is far off is in the ship from here on. Where all numbers of the ship are guesses, she is learned instead.
+    Sides and signs of thrusters that the motion contradicts are faults of the log, unless it `keeps_labels`; a common
+    ratio of thrust to inertia that is far off is in the ship from here on. Where all numbers of the ship are guesses,
+    she is learned instead.
     """
-    log_compared = _compared(log)
+    log_compared = _compared(log, keeps_labels)
     if is_assumed:
         return _learned_alone(log_compared)
     # A ratio far off would bend every later fit: the ship starts with it.
@@ -145,7 +146,7 @@ def compared(log: CheckedLog, is_assumed: bool = False) -> ComparedLog:
     return _started_with_craft(log_compared) if ratio and ratio.differs(GROSS) else log_compared
 
 
-def _compared(log: CheckedLog) -> ComparedLog:
+def _compared(log: CheckedLog, keeps_labels: bool) -> ComparedLog:
     length = log.ship.length
     # A long log is reduced to stretches; the ship gets its kind of wind and surrogates of
     # third-party FMUs.
@@ -181,6 +182,8 @@ def _compared(log: CheckedLog) -> ComparedLog:
         return _stage(log, LogComparison(errors, large, obstacles=unknown, missing=missing))
     # Labels first, as gains and ratio depend on them.
     labels = read_labels(record, measured, axes, ship)
+    if keeps_labels:
+        labels = Labels(labels.logged, labels.logged, is_judged=False)
     gains = gains_of(axes, labels.used.commanded, labels.used.ahead)
     ratio = common_ratio(gains)
     missing = missing_loads(axes, labels.used.commanded, measured, ship, over_none)

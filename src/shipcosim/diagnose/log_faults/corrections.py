@@ -8,8 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from shipcosim.diagnose.checked_log import CheckedLog
+from shipcosim.diagnose.compared_log import compared
 from shipcosim.diagnose.explanation.form import learnt, with_learnt_form
-from shipcosim.diagnose.explanation.identification import Identification
+from shipcosim.diagnose.explanation.identification import Identification, identified
 from shipcosim.diagnose.explanation.search import ExplainedLog, at_first_sight, explain
 from shipcosim.diagnose.explanation.unmodelled import is_healthy, unmodelled_gains
 from shipcosim.diagnose.finding import Finding
@@ -50,11 +52,36 @@ from shipcosim.diagnose.ship.wiring import put_right
 
 
 def corrected(identification: Identification) -> Identification:
-    """A log with navigation, clock and wind, and a system with connections, as the ship's response says."""
-    navigation = with_right_navigation(identification)
+    """A log with thrusters, navigation, clock and wind, and a system with connections, as the ship's response says."""
+    thrusters = with_right_thrusters(identification)
+    navigation = with_right_navigation(thrusters)
     clock = with_right_clock(navigation)
     wind = with_right_wind(clock)
     return with_right_connections(with_measured_inputs(wind))
+
+
+def with_right_thrusters(identification: Identification) -> Identification:
+    """The log with sides and signs of the thrusters as logged, where the forces alone told otherwise but the ship not.
+
+    Where thrusters hold a ship against the weather they follow it, and a current that turns looks like a wrong sign.
+    """
+    comparison = identification.comparison
+    labels = comparison.labels
+    changes = labels.best.changes if labels and labels.is_sure else ()
+    if not changes or comparison.is_started_with:
+        return identification
+    others = identification.faults[: -len(changes)]
+    log = CheckedLog(
+        identification.log,
+        identification.ship,
+        identification.causes,
+        others,
+        repaired(identification.log, others),
+    )
+    as_logged = identified(compared(log, keeps_labels=True))
+    score = explain(identification.problem, most=1)[0].score
+    is_right = explain(as_logged.problem, most=1)[0].score > score + FAULT
+    return as_logged if is_right else identification
 
 
 def with_measured_inputs(identification: Identification) -> Identification:
