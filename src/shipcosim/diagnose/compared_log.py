@@ -12,7 +12,7 @@ from shipcosim.diagnose.comparison.commanded import commanded_by
 from shipcosim.diagnose.comparison.discrepancies import discrepancies_of
 from shipcosim.diagnose.comparison.errors import errors_of, errors_over_none
 from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio, common_ratio, gains_of
-from shipcosim.diagnose.comparison.label_hypotheses import LabelError
+from shipcosim.diagnose.comparison.label_hypotheses import LabelError, reading
 from shipcosim.diagnose.comparison.labels import Labels, read_labels
 from shipcosim.diagnose.comparison.measured_force import measured_force_of
 from shipcosim.diagnose.comparison.missing_loads import MissingLoad, missing_loads
@@ -181,9 +181,11 @@ def _compared(log: CheckedLog, keeps_labels: bool) -> ComparedLog:
         large = tuple(load.discrepancy for load in missing)
         return _stage(log, LogComparison(errors, large, obstacles=unknown, missing=missing))
     # Labels first, as gains and ratio depend on them.
-    labels = read_labels(record, measured, axes, ship)
     if keeps_labels:
-        labels = Labels(labels.logged, labels.logged, is_judged=False)
+        logged = reading((), record, measured, axes, ship)
+        labels = Labels(logged, logged, is_judged=False)
+    else:
+        labels = read_labels(record, measured, axes, ship)
     gains = gains_of(axes, labels.used.commanded, labels.used.ahead)
     ratio = common_ratio(gains)
     missing = missing_loads(axes, labels.used.commanded, measured, ship, over_none)

@@ -71,6 +71,8 @@ square."""
 HEARD = 12.0
 """What the best form of a relation must gain over none, to be heard. [nats] Assumed; of 36 forms without any relation
 the best one gains 5."""
+UNKNOWN_SIZE = 3.0
+"""Standard deviation of a factor's logarithm from which on its relation says nothing. Assumed."""
 LARGEST_TURN = 75.0
 """From row to row, beyond which rows are too far apart to follow the motion. [deg] Assumed."""
 TURNED_TOO_FAR = 0.05

@@ -35,7 +35,7 @@ from shipcosim.diagnose.log_faults.thresholds import (
     TYPICAL_RATE,
     TYPICAL_SEGMENT,
 )
-from shipcosim.diagnose.numerics import running_sums, survival
+from shipcosim.diagnose.numerics import running_sums, runs, survival
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.models.core.motion import Motion
 
@@ -140,39 +140,41 @@ def settled_clock(problem: IdentificationProblem, finding: Finding, log: xarray.
     near = first_ends[:, None] + END_BLOCK * np.arange(-ENDS_TRIED, ENDS_TRIED + 1)
     edges = np.unique(np.clip([time[0], *near.ravel(), time[-1]], time[0], time[-1]))
     blocks = _blocks(problem, edges, problem.ship_columns(()))
-    ends = [_likeliest_end(blocks, end, i % 2, rate.estimate) for i, end in enumerate(first_ends)]
+    sums = sums_of_runs(blocks.match, blocks.gram)
+    ends = [
+        _likeliest_end(edges, *sums, end, i % 2 == 1, rate.estimate)
+        for i, end in enumerate(first_ends)
+    ]
     # What is left of the rate's error, by regularised least squares in the rows that were corrected and should be.
     middles = 0.5 * (edges[1:] + edges[:-1])
-    is_wrong = _is_in(middles, first_ends) & _is_in(middles, ends)
+    is_wrong = inside(middles, _segments(first_ends)) & inside(middles, _segments(ends))
     energy = blocks.gram[np.ix_(is_wrong, is_wrong)].sum()
     _, more, _ = evidence_of_rate(blocks.match[is_wrong].sum(), energy)
-    ends = np.interp(ends, true, logged)
     return replace(
         finding,
-        segments=tuple((float(a), float(b)) for a, b in ends.reshape(-1, 2)),
+        segments=_segments(np.interp(ends, true, logged)),
         parameters={"rate": replace(rate, estimate=float(rate.estimate * (1.0 + more)))},
     )
 
 
-def _is_in(time, ends):
-    """Whether times are in segments that begin and end at some times in turn."""
-    return np.searchsorted(ends, time) % 2 == 1
+def _segments(ends):
+    """Segments that begin and end at some times in turn."""
+    return tuple((float(first), float(last)) for first, last in np.reshape(ends, (-1, 2)))
 
 
-def _likeliest_end(blocks, end, is_last, rate):
+def _likeliest_end(edges, match, energy, end, is_last, rate):
     """The edge near the start, or the end, of a segment of wrong clock at which it is likeliest.
 
     Between the two the clock goes at the rate where the segment lacks these rows, and is over-corrected by it where the
     segment has them too much.
     """
-    match, energy = sums_of_runs(blocks.match, blocks.gram)
-    at = int(np.searchsorted(blocks.edges, end))
-    is_before = np.arange(blocks.edges.size) < at
-    error = np.where(is_before != bool(is_last), rate, 1.0 / rate) - 1.0
+    at = int(np.searchsorted(edges, end))
+    is_before = np.arange(edges.size) < at
+    error = np.where(is_before != is_last, rate, 1.0 / rate) - 1.0
     # A sum backwards from the end has the other sign.
     gain = error * np.where(is_before, -match[at], match[at]) - 0.5 * error**2 * energy[at]
-    is_near = np.abs(blocks.edges - end) < (ENDS_TRIED + 0.5) * END_BLOCK
-    return float(blocks.edges[np.argmax(np.where(is_near, gain, -np.inf))])
+    is_near = np.abs(edges - end) < (ENDS_TRIED + 0.5) * END_BLOCK
+    return float(edges[np.argmax(np.where(is_near, gain, -np.inf))])
 
 
 def is_testable(problem: IdentificationProblem) -> bool:
@@ -230,10 +232,7 @@ def _most_likely(blocks):
     if not PLAUSIBLE_RATES[0] < 1.0 + value < PLAUSIBLE_RATES[1] or abs(value) < SMALLEST_RATE:
         return 0.0, None
     # Segments are where it begins to be wrong and ends.
-    places = np.flatnonzero(np.diff(np.pad(is_wrong, 1).astype(int)))
-    segments = tuple(
-        (float(blocks.edges[a]), float(blocks.edges[b])) for a, b in places.reshape(-1, 2)
-    )
+    segments = _segments(blocks.edges[runs(is_wrong)])
     rate = {
         "rate": ParameterEstimate(
             1.0 + float(value), float(np.hypot(std, RATE_UNSURE * value)), "1"

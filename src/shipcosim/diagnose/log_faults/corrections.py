@@ -61,9 +61,9 @@ def corrected(identification: Identification) -> Identification:
 
 
 def with_right_thrusters(identification: Identification) -> Identification:
-    """The log with sides and signs of the thrusters as logged, where the forces alone told otherwise but the ship not.
+    """The log with sides and signs of the thrusters as logged, if the whole model says so against the forces alone.
 
-    Where thrusters hold a ship against the weather they follow it, and a current that turns looks like a wrong sign.
+    Thrusters that hold a ship follow the weather: then a current that turns looks like a wrong sign.
     """
     comparison = identification.comparison
     labels = comparison.labels

@@ -97,8 +97,9 @@ def held_out_table(study: SeaTrialStudy) -> Table:
 
 
 def feature_text(name: str) -> str:
-    """A feature as people read it: `t90` is the time to 90° of heading."""
-    return re.sub(r"\bt(\d+)$", r"time to \1°", re.sub(r"(speed at \d+)$", r"\1°", name))
+    """A feature as people read it: `t90` is the time to 90° of heading; numbers at the end are headings."""
+    text = re.sub(r"\bt(?=\d)", "time to ", name)
+    return f"{text}°" if text[-1].isdigit() else text
 
 
 def features_table(study: SeaTrialStudy) -> Table:

@@ -40,13 +40,15 @@ def unit_of_speed(time: np.ndarray, way: np.ndarray, speed: np.ndarray) -> str |
     return unit
 
 
-def unit_of_rate(time: np.ndarray, heading: np.ndarray, rate: np.ndarray) -> tuple[str | None, int]:
+def unit_and_sign_of_rate(
+    time: np.ndarray, heading: np.ndarray, rate: np.ndarray
+) -> tuple[str | None, int]:
     """Unit of a yaw rate, from the heading in degrees, and its sign; None and 0 if it does not determine them.
 
     Examples
     --------
     >>> t = np.arange(200.0)
-    >>> unit_of_rate(t, 30.0 * np.sin(t / 20), -np.radians(1.5 * np.cos(t / 20)))
+    >>> unit_and_sign_of_rate(t, 30.0 * np.sin(t / 20), -np.radians(1.5 * np.cos(t / 20)))
     ('rad/s', -1)
     """
     rows = _all_known(time, heading, rate)

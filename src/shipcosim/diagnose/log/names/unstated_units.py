@@ -12,7 +12,7 @@ from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.evidence import (
     frame_of_angle,
     frame_of_velocity,
-    unit_of_rate,
+    unit_and_sign_of_rate,
     unit_of_speed,
 )
 from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, Guess
@@ -304,14 +304,14 @@ def _settle_velocity(channels):
     """Frame of two components of a velocity whose names do not state it, by the positions and the heading."""
     chosen = channels.chosen
     pair = next((p for p in _VELOCITIES if all(role in chosen for role in p)), None)
-    heading, way = channels.values("heading"), channels.way
-    if pair is None or heading is None or way is None:
+    bow = channels.plane_of("heading")
+    way = channels.way
+    if pair is None or bow is None or way is None:
         return
     guesses = [chosen[role] for role in pair]
     if channels.are_sure(*pair):
         return
     # Along and across the ship, positive to starboard or to port, or over the earth.
-    bow = np.exp(1j * np.radians(heading))
     first, second = map(channels.column, pair)
     readings = {
         ("surge", "sway", 1): (first + 1j * second) * bow,
@@ -400,10 +400,11 @@ def _settle_speed(channels, role):
 def _settle_rate(channels):
     """Unit of a yaw rate, and to which side it is counted, by the heading."""
     heading = channels.values("heading")
-    unit, sign = None, 0
+    unit = None
+    sign = 0
     # Compare with the change of heading.
     if heading is not None and channels.time is not None:
-        unit, sign = unit_of_rate(channels.time, heading, channels.column("yaw_rate"))
+        unit, sign = unit_and_sign_of_rate(channels.time, heading, channels.column("yaw_rate"))
     guess = channels.chosen["yaw_rate"]
     if sign and guess.is_guess and channels.are_sure("heading"):
         side = "starboard" if sign > 0 else "port"

@@ -26,6 +26,7 @@ from shipcosim.diagnose.log.thresholds import (
     ROBUST_ROUNDS,
     ROBUST_SHARE,
     THROUGHOUT,
+    UNKNOWN_SIZE,
     UNLABELLED,
     UNSURE_NOISE,
 )
@@ -34,7 +35,6 @@ from shipcosim.diagnose.numerics import quantile
 ROUGHNESS = (
     5.69  # variance of the fourth differences of a spline's integral of white noise of variance 1
 )
-_UNKNOWN_SIZE = 3.0  # of the standard deviation of a factor's logarithm. Assumed.
 _Key = TypeVar("_Key", bound=Hashable)
 
 
@@ -238,7 +238,7 @@ def _relation(fit, evidence, rough):
     low, unsure = _too_small(len(fit.reported) / (size**2 * energy), fit)
     factor = complex(math.log(size) + low, np.angle(fit.factor))
     # What is told at no size that one could name, explains nothing: single rows make it look so.
-    evidence = evidence if std < _UNKNOWN_SIZE else 0.0
+    evidence = evidence if std < UNKNOWN_SIZE else 0.0
     return Relation(factor, (math.hypot(std, unsure), std), evidence, _throughout(fit, windows))
 
 
